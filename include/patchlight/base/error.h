@@ -1,0 +1,33 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace patchlight {
+
+/// The user's input cannot be used. `where` names the file and line or the option ("room.obj:12", "--tolerance");
+/// the message says what was found, what was expected and how to mend it.
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::string& where, const std::string& message) : std::runtime_error(where + ": " + message) {}
+};
+
+/// A result cannot be written. `where` names the file.
+class OutputError : public std::runtime_error {
+ public:
+  OutputError(const std::string& where, const std::string& message) : std::runtime_error(where + ": " + message) {}
+};
+
+/// The work would need more memory than it may use.
+class MemoryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The observer asked to stop before there was a result.
+class Cancelled : public std::runtime_error {
+ public:
+  Cancelled() : std::runtime_error("cancelled") {}
+};
+
+}  // namespace patchlight

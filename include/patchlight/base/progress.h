@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+
+namespace patchlight {
+
+/// The stages of a run, in order.
+enum class Stage { read, mesh, form_factors, closure, solve, gather, render, write };
+
+/// The stage's name as users see it.
+const char* name_of(Stage stage);
+
+/// One row of a solver's history.
+struct Iteration {
+  int number = 0;                ///< 0 is the starting value B = E + R H_direct
+  double relative_residual = 0;  ///< ||r||_A / ||K E + R H_direct||_A, worst band
+  double error_bound = 0;        ///< bound on ||B - B_k||_A / ||B_k - E||_A, worst band; infinite when none is known
+  double seconds = 0;            ///< wall time since the solver started
+  double work = 0;               ///< operator applications so far; N shots or N rows count as one
+};
+
+/// What an observer is told.
+struct Progress {
+  Stage stage = Stage::read;
+  double fraction = 0;                   ///< of this stage, 0 to 1
+  const Iteration* iteration = nullptr;  ///< in Stage::solve only
+};
+
+/// Called in every stage at least twice a second, never from two threads at once; returning false stops the run,
+/// which then throws Cancelled.
+using Observer = std::function<bool(const Progress&)>;
+
+}  // namespace patchlight

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// A well-mixed 32-bit hash of a counter.
+std::uint32_t hash(std::uint32_t value);
+
+/// The same of several counters in order.
+std::uint32_t hash(std::initializer_list<std::uint64_t> values);
+
+/// Owen's nested uniform scrambling of the bits of a Sobol coordinate, by hashing.
+/// Burley 2020, Practical Hash-based Owen Scrambling, section 3.
+std::uint32_t owen_scramble(std::uint32_t coordinate, std::uint32_t seed);
+
+/// The first `count` points (the zero point included) of a four-dimensional Sobol sequence, scrambled per dimension by
+/// `seed`: coordinates in (0, 1). Any power-of-two prefix is a stratified set.
+std::vector<std::array<double, 4>> scrambled_sobol(std::uint32_t count, std::uint32_t seed);
+
+/// Barycentric weights (b1, b2) of a uniformly distributed point p0 + b1 (p1 - p0) + b2 (p2 - p0) of a triangle.
+Eigen::Vector2d square_to_triangle(double u, double v);
+
+/// Uniformly distributed point of a planar convex quadrilateral (or of a triangle, when corners 2 and 3 coincide).
+Point square_to_quad(const std::array<Point, 4>& corners, double u, double v);
+
+/// Direction of the hemisphere around +z with density cos(theta) / pi.
+Vector square_to_cosine_hemisphere(double u, double v);
+
+/// Its density with respect to solid angle, 1/sr; zero below the horizon.
+double square_to_cosine_hemisphere_pdf(const Vector& direction);
+
+/// A right-handed orthonormal frame whose third column is the unit vector `normal`. Duff et al. 2017.
+Eigen::Matrix3d frame_around(const Vector& normal);
+
+}  // namespace patchlight

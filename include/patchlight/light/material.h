@@ -1,0 +1,19 @@
+#pragma once
+
+#include "patchlight/light/spectrum.h"
+
+#include <cstdint>
+#include <string>
+
+namespace patchlight {
+
+using MaterialIndex = std::uint32_t;
+
+/// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.
+struct Material {
+  std::string name;
+  Spectrum reflectance;  ///< rho, in [0, 1]
+  Spectrum exitance;     ///< self-emitted, W/m^2; pi times the emitted radiance
+};
+
+}  // namespace patchlight

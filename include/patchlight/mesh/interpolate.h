@@ -1,0 +1,16 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+namespace patchlight {
+
+/// Values at the mesh's vertices: the area-weighted mean of the patches that share each vertex. Rows are vertices.
+Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values);
+
+/// A value inside a patch from the values at its vertices: barycentric in a triangle, inverse bilinear in a
+/// quadrilateral. `point` is taken as its projection on the patch, clamped to it. One row, one column per band.
+Eigen::Array<double, 1, Eigen::Dynamic> interpolate(const PatchMesh& mesh, const FieldView& vertex_values,
+                                                    PatchIndex patch, const Point& point);
+
+}  // namespace patchlight

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/sides.h"
+
+#include <cstddef>
+
+namespace patchlight {
+
+/// Subdivides the kept sides of every polygon into patches no edge of which is longer than `max_edge` metres.
+///
+/// An edge is cut into ceil(length / max_edge) equal parts, whichever polygon it belongs to, so neighbours that share
+/// an edge share its points. Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
+/// triangles with three equal counts a grid of triangles; every other polygon is cut into triangles which are split at
+/// their longest inner edge and flipped to Delaunay until all edges are short enough. Patches of one polygon side are
+/// numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
+/// 30 degrees, and between those only. Both sides of a polygon have their own vertices.
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
+
+/// The largest edge for which the number of patches is nearest to `patches`: exact to the steps in which the number can
+/// change at all. Costs some ten tessellations.
+double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches);
+
+}  // namespace patchlight

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// Finds the patch at a point: per polygon side a uniform grid of cells in the polygon's plane, each with the patches
+/// whose bounds overlap it.
+class PatchLookup {
+ public:
+  /// Keeps a reference to the mesh, which must outlive it.
+  explicit PatchLookup(const PatchMesh& mesh);
+
+  /// The patch of this polygon side that contains the point or, for a point slightly outside of all by rounding, the
+  /// nearest of the cell; nothing when the side is not kept.
+  std::optional<PatchIndex> patch_at(PolygonIndex polygon, Side side, const Point& point) const;
+
+ private:
+  struct Grid {
+    PatchIndex first = 0;
+    int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
+    double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
+    int count_u = 0, count_v = 0;
+    std::vector<std::uint32_t> begin;  // per cell, into patches
+    std::vector<PatchIndex> patches;
+  };
+  Grid make_grid(PatchRange range) const;
+
+  const PatchMesh& mesh_;
+  std::vector<Grid> grids_;  // per 2 * polygon + side
+};
+
+}  // namespace patchlight

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// The corners of one patch: three or four points.
+struct PatchCorners {
+  std::array<Point, 4> points;
+  int count = 0;
+  operator std::span<const Point>() const { return {points.data(), static_cast<std::size_t>(count)}; }
+};
+
+/// The patches of a scene: triangles and planar convex quadrilaterals, each on one side of one polygon. Frozen: made by
+/// tessellate(), never changed. Every per-patch array has size() entries.
+struct PatchMesh {
+  std::vector<Point> vertices;                        ///< metres
+  std::vector<std::array<std::uint32_t, 4>> corners;  ///< counter-clockwise from the front; a triangle repeats its last
+  std::vector<Point> centroid;
+  std::vector<Vector> normal;  ///< unit, out of the patch's front
+  std::vector<double> area;    ///< m^2, positive
+  std::vector<MaterialIndex> material;
+  std::vector<PolygonIndex> polygon;    ///< the scene's polygon that the patch lies on
+  std::vector<Side> side;               ///< the side of that polygon which is the patch's front
+  std::vector<PatchIndex> first_patch;  ///< per 2 * polygon + side: its first patch; one more entry at the end
+
+  PatchIndex size() const { return static_cast<PatchIndex>(area.size()); }
+  PatchCorners corner_points(PatchIndex patch) const;
+  /// The patches of one side of a polygon; empty when that side is not kept.
+  PatchRange patches_on(PolygonIndex on_polygon, Side on_side) const;
+};
+
+}  // namespace patchlight

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <string>
+
+namespace patchlight {
+
+/// The version of this library, "major.minor.patch".
+const char* version();
+
+/// Where a result comes from.
+struct Provenance {
+  std::string command_line;
+  double exposure = 1;  ///< of the colours beside the values
+};
+
+}  // namespace patchlight

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "patchlight/output/provenance.h"
+#include "patchlight/simulate.h"
+
+#include <filesystem>
+
+namespace patchlight {
+
+/// Writes the solved patches as VTK XML PolyData (.vtp), appended raw data compressed with LZ4, for ParaView.
+/// Cell arrays: radiance, radiosity, irradiance, exitance, reflectance (bands, linear), luminance, area, material_id,
+/// source_polygon, row_sum, raw_row_sum, rgb (UInt8 x 3, sRGB). Point array: radiance_smooth. FieldData: the unit of
+/// every array, material names, version, command line, seed, SHA-256 of the input, exposure, convergence history,
+/// seconds per stage. docs/formats.md lists them all. \throws OutputError.
+void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+               const Provenance& provenance);
+
+}  // namespace patchlight

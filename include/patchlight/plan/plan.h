@@ -1,0 +1,53 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+#include "patchlight/solve/solve.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What the user asks for; what is left open the plan fills in.
+struct Request {
+  std::optional<double> max_edge;      ///< longest patch edge, metres
+  std::optional<std::size_t> patches;  ///< or the number of kept patches
+  Sides sides = Sides::automatic;
+  Solver solver = Solver::gauss_seidel;
+  double tolerance = 1e-6;  ///< the solver's relative error
+  int samples = 16;         ///< shadow rays of a partly occluded pair of patches
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: all processors
+};
+
+/// A physical effect that can be simulated or left out.
+struct Decision {
+  std::string effect;
+  bool simulate = true;
+  std::string reason;  ///< the fact that decides
+};
+
+/// How a scene is going to be solved.
+struct Plan {
+  KeptSides sides;
+  double max_edge = 0;  ///< metres
+  int probes = 4;       ///< shadow rays of every other pair
+  int samples = 16;
+  int lost_share_rays = 256;  ///< hemisphere rays per patch
+  std::uint64_t seed = 1;
+  SolverOptions solver;
+  std::vector<Decision> decisions;
+};
+
+/// The number of patches when nothing is asked for: a few seconds' work on two cores.
+inline constexpr std::size_t default_patches = 4000;
+
+/// Fills the request's open ends from the facts of the scene. Pure.
+/// \throws InputError when the scene has no lamp.
+Plan make_plan(const Scene& scene, const Request& request);
+
+}  // namespace patchlight

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/render/image.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+#include "patchlight/visibility/occluder.h"
+
+namespace patchlight {
+
+struct RenderOptions {
+  int width = 800;
+  int height = 800;
+  int rays_per_pixel_edge = 3;  ///< squared per pixel, box filter
+};
+
+/// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, interpolated between
+/// the mesh's vertices. `patch_radiance` has one row per patch. Sides without patches are transparent to the camera;
+/// where nothing is met the picture is black. \throws Cancelled.
+Image render(const PatchMesh& mesh, const FieldView& patch_radiance, const Occluder& occluder, const Camera& camera,
+             const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
+
+/// A view that shows most of the kept sides: of the eye points in the corners of the scene's bounds and before its
+/// four upright sides, that from which the most different polygons are seen over the widest part of the picture.
+Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
+
+}  // namespace patchlight

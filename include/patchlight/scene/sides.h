@@ -1,0 +1,38 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// Which sides of the polygons take part.
+enum class Sides {
+  automatic,  ///< all but those that face the inside of a closed solid without a lamp, or the dark outside of a closed
+              ///< shell
+  front,      ///< the front sides only
+  both        ///< both sides of every polygon
+};
+
+/// The sides that become patches, per polygon.
+struct KeptSides {
+  std::vector<std::uint8_t> front;  ///< 1 when the polygon's front side is kept
+  std::vector<std::uint8_t> back;   ///< 1 when its back side is kept
+  bool emit_from_back = false;      ///< lamps emit from their back sides too (Sides::both)
+  std::vector<std::string> notes;   ///< what was decided, for the report
+};
+
+/// Chooses the sides. A solid is a set of polygons connected by shared edges; it is closed and consistently oriented
+/// when every edge belongs to exactly two of its polygons, which traverse it in opposite directions. Vertices are
+/// compared by position. A solid holds a lamp when a point just before the front of an emitting polygon has winding
+/// number +-1 in it.
+///
+/// Sides::automatic keeps a side unless
+/// - it faces the inside of a closed solid that holds no lamp, or
+/// - it faces the outside of a closed solid that holds every lamp of the scene: no light gets there.
+/// So the inner sides of a closed room are used even when its normals point outward; a note says so.
+KeptSides kept_sides(const Scene& scene, Sides sides);
+
+}  // namespace patchlight

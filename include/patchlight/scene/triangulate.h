@@ -1,0 +1,20 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// Triangles (indices into `polygon`) that cover a simple planar polygon, convex or not, with its orientation; n - 2 of
+/// them for n corners. Convex quadrilaterals are cut along their shorter diagonal. O(n^3) for n corners in the worst
+/// case.
+std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Point> polygon);
+
+/// True when no corner of the planar polygon turns inward.
+bool is_convex(std::span<const Point> polygon);
+
+}  // namespace patchlight

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/solve/problem.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/lost_share.h"
+
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What a stage cost.
+struct StageCost {
+  Stage stage = Stage::read;
+  double seconds = 0;      ///< wall time
+  double cpu_seconds = 0;  ///< all threads
+};
+
+/// Facts about the form factors before and after closure.
+struct TransportFacts {
+  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
+  Eigen::VectorXd row_sum;      ///< after
+  LostShare lost;
+  AssemblyCounts counts;
+  std::string closure;  ///< which method closed the rows
+};
+
+/// A solved scene.
+struct Simulation {
+  Plan plan;
+  PatchMesh mesh;
+  TransportFacts transport;
+  RadiosityProblem problem;
+  Solution solution;
+  EnergyBalance balance;
+  std::vector<StageCost> costs;
+};
+
+/// From a scene to converged radiosities: the whole program. \throws InputError, MemoryError, Cancelled.
+Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/base/progress.h"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace patchlight {
+
+/// B = E + rho o H, H = F B: one row per patch, one column per band.
+struct RadiosityProblem {
+  Field reflectance;     ///< rho, in [0, 1]
+  Field exitance;        ///< E, W/m^2
+  Eigen::VectorXd area;  ///< m^2
+};
+
+struct Solution {
+  Field radiosity;   ///< B, W/m^2; B = E + rho o H
+  Field irradiance;  ///< H, W/m^2
+  Field ambient;     ///< one row: progressive refinement's estimate of the irradiance still under way, for display
+  std::vector<Iteration> history;  ///< from iteration 0
+  bool converged = false;
+};
+
+/// Where the light goes, in W per band. emitted = absorbed + escaped + lost_at_backs + defect + imbalance.
+struct EnergyBalance {
+  Eigen::ArrayXd emitted;
+  Eigen::ArrayXd absorbed;
+  Eigen::ArrayXd escaped;        ///< into the open
+  Eigen::ArrayXd lost_at_backs;  ///< to sides without patches
+  Eigen::ArrayXd defect;         ///< row sums that differ from the measured lost share: the form factors' error
+  double imbalance = 0;          ///< relative to emitted, worst band: the solver's error
+};
+
+/// ||x||_A = sqrt(sum_i A_i x_i^2) per band.
+Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area);
+
+}  // namespace patchlight

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/exchange_areas.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <cstdint>
+
+namespace patchlight {
+
+struct AssemblyOptions {
+  int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
+  int samples = 16;  ///< shadow rays of a partly occluded pair; at least `probes`
+  std::uint64_t seed = 1;
+};
+
+/// How the entries of a matrix came about.
+struct AssemblyCounts {
+  std::uint64_t facing_pairs = 0;   ///< pairs that face each other: the entries that are not zero by orientation
+  std::uint64_t near_pairs = 0;     ///< of these, closer than two diameters: closed form
+  std::uint64_t partial_pairs = 0;  ///< of these, partly occluded: Monte Carlo
+  std::uint64_t blocked_pairs = 0;  ///< of these, fully occluded
+  std::uint64_t shadow_rays = 0;
+};
+
+struct Assembly {
+  ExchangeAreas exchange_areas;
+  AssemblyCounts counts;
+};
+
+/// Exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal and between
+/// patches of one plane, never more than the unoccluded value. The same bits for any number of threads. O(size^2) time.
+/// \throws Cancelled.
+Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options = {},
+                                 const Observer& observer = {});
+
+}  // namespace patchlight

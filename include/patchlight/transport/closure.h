@@ -1,0 +1,30 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/lost_share.h"
+
+#include <Eigen/Core>
+#include <string>
+
+namespace patchlight {
+
+/// Exchange areas whose rows sum up to what is seen.
+struct ClosedExchangeAreas {
+  ExchangeAreas exchange_areas;  ///< entries narrowed toward zero
+  Eigen::VectorXd remainder;     ///< m^2, what narrowing took from each row; applied as remainder_i B_i
+  std::string method;            ///< "least squares", "scaling" or "none", with the reason
+};
+
+/// Corrects symmetric exchange areas so that row i sums to a_i = A_i (1 - lost_i), the smallest change in the norm
+/// weighted by the entries' variance, for which S_ij^2 stands. In a closed scene the sums become exact; in an open one
+/// the measured lost share has a standard error that is weighed against that of the entries. Falls back to symmetric
+/// scaling when an entry would become negative, and to the raw entries where no symmetric matrix with this pattern has
+/// such sums. docs/theory.md section 6. \throws Cancelled.
+ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
+                                         const Observer& observer = {});
+
+/// The same entries without any change.
+ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason);
+
+}  // namespace patchlight

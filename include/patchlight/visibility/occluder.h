@@ -1,0 +1,64 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// A shadow ray: the open segment between two points in metres. The two polygons it starts and ends on cannot block it,
+/// as a planar polygon never shades itself.
+struct Segment {
+  Point from;
+  Point to;
+  PolygonIndex from_polygon = no_polygon;
+  PolygonIndex to_polygon = no_polygon;
+};
+
+struct Ray {
+  Point origin;
+  Vector direction;                        ///< unit
+  PolygonIndex from_polygon = no_polygon;  ///< hits on this polygon are ignored
+};
+
+struct Hit {
+  PolygonIndex polygon = no_polygon;
+  Side side = Side::front;  ///< the side of the polygon that was hit
+  Point point;
+  double distance = 0;  ///< metres from the ray's origin
+};
+
+/// Decides visibility: every polygon of the scene is opaque from both sides. Immutable and safe to use from several
+/// threads. Rays are traced in single precision after recentring on the scene's bounds in double, so a scene far from
+/// the origin loses nothing; a hit point is known to about 1e-6 of the scene's extent. Hits closer to an end of a
+/// segment than 2e-6 of the scene's extent plus 1e-5 of the segment's length are ignored: so much light can leak under
+/// a wall that does not quite touch its floor.
+class Occluder {
+ public:
+  explicit Occluder(const Scene& scene);
+  ~Occluder();
+  Occluder(Occluder&&) noexcept;
+  Occluder& operator=(Occluder&&) noexcept;
+
+  /// 1 for each segment that some polygon blocks, 0 for each that is free. Embree works in packets: pass hundreds at
+  /// once.
+  std::vector<std::uint8_t> occluded(std::span<const Segment> segments) const;
+
+  /// The first polygon that each ray meets, if any.
+  std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
+
+  /// False when no polygon can stand between two points of the scene's surfaces, because every polygon lies on the
+  /// scene's convex hull: then shadow rays are not needed.
+  bool can_occlude() const;
+
+ private:
+  struct Tracer;
+  std::unique_ptr<Tracer> tracer_;
+};
+
+}  // namespace patchlight

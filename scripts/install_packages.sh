@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that patchlight is built and tested with; does nothing when all are there.
+# usage: scripts/install_packages.sh
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build ccache git
+  libeigen3-dev libembree-dev libopenmesh-dev libvtk9-dev libtbb-dev libboost-dev
+  libtinyobjloader-dev libcli11-dev libspdlog-dev nlohmann-json3-dev libssl-dev
+  libgtest-dev python3 clang-format
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "packages: all present"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "packages: installing ${missing[*]} (about 180 MB to download)"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+echo "packages: done"

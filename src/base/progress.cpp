@@ -1,0 +1,27 @@
+#include "patchlight/base/progress.h"
+
+namespace patchlight {
+
+const char* name_of(Stage stage) {
+  switch (stage) {
+    case Stage::read:
+      return "read";
+    case Stage::mesh:
+      return "mesh";
+    case Stage::form_factors:
+      return "form factors";
+    case Stage::closure:
+      return "closure";
+    case Stage::solve:
+      return "solve";
+    case Stage::gather:
+      return "gather";
+    case Stage::render:
+      return "render";
+    case Stage::write:
+      return "write";
+  }
+  return "";
+}
+
+}  // namespace patchlight

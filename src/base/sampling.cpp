@@ -1,0 +1,111 @@
+#include "patchlight/base/sampling.h"
+
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
+  x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4);
+  return __builtin_bswap32(x);
+}
+
+// Burley 2020, listing 3: a hash in which each bit depends on itself and lower bits only (Laine and Karras 2011).
+std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cU;
+  x ^= x * 0xb82f1e52U;
+  x ^= x * 0xc7afe638U;
+  x ^= x * 0x8d22f6e6U;
+  return x;
+}
+
+// The centre of the interval of width 2^-32 that the integer stands for.
+double to_unit_interval(std::uint32_t x) { return (x + 0.5) * 0x1p-32; }
+
+}  // namespace
+
+std::uint32_t hash(std::uint32_t value) {
+  // Wellons 2018, lowbias32.
+  value ^= value >> 16;
+  value *= 0x7feb352dU;
+  value ^= value >> 15;
+  value *= 0x846ca68bU;
+  value ^= value >> 16;
+  return value;
+}
+
+std::uint32_t hash(std::initializer_list<std::uint64_t> values) {
+  std::uint32_t state = 0x9e3779b9U;
+  for (const std::uint64_t value : values) {
+    state = hash(state ^ static_cast<std::uint32_t>(value)) + 0x9e3779b9U;
+    state = hash(state ^ static_cast<std::uint32_t>(value >> 32)) + 0x9e3779b9U;
+  }
+  return hash(state);
+}
+
+std::uint32_t owen_scramble(std::uint32_t coordinate, std::uint32_t seed) {
+  return reverse_bits(laine_karras_permutation(reverse_bits(coordinate), seed));
+}
+
+std::vector<std::array<double, 4>> scrambled_sobol(std::uint32_t count, std::uint32_t seed) {
+  std::array<std::uint32_t, 4> seeds{};
+  for (std::uint32_t d = 0; d < 4; ++d) seeds[d] = hash({seed, d});
+
+  // Boost's engine leaves out the zero point; without it a power of two of points is not stratified.
+  boost::random::sobol_engine<std::uint32_t, 32> engine(4);
+  std::vector<std::array<double, 4>> points(count);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    for (std::size_t d = 0; d < 4; ++d) {
+      const std::uint32_t coordinate = k == 0 ? 0 : engine();
+      points[k][d] = to_unit_interval(owen_scramble(coordinate, seeds[d]));
+    }
+  }
+  return points;
+}
+
+Eigen::Vector2d square_to_triangle(double u, double v) {
+  const double root = std::sqrt(u);
+  return {root * (1 - v), root * v};
+}
+
+Point square_to_quad(const std::array<Point, 4>& corners, double u, double v) {
+  const auto& [p0, p1, p2, p3] = corners;
+  // Two triangles (p0, p1, p2) and (p0, p2, p3), chosen by area; u is stretched to be used again.
+  const double first_area = (p1 - p0).cross(p2 - p0).norm();
+  const double second_area = (p2 - p0).cross(p3 - p0).norm();
+  const double first_share = first_area / (first_area + second_area);
+  const bool in_first = u < first_share;
+  const double stretched = in_first ? u / first_share : (u - first_share) / (1 - first_share);
+  const Eigen::Vector2d b = square_to_triangle(stretched, v);
+  return in_first ? p0 + b[0] * (p1 - p0) + b[1] * (p2 - p0) : p0 + b[0] * (p2 - p0) + b[1] * (p3 - p0);
+}
+
+Vector square_to_cosine_hemisphere(double u, double v) {
+  // Malley's method: a uniform point of the unit disc, lifted to the hemisphere.
+  const double radius = std::sqrt(u);
+  const double angle = 2 * std::numbers::pi * v;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - u)};
+}
+
+double square_to_cosine_hemisphere_pdf(const Vector& direction) {
+  return direction.z() > 0 ? direction.z() / std::numbers::pi : 0;
+}
+
+Eigen::Matrix3d frame_around(const Vector& normal) {
+  // Duff et al. 2017, Building an Orthonormal Basis, Revisited, listing 3.
+  const double sign = std::copysign(1.0, normal.z());
+  const double a = -1 / (sign + normal.z());
+  const double b = normal.x() * normal.y() * a;
+  Eigen::Matrix3d frame;
+  frame.col(0) << 1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x();
+  frame.col(1) << b, sign + normal.y() * normal.y() * a, -normal.y();
+  frame.col(2) = normal;
+  return frame;
+}
+
+}  // namespace patchlight

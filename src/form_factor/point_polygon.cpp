@@ -1,0 +1,1 @@
+#include "patchlight/form_factor/point_polygon.h"

@@ -1,0 +1,1 @@
+#include "patchlight/gather/gather.h"

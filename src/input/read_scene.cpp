@@ -1,0 +1,1 @@
+#include "patchlight/input/read_scene.h"

@@ -1,0 +1,1 @@
+#include "patchlight/mesh/interpolate.h"

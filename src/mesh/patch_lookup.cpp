@@ -1,0 +1,1 @@
+#include "patchlight/mesh/patch_lookup.h"

@@ -1,0 +1,1 @@
+#include "patchlight/output/whole_file.h"

@@ -1,0 +1,1 @@
+#include "patchlight/output/write_image.h"

@@ -1,0 +1,1 @@
+#include "patchlight/plan/plan.h"

@@ -1,0 +1,1 @@
+#include "patchlight/render/render.h"

@@ -1,0 +1,1 @@
+#include "patchlight/render/tone_map.h"

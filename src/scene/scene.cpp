@@ -1,0 +1,110 @@
+#include "patchlight/scene/scene.h"
+
+#include "patchlight/base/error.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+// A polygon counts as planar when no corner is farther from its plane than this share of the polygon's size.
+constexpr double planarity_tolerance = 1e-4;
+
+// A polygon counts as having an area when it is larger than this share of its squared perimeter.
+constexpr double relative_area_tolerance = 1e-12;
+
+std::string where(const Scene& scene, const Polygon& polygon) {
+  return polygon.line > 0 ? scene.file + ":" + std::to_string(polygon.line) : scene.file;
+}
+
+void check_material(const Scene& scene, const Material& material) {
+  const std::string name = "material '" + material.name + "'";
+  for (const double rho : material.reflectance) {
+    if (!(rho >= 0 && rho <= 1)) {
+      std::ostringstream message;
+      message << name << " has reflectance " << rho << "; expected 0 to 1 in every band. Mend Kd, or use --set "
+              << material.name << ".reflectance=R,G,B";
+      throw InputError(scene.file, message.str());
+    }
+  }
+  for (const double exitance : material.exitance) {
+    if (!(exitance >= 0 && std::isfinite(exitance))) {
+      std::ostringstream message;
+      message << name << " has exitance " << exitance
+              << " W/m^2; expected a finite number not below 0. Mend Ke, or use --set " << material.name
+              << ".exitance=R,G,B";
+      throw InputError(scene.file, message.str());
+    }
+  }
+}
+
+void check_polygon(const Scene& scene, PolygonIndex index) {
+  const Polygon& polygon = scene.polygons[index];
+  if (polygon.corners.size() < 3) {
+    throw InputError(where(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
+                                                " corners; expected at least three. Remove the face");
+  }
+  for (const std::uint32_t corner : polygon.corners) {
+    if (corner >= scene.vertices.size()) {
+      throw InputError(where(scene, polygon), "this face uses vertex " + std::to_string(corner + 1) + " of " +
+                                                  std::to_string(scene.vertices.size()) +
+                                                  "; expected a vertex that exists");
+    }
+  }
+  const std::vector<Point> points = corner_points(scene, index);
+  const Vector area = area_vector(points);
+  double perimeter = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) perimeter += (points[(k + 1) % points.size()] - points[k]).norm();
+  if (!(area.norm() > relative_area_tolerance * perimeter * perimeter)) {
+    throw InputError(where(scene, polygon), "this face has no area; remove it, or merge its repeated vertices");
+  }
+  const Vector normal = area.normalized();
+  for (const Point& point : points) {
+    if (std::abs(normal.dot(point - points[0])) > planarity_tolerance * perimeter) {
+      throw InputError(where(scene, polygon),
+                       "the corners of this face do not lie in one plane; cut it into triangles");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon) {
+  const auto& corners = scene.polygons[polygon].corners;
+  std::vector<Point> points;
+  points.reserve(corners.size());
+  for (const std::uint32_t corner : corners) points.push_back(scene.vertices[corner]);
+  return points;
+}
+
+Vector front_normal(const Scene& scene, PolygonIndex polygon) {
+  const Vector area = area_vector(corner_points(scene, polygon));
+  const double length = area.norm();
+  return length > 0 ? Vector(area / length) : Vector(Vector::Zero());
+}
+
+bool is_lamp(const Scene& scene, PolygonIndex polygon) {
+  return (scene.materials[scene.polygons[polygon].material].exitance > 0).any();
+}
+
+Box bounds(const Scene& scene) {
+  Box box;
+  for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t corner : polygon.corners) box.extend(scene.vertices[corner]);
+  }
+  return box;
+}
+
+void check(const Scene& scene) {
+  if (scene.polygons.empty()) {
+    throw InputError(scene.file, "found no faces; expected at least one polygon");
+  }
+  for (const Point& vertex : scene.vertices) {
+    if (!vertex.allFinite()) throw InputError(scene.file, "a vertex is not finite; expected three finite coordinates");
+  }
+  for (const Material& material : scene.materials) check_material(scene, material);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) check_polygon(scene, p);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,1 @@
+#include "patchlight/scene/sides.h"

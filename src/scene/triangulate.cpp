@@ -1,0 +1,69 @@
+#include "patchlight/scene/triangulate.h"
+
+#include <cstddef>
+
+namespace patchlight {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+// Twice the signed area of a triangle, positive when it turns like the polygon.
+double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
+  return normal.dot((b - a).cross(c - a));
+}
+
+bool contains(const Vector& normal, const Point& a, const Point& b, const Point& c, const Point& x) {
+  return turn(normal, a, b, x) >= 0 && turn(normal, b, c, x) >= 0 && turn(normal, c, a, x) >= 0;
+}
+
+// Among the remaining corners, is the one at `k` an ear: does it turn outward, and is no other corner inside it?
+bool is_ear(std::span<const Point> polygon, const std::vector<std::uint32_t>& left, std::size_t k,
+            const Vector& normal) {
+  const std::size_t n = left.size();
+  const Point& a = polygon[left[(k + n - 1) % n]];
+  const Point& b = polygon[left[k]];
+  const Point& c = polygon[left[(k + 1) % n]];
+  if (turn(normal, a, b, c) <= 0) return false;
+  for (std::size_t other = 0; other + 3 < n; ++other) {
+    const Point& x = polygon[left[(k + 2 + other) % n]];
+    if (x == a || x == b || x == c) continue;
+    if (contains(normal, a, b, c, x)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_convex(std::span<const Point> polygon) {
+  const Vector normal = area_vector(polygon);
+  const std::size_t n = polygon.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (turn(normal, polygon[k], polygon[(k + 1) % n], polygon[(k + 2) % n]) < 0) return false;
+  }
+  return true;
+}
+
+std::vector<Triangle> triangulate(std::span<const Point> polygon) {
+  const Vector normal = area_vector(polygon);
+  if (polygon.size() == 4 && is_convex(polygon)) {
+    const bool shorter_02 = (polygon[2] - polygon[0]).squaredNorm() <= (polygon[3] - polygon[1]).squaredNorm();
+    if (shorter_02) return {{0, 1, 2}, {0, 2, 3}};
+    return {{1, 2, 3}, {1, 3, 0}};
+  }
+
+  // Ear clipping (Meisters 1975). Where rounding leaves no ear, the first corner is cut off: the result is complete.
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t k = 0; k < polygon.size(); ++k) left.push_back(k);
+  std::vector<Triangle> triangles;
+  while (left.size() >= 3) {
+    std::size_t ear = 0;
+    while (ear < left.size() && left.size() > 3 && !is_ear(polygon, left, ear, normal)) ++ear;
+    if (ear == left.size()) ear = 0;
+    const std::size_t n = left.size();
+    triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  return triangles;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,1 @@
+#include "patchlight/solve/relaxation.h"

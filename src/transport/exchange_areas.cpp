@@ -1,0 +1,1 @@
+#include "patchlight/transport/exchange_areas.h"

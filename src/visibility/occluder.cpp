@@ -1,0 +1,1 @@
+#include "patchlight/visibility/occluder.h"
