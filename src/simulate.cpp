@@ -1,1 +1,58 @@
 #include "patchlight/simulate.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/solve/energy.h"
+#include "patchlight/transport/closure.h"
+#include "patchlight/transport/dense.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "problem_of.h"
+#include "stage_clock.h"
+
+namespace patchlight {
+
+Simulation simulate(const Scene& scene, const Request& request, const Observer& observer) {
+  const ThreadLimit threads(request.threads);
+  StageClock clock;
+  Simulation result;
+
+  // 1. Decide which sides take part, how finely they are subdivided, and how form factors and radiosities are found.
+  result.plan = make_plan(scene, request);
+  const Plan& plan = result.plan;
+
+  // 2. Subdivide the kept sides of the polygons into patches.
+  result.mesh = tessellate(scene, plan.sides, plan.max_edge);
+  const PatchMesh& mesh = result.mesh;
+  require_memory(mesh.size());
+  clock.finish(Stage::mesh);
+
+  // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays; and the share of each patch's
+  //    hemisphere from which no patch is seen.
+  const Occluder occluder(scene);
+  Assembly raw = assemble_exchange_areas(mesh, occluder, {plan.probes, plan.samples, plan.seed}, observer);
+  TransportFacts& facts = result.transport;
+  facts.lost = measure_lost_share(mesh, occluder, plan.lost_share_rays, plan.seed, observer);
+  facts.counts = raw.counts;
+  clock.finish(Stage::form_factors);
+
+  // 4. Closure: each row sums up to what its patch sees.
+  result.problem = problem_of(scene, mesh, plan.sides.emit_from_back);
+  const Eigen::VectorXd& area = result.problem.area;
+  facts.raw_row_sum = row_sums(raw.exchange_areas).cwiseQuotient(area);
+  ClosedExchangeAreas closed = close_exchange_areas(std::move(raw.exchange_areas), area, facts.lost, observer);
+  facts.closure = closed.method;
+  const auto transport = dense_transport(std::move(closed), area);
+  facts.row_sum = transport->apply(Field::Ones(mesh.size(), 1)).matrix();
+  clock.finish(Stage::closure);
+
+  // 5. Solve B = E + rho o F B, and see where the light went.
+  result.solution = solve(*transport, result.problem, plan.solver, observer);
+  result.balance = energy_balance(result.problem, result.solution, facts.row_sum, facts.lost);
+  clock.finish(Stage::solve);
+
+  result.costs = clock.costs();
+  return result;
+}
+
+}  // namespace patchlight

@@ -1,1 +1,108 @@
 #include "patchlight/output/whole_file.h"
+
+#include "patchlight/base/error.h"
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+namespace patchlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A name beside `file` that no other process and no other call uses. The extension stays, as writers look at it.
+fs::path temporary_beside(const fs::path& file) {
+  static std::atomic<unsigned> calls{0};
+  const std::string name = ".patchlight-" + std::to_string(getpid()) + "-" + std::to_string(calls++);
+  return file.parent_path() / (name + file.extension().string());
+}
+
+// A path whose file is gone when the path goes out of scope, unless it was renamed.
+struct TemporaryFile {
+  fs::path path;
+  explicit TemporaryFile(fs::path name) : path(std::move(name)) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+};
+
+// The file itself, absolute, where `file` is a symbolic link to it: renaming would replace the link.
+fs::path followed(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file) : fs::absolute(file);
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::string& message, int error_number) {
+  throw OutputError(file.string(), message + ": " + std::strerror(error_number));
+}
+
+void create_empty(const fs::path& path, const fs::path& file) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(file, "cannot write into this folder", errno);
+  close(descriptor);
+}
+
+void flush_to_disk(const fs::path& path, const fs::path& file) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(file, "cannot be written", errno);
+  // Some file systems cannot flush a folder: EINVAL.
+  const int error_number = fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  close(descriptor);
+  if (error_number != 0) fail(file, "cannot be written to disk", error_number);
+}
+
+void check_target(const fs::path& file, const fs::path& target) {
+  const fs::path folder = target.parent_path();
+  if (target.filename().empty() || fs::is_directory(target)) {
+    throw OutputError(file.string(), "is a folder; expected the name of a file to write");
+  }
+  if (!fs::is_directory(folder)) {
+    throw OutputError(file.string(), "there is no folder " + folder.string() + "; create it first");
+  }
+  if (!fs::exists(target)) return;
+  if (!fs::is_regular_file(target)) {
+    throw OutputError(file.string(), "is a device or a pipe; expected the name of a file to write");
+  }
+  if (access(target.c_str(), W_OK) != 0) fail(file, "exists and cannot be replaced", errno);
+}
+
+}  // namespace
+
+void check_writable(const fs::path& file) {
+  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
+  try {
+    const fs::path target = followed(file);
+    check_target(file, target);
+    // Only trying tells: permissions, read-only and full file systems.
+    const TemporaryFile trial(temporary_beside(target));
+    create_empty(trial.path, file);
+  } catch (const fs::filesystem_error& error) {
+    throw OutputError(file.string(), error.code().message());
+  }
+}
+
+void write_whole_file(const fs::path& file, const std::function<void(const fs::path& temporary)>& write) {
+  check_writable(file);
+  try {
+    const fs::path target = followed(file);
+    const TemporaryFile temporary(temporary_beside(target));
+    write(temporary.path);
+    if (fs::exists(target)) fs::permissions(temporary.path, fs::status(target).permissions());
+    flush_to_disk(temporary.path, file);
+    fs::rename(temporary.path, target);
+    flush_to_disk(target.parent_path(), file);
+  } catch (const std::system_error& error) {
+    // Input and output only: fs::filesystem_error and std::ios_base::failure.
+    throw OutputError(file.string(), "cannot be written: " + error.code().message());
+  }
+}
+
+}  // namespace patchlight

@@ -1,1 +1,233 @@
 #include "patchlight/output/write_report.h"
+
+#include "output/write_bytes.h"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+namespace patchlight {
+namespace {
+
+// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
+using Json = nlohmann::ordered_json;
+
+const char* name_of_sides(Sides sides) {
+  switch (sides) {
+    case Sides::automatic:
+      return "auto";
+    case Sides::front:
+      return "front";
+    case Sides::both:
+      return "both";
+  }
+  return "";
+}
+
+template <class Values>
+Json array_of(const Values& values) {
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(value);
+  return array;
+}
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+Json json_of(const std::optional<std::size_t>& value) { return value ? Json(*value) : Json(); }
+
+Json input_part(const Scene& scene) {
+  Json part;
+  part["file"] = scene.file;
+  part["sha256"] = scene.sha256;
+  part["polygons"] = scene.polygons.size();
+  part["materials"] = scene.materials.size();
+  part["metres_per_unit"] = scene.metres_per_unit;
+  part["up"] = array_of(scene.up);
+  part["notes"] = scene.notes;
+  return part;
+}
+
+Json request_part(const Request& request) {
+  Json part;
+  part["max_edge_m"] = json_of(request.max_edge);
+  part["patches"] = json_of(request.patches);
+  part["sides"] = name_of_sides(request.sides);
+  part["solver"] = name_of(request.solver);
+  part["tolerance"] = request.tolerance;
+  part["samples"] = request.samples;
+  part["seed"] = request.seed;
+  part["threads"] = request.threads;
+  return part;
+}
+
+Json plan_part(const Plan& plan) {
+  Json part;
+  part["max_edge_m"] = plan.max_edge;
+  part["probes"] = plan.probes;
+  part["samples"] = plan.samples;
+  part["lost_share_rays"] = plan.lost_share_rays;
+  part["seed"] = plan.seed;
+  part["solver"] = name_of(plan.solver.solver);
+  part["tolerance"] = plan.solver.relative_error;
+  part["max_iterations"] = plan.solver.max_iterations;
+  part["emit_from_back"] = plan.sides.emit_from_back;
+  part["sides_notes"] = plan.sides.notes;
+  part["decisions"] = Json::array();
+  for (const Decision& decision : plan.decisions) {
+    part["decisions"].push_back(
+        {{"effect", decision.effect}, {"simulate", decision.simulate}, {"reason", decision.reason}});
+  }
+  return part;
+}
+
+Json mesh_part(const Simulation& simulation) {
+  Json part;
+  part["patches"] = simulation.mesh.size();
+  part["vertices"] = simulation.mesh.vertices.size();
+  part["area_m2"] = simulation.problem.area.sum();
+  return part;
+}
+
+using Bands = Eigen::Array<double, 1, Eigen::Dynamic>;
+
+// What the patches of one material add up to, per band.
+struct MaterialTotals {
+  double area = 0;
+  Bands emitted, absorbed, incident, lowest, highest;
+};
+
+std::vector<MaterialTotals> material_totals(const Simulation& simulation, std::size_t materials) {
+  const Field& irradiance = simulation.solution.irradiance;
+  const Bands zero = Bands::Zero(irradiance.cols());
+  const Bands infinite = Bands::Constant(irradiance.cols(), std::numeric_limits<double>::infinity());
+  std::vector<MaterialTotals> totals(materials, {0, zero, zero, zero, infinite, -infinite});
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    MaterialTotals& total = totals[simulation.mesh.material[i]];
+    const double area = simulation.problem.area[i];
+    total.area += area;
+    total.emitted += area * simulation.problem.exitance.row(i);
+    total.incident += area * irradiance.row(i);
+    total.absorbed += area * (1 - simulation.problem.reflectance.row(i)) * irradiance.row(i);
+    total.lowest = total.lowest.min(irradiance.row(i));
+    total.highest = total.highest.max(irradiance.row(i));
+  }
+  return totals;
+}
+
+Json materials_part(const Scene& scene, const Simulation& simulation) {
+  const std::vector<MaterialTotals> totals = material_totals(simulation, scene.materials.size());
+  Json parts = Json::array();
+  for (std::size_t m = 0; m < totals.size(); ++m) {
+    const Material& material = scene.materials[m];
+    const MaterialTotals& total = totals[m];
+    Json part;
+    part["name"] = material.name;
+    part["area_m2"] = total.area;
+    part["reflectance"] = array_of(material.reflectance);
+    part["exitance_W_m2"] = array_of(material.exitance);
+    part["flux_emitted_W"] = array_of(total.emitted);
+    part["flux_absorbed_W"] = array_of(total.absorbed);
+    // Without patches 0 / 0 and the infinities become null.
+    part["irradiance_min_W_m2"] = array_of(total.lowest);
+    part["irradiance_mean_W_m2"] = array_of(Bands(total.incident / total.area));
+    part["irradiance_max_W_m2"] = array_of(total.highest);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+// Row sums weighted by area; the defect is against what the lost shares leave, 1 - lost.
+Json row_sum_part(const Eigen::VectorXd& row_sum, const Simulation& simulation) {
+  if (row_sum.size() == 0) return {};
+  const Eigen::ArrayXd& area = simulation.problem.area.array();
+  const LostShare& lost = simulation.transport.lost;
+  const Eigen::ArrayXd defect = row_sum.array() - (1 - lost.escaped.array() - lost.at_backs.array());
+  Json part;
+  part["min"] = row_sum.minCoeff();
+  part["mean"] = (area * row_sum.array()).sum() / area.sum();
+  part["max"] = row_sum.maxCoeff();
+  part["rms_defect"] = std::sqrt((area * defect.square()).sum() / area.sum());
+  return part;
+}
+
+Json transport_part(const Simulation& simulation) {
+  const TransportFacts& transport = simulation.transport;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  Json part;
+  part["facing_pairs"] = transport.counts.facing_pairs;
+  part["near_pairs"] = transport.counts.near_pairs;
+  part["partly_occluded_pairs"] = transport.counts.partial_pairs;
+  part["blocked_pairs"] = transport.counts.blocked_pairs;
+  part["shadow_rays"] = transport.counts.shadow_rays;
+  part["lost_share_rays"] =
+      static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
+  part["closure"] = transport.closure;
+  part["raw_row_sum"] = row_sum_part(transport.raw_row_sum, simulation);
+  part["row_sum"] = row_sum_part(transport.row_sum, simulation);
+  part["lost_share"] = {{"escaped", area.dot(transport.lost.escaped) / area.sum()},
+                        {"at_backs", area.dot(transport.lost.at_backs) / area.sum()}};
+  return part;
+}
+
+Json energy_part(const EnergyBalance& balance) {
+  Json part;
+  part["emitted_W"] = array_of(balance.emitted);
+  part["absorbed_W"] = array_of(balance.absorbed);
+  part["escaped_W"] = array_of(balance.escaped);
+  part["lost_at_backs_W"] = array_of(balance.lost_at_backs);
+  part["defect_W"] = array_of(balance.defect);
+  part["imbalance"] = balance.imbalance;
+  return part;
+}
+
+Json solution_part(const Simulation& simulation) {
+  Json part;
+  part["solver"] = name_of(simulation.plan.solver.solver);
+  part["converged"] = simulation.solution.converged;
+  part["iterations"] = Json::array();
+  for (const Iteration& iteration : simulation.solution.history) {
+    part["iterations"].push_back({{"number", iteration.number},
+                                  {"relative_residual", iteration.relative_residual},
+                                  {"error_bound", iteration.error_bound},
+                                  {"seconds", iteration.seconds},
+                                  {"work", iteration.work}});
+  }
+  return part;
+}
+
+Json costs_part(const std::vector<StageCost>& costs) {
+  Json part = Json::array();
+  for (const StageCost& cost : costs) {
+    part.push_back({{"stage", name_of(cost.stage)}, {"seconds", cost.seconds}, {"cpu_seconds", cost.cpu_seconds}});
+  }
+  return part;
+}
+
+std::uint64_t memory_peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& file, const Scene& scene, const Request& request,
+                  const Simulation& simulation, const Provenance& provenance) {
+  Json report;
+  report["version"] = version();
+  report["command_line"] = provenance.command_line;
+  report["input"] = input_part(scene);
+  report["request"] = request_part(request);
+  report["plan"] = plan_part(simulation.plan);
+  report["mesh"] = mesh_part(simulation);
+  report["materials"] = materials_part(scene, simulation);
+  report["transport"] = transport_part(simulation);
+  report["energy_balance"] = energy_part(simulation.balance);
+  report["solution"] = solution_part(simulation);
+  report["costs"] = costs_part(simulation.costs);
+  report["memory_peak_bytes"] = memory_peak_bytes();
+  report["exposure"] = provenance.exposure;
+  // Names from a model may hold bytes that are not UTF-8: they are replaced.
+  write_bytes(file, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace patchlight

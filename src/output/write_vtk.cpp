@@ -1,1 +1,219 @@
 #include "patchlight/output/write_vtk.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/light/photometry.h"
+#include "patchlight/mesh/interpolate.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/render/tone_map.h"
+
+#include <fstream>
+#include <numbers>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCommand.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLPolyDataWriter.h>
+
+namespace patchlight {
+namespace {
+
+template <class Array>
+using Pointer = vtkSmartPointer<Array>;
+
+// The unit of every array of values; docs/formats.md says what they mean.
+constexpr std::array<std::array<const char*, 2>, 13> units = {{{"radiance", "W/(m^2 sr)"},
+                                                               {"radiosity", "W/m^2"},
+                                                               {"irradiance", "W/m^2"},
+                                                               {"exitance", "W/m^2"},
+                                                               {"reflectance", "1"},
+                                                               {"luminance", "cd/m^2"},
+                                                               {"area", "m^2"},
+                                                               {"material_id", "index into material_names"},
+                                                               {"source_polygon", "index of the face in the model"},
+                                                               {"row_sum", "1"},
+                                                               {"raw_row_sum", "1"},
+                                                               {"rgb", "sRGB, 8 bits, at the recorded exposure"},
+                                                               {"radiance_smooth", "W/(m^2 sr)"}}};
+
+Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
+  auto array = Pointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(values.cols()));
+  array->SetNumberOfTuples(values.rows());
+  float* out = array->GetPointer(0);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
+  }
+  return array;
+}
+
+// An array of numbers of any kind, one component, as vtkIntArray or vtkDoubleArray.
+template <class Array, class Values>
+Pointer<Array> numbers(const char* name, const Values& values) {
+  auto array = Pointer<Array>::New();
+  array->SetName(name);
+  for (const auto value : values) array->InsertNextValue(static_cast<typename Array::ValueType>(value));
+  return array;
+}
+
+Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values) {
+  auto array = Pointer<vtkStringArray>::New();
+  array->SetName(name.c_str());
+  for (const std::string& value : values) array->InsertNextValue(value);
+  return array;
+}
+
+Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {
+  auto array = Pointer<vtkUnsignedCharArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::uint8_t* out = array->GetPointer(0);
+  for (const auto& value : values) out = std::copy(value.begin(), value.end(), out);
+  return array;
+}
+
+Pointer<vtkPolyData> geometry(const PatchMesh& mesh) {
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+    points->SetPoint(static_cast<vtkIdType>(k), mesh.vertices[k].data());
+  }
+  const vtkNew<vtkCellArray> cells;
+  for (const auto& corners : mesh.corners) {
+    const bool triangle = corners[2] == corners[3];
+    cells->InsertNextCell(triangle ? 3 : 4);
+    for (std::size_t k = 0; k < (triangle ? 3U : 4U); ++k) cells->InsertCellPoint(corners[k]);
+  }
+  auto polygons = Pointer<vtkPolyData>::New();
+  polygons->SetPoints(points);
+  polygons->SetPolys(cells);
+  return polygons;
+}
+
+void add_values(vtkPolyData& polygons, const Simulation& simulation, double exposure) {
+  const PatchMesh& mesh = simulation.mesh;
+  const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
+  Field luminances(radiance.rows(), 1);
+  for (Eigen::Index row = 0; row < radiance.rows(); ++row) luminances(row, 0) = luminance(radiance.row(row));
+
+  vtkCellData& cell_data = *polygons.GetCellData();
+  cell_data.AddArray(floats("radiance", radiance));
+  cell_data.AddArray(floats("radiosity", simulation.solution.radiosity));
+  cell_data.AddArray(floats("irradiance", simulation.solution.irradiance));
+  cell_data.AddArray(floats("exitance", simulation.problem.exitance));
+  cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
+  cell_data.AddArray(floats("luminance", luminances));
+  cell_data.AddArray(numbers<vtkFloatArray>("area", mesh.area));
+  cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
+  cell_data.AddArray(numbers<vtkIntArray>("source_polygon", mesh.polygon));
+  cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
+  cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
+  cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
+  // What a viewer shows first.
+  cell_data.SetActiveScalars("luminance");
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance)));
+}
+
+template <class Value>
+Pointer<vtkDoubleArray> column(const char* name, const std::vector<Iteration>& history, Value Iteration::*member) {
+  auto array = Pointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  for (const Iteration& iteration : history) array->InsertNextValue(static_cast<double>(iteration.*member));
+  return array;
+}
+
+void add_history(vtkFieldData& facts, const Simulation& simulation) {
+  const std::vector<Iteration>& history = simulation.solution.history;
+  facts.AddArray(numbers<vtkIntArray>("converged", std::array{simulation.solution.converged ? 1 : 0}));
+  facts.AddArray(column("iteration", history, &Iteration::number));
+  facts.AddArray(column("iteration_relative_residual", history, &Iteration::relative_residual));
+  facts.AddArray(column("iteration_error_bound", history, &Iteration::error_bound));
+  facts.AddArray(column("iteration_seconds", history, &Iteration::seconds));
+  facts.AddArray(column("iteration_work", history, &Iteration::work));
+
+  std::vector<std::string> stages;
+  std::vector<double> seconds, cpu_seconds;
+  for (const StageCost& cost : simulation.costs) {
+    stages.emplace_back(name_of(cost.stage));
+    seconds.push_back(cost.seconds);
+    cpu_seconds.push_back(cost.cpu_seconds);
+  }
+  facts.AddArray(strings("stage", stages));
+  facts.AddArray(numbers<vtkDoubleArray>("stage_seconds", seconds));
+  facts.AddArray(numbers<vtkDoubleArray>("stage_cpu_seconds", cpu_seconds));
+}
+
+void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simulation, const Provenance& provenance) {
+  std::vector<std::string> material_names;
+  for (const Material& material : scene.materials) material_names.push_back(material.name);
+  facts.AddArray(strings("material_names", material_names));
+  facts.AddArray(strings("version", {std::string("patchlight ") + version()}));
+  facts.AddArray(strings("command_line", {provenance.command_line}));
+  facts.AddArray(strings("input_file", {scene.file}));
+  facts.AddArray(strings("sha256", {scene.sha256}));
+  facts.AddArray(strings("seed", {std::to_string(simulation.plan.seed)}));  // 64 bits do not fit a double
+  facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
+  // One array per unit: ParaView's information panel shows the value of a string array with one entry.
+  for (const auto& [name, unit] : units) facts.AddArray(strings(std::string("unit_") + name, {unit}));
+}
+
+// The first error that VTK reports, kept instead of printed.
+void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
+  auto& kept = *static_cast<std::string*>(message);
+  if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
+}
+
+bool ends_with(const std::filesystem::path& file, const std::string& end) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  std::string last(end.size() + 1, '\0');  // a line feed may follow
+  if (!stream || stream.tellg() < static_cast<std::streamoff>(last.size())) return false;
+  stream.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end);
+  stream.read(last.data(), static_cast<std::streamsize>(last.size()));
+  return stream && last.find(end) != std::string::npos;
+}
+
+}  // namespace
+
+void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+               const Provenance& provenance) {
+  const Pointer<vtkPolyData> polygons = geometry(simulation.mesh);
+  add_values(*polygons, simulation, provenance.exposure);
+  add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
+  add_history(*polygons->GetFieldData(), simulation);
+
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::string error;
+    const vtkNew<vtkCallbackCommand> on_error;
+    on_error->SetCallback(keep_first_error);
+    on_error->SetClientData(&error);
+    const vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer->SetInputData(polygons);
+    writer->SetFileName(temporary.c_str());
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetCompressorTypeToLZ4();
+    writer->SetHeaderTypeToUInt64();
+    const bool written = writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError && error.empty();
+    // VTK does not notice when the last bytes find no place on closing.
+    if (!written || !ends_with(temporary, "</VTKFile>")) {
+      throw OutputError(file.string(), "cannot be written; is the disk full?");
+    }
+  });
+}
+
+}  // namespace patchlight

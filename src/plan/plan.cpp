@@ -1,1 +1,61 @@
 #include "patchlight/plan/plan.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/visibility/convex_hull.h"
+
+#include <algorithm>
+
+namespace patchlight {
+namespace {
+
+bool has_lamp(const Scene& scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_lamp(scene, p)) return true;
+  }
+  return false;
+}
+
+void require_lamp(const Scene& scene) {
+  if (has_lamp(scene)) return;
+  std::string names;
+  for (const Material& material : scene.materials) names += (names.empty() ? "" : ", ") + material.name;
+  throw InputError(scene.file,
+                   "found no lamp: no material of a face emits. Expected Ke above 0 in at least one; use --set " +
+                       std::string("MATERIAL.radiance=R,G,B with one of: ") + names);
+}
+
+Decision decide_occlusion(const Scene& scene) {
+  const auto on_hull = on_convex_hull(scene);
+  const auto inner = std::count(on_hull.begin(), on_hull.end(), std::uint8_t{0});
+  if (inner == 0)
+    return {"occlusion", false, "all faces lie on one convex hull: nothing can stand between two patches"};
+  return {"occlusion", true,
+          std::to_string(inner) + " of " + std::to_string(scene.polygons.size()) +
+              " faces lie inside the convex hull and can stand between two patches"};
+}
+
+Decision decide_interreflection(const Scene& scene) {
+  double highest = 0;
+  for (const Material& material : scene.materials) highest = std::max(highest, material.reflectance.maxCoeff());
+  if (highest == 0)
+    return {"interreflection", false, "all reflectances are 0: light is absorbed where it first arrives"};
+  return {"interreflection", true, "the highest reflectance is " + std::to_string(highest)};
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const Request& request) {
+  require_lamp(scene);
+  Plan plan;
+  plan.sides = kept_sides(scene, request.sides);
+  plan.max_edge =
+      request.max_edge ? *request.max_edge : max_edge_for(scene, plan.sides, request.patches.value_or(default_patches));
+  plan.samples = std::max(request.samples, plan.probes);
+  plan.seed = request.seed;
+  plan.solver = {request.solver, request.tolerance, plan.solver.max_iterations};
+  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  return plan;
+}
+
+}  // namespace patchlight

@@ -1,1 +1,143 @@
 #include "patchlight/render/render.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/mesh/interpolate.h"
+#include "patchlight/mesh/patch_lookup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace patchlight {
+namespace {
+
+constexpr int tile_edge = 32;       // pixels
+constexpr int most_crossings = 64;  // sides without patches that one ray may pass
+
+// The picture plane at distance 1 before the eye: the direction through (u, v) is forward + u right + v up.
+struct PicturePlane {
+  Point eye;
+  Vector forward, right, up;
+  double half_height;
+};
+
+PicturePlane picture_plane(const Camera& camera, const Vector& up) {
+  const double angle = camera.vertical_field_of_view;
+  if (!(angle > 0 && angle < 180)) {
+    throw InputError(
+        "camera", "the field of view is " + std::to_string(angle) + " degrees; expected more than 0 and less than 180");
+  }
+  const Vector sight = camera.target - camera.eye;
+  if (!(sight.norm() > 0) || !sight.allFinite()) {
+    throw InputError("camera", "there is no direction from eye to target; expected two different points");
+  }
+  const Vector forward = sight.normalized();
+  // Looking straight up or down, any direction may be upward in the picture.
+  Vector right = forward.cross(up.normalized());
+  if (!(right.norm() > 1e-9)) right = forward.unitOrthogonal();
+  right.normalize();
+  return {camera.eye, forward, right, right.cross(forward), std::tan(angle * std::numbers::pi / 360)};
+}
+
+// A rectangle of pixels [left, right) x [top, bottom).
+struct Tile {
+  int left, top, right, bottom;
+  int width() const { return right - left; }
+  int pixels() const { return width() * (bottom - top); }
+};
+
+std::vector<Tile> tiles_of(const RenderOptions& options) {
+  std::vector<Tile> tiles;
+  for (int top = 0; top < options.height; top += tile_edge) {
+    for (int left = 0; left < options.width; left += tile_edge) {
+      tiles.push_back(
+          {left, top, std::min(left + tile_edge, options.width), std::min(top + tile_edge, options.height)});
+    }
+  }
+  return tiles;
+}
+
+// The rays of a tile, pixel by pixel. Inside a pixel n^2 rays, one in each cell of an n x n grid and, in the canonical
+// arrangement of Chiu, Shirley and Wang 1994 (Multi-Jittered Sampling), one in each of n^2 columns and rows: an upright
+// edge is resolved in n^2 steps.
+std::vector<Ray> camera_rays(const PicturePlane& plane, const RenderOptions& options, const Tile& tile) {
+  const int n = options.rays_per_pixel_edge;
+  const double pixel_edge = 2 * plane.half_height / options.height;
+  std::vector<Ray> rays;
+  rays.reserve(static_cast<std::size_t>(tile.pixels()) * static_cast<std::size_t>(n * n));
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    for (int x = tile.left; x < tile.right; ++x) {
+      for (int sample = 0; sample < n * n; ++sample) {
+        const int column = sample % n;
+        const int row = sample / n;
+        const double across = x + (column + (row + 0.5) / n) / n - 0.5 * options.width;
+        const double down = y + (row + (column + 0.5) / n) / n - 0.5 * options.height;
+        const Vector direction = plane.forward + across * pixel_edge * plane.right - down * pixel_edge * plane.up;
+        rays.push_back({plane.eye, direction.normalized()});
+      }
+    }
+  }
+  return rays;
+}
+
+struct Seen {
+  PatchIndex patch;
+  Point point;
+};
+
+// The first patch that each ray meets. Rays pass sides without patches: they go on from there.
+std::vector<std::optional<Seen>> first_patches(const Occluder& occluder, const PatchLookup& lookup,
+                                               std::vector<Ray> rays) {
+  std::vector<std::optional<Seen>> seen(rays.size());
+  std::vector<std::size_t> under_way(rays.size());  // whose ray is rays[k]
+  std::iota(under_way.begin(), under_way.end(), std::size_t{0});
+  for (int crossing = 0; crossing <= most_crossings && !rays.empty(); ++crossing) {
+    const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const std::optional<Hit>& hit = hits[k];
+      if (!hit) continue;
+      if (const std::optional<PatchIndex> patch = lookup.patch_at(hit->polygon, hit->side, hit->point)) {
+        seen[under_way[k]] = Seen{*patch, hit->point};
+        continue;
+      }
+      rays[left] = {hit->point, rays[k].direction, hit->polygon};
+      under_way[left] = under_way[k];
+      ++left;
+    }
+    rays.resize(left);
+    under_way.resize(left);
+  }
+  return seen;
+}
+
+}  // namespace
+
+Image render(const PatchMesh& mesh, const FieldView& patch_radiance, const Occluder& occluder, const Camera& camera,
+             const Vector& up, const RenderOptions& options, const Observer& observer) {
+  const PicturePlane plane = picture_plane(camera, up);
+  const PatchLookup lookup(mesh);
+  const Field vertex_radiance = vertex_means(mesh, patch_radiance);
+  const auto rays_per_pixel = static_cast<std::size_t>(options.rays_per_pixel_edge * options.rays_per_pixel_edge);
+  Image image{options.width, options.height,
+              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, patch_radiance.cols())};
+
+  const std::vector<Tile> tiles = tiles_of(options);
+  parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
+    const Tile& tile = tiles[index];
+    const auto seen = first_patches(occluder, lookup, camera_rays(plane, options, tile));
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (!seen[k]) continue;
+      const int pixel = static_cast<int>(k / rays_per_pixel);
+      const Eigen::Index x = tile.left + pixel % tile.width();
+      const Eigen::Index y = tile.top + pixel / tile.width();
+      image.pixels.row(y * options.width + x) +=
+          interpolate(mesh, vertex_radiance, seen[k]->patch, seen[k]->point) / static_cast<double>(rays_per_pixel);
+    }
+  });
+  return image;
+}
+
+}  // namespace patchlight

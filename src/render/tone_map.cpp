@@ -1,1 +1,88 @@
 #include "patchlight/render/tone_map.h"
+
+#include "patchlight/light/photometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+constexpr double percentile = 0.9;        // of the luminances above 0, by weight ...
+constexpr double percentile_value = 0.7;  // ... is shown as this share of white
+constexpr double shoulder = 0.8;          // luminances above this share of white are compressed
+
+// Luminance in units in which a grey radiance of 1 has luminance 1.
+double display_luminance(const Spectrum& radiance) { return luminance(radiance) / luminous_efficacy; }
+
+// The identity up to the shoulder, from there an exponential with the same slope that tends to 1.
+double roll_off(double value) {
+  if (value <= shoulder) return value;
+  return 1 - (1 - shoulder) * std::exp(-(value - shoulder) / (1 - shoulder));
+}
+
+// IEC 61966-2-1:1999, section 5.2: linear to non-linear sRGB, in eight bits.
+std::uint8_t srgb(double linear) {
+  const double value = linear > 0 ? std::min(linear, 1.0) : 0.0;  // not-a-number becomes black
+  const double encoded = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+}  // namespace
+
+double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight) {
+  std::vector<std::pair<double, double>> luminances;  // with their weights
+  for (Eigen::Index row = 0; row < radiance.rows(); ++row) {
+    const double value = display_luminance(radiance.row(row));
+    if (value > 0 && std::isfinite(value) && weight[row] > 0) luminances.emplace_back(value, weight[row]);
+  }
+  if (luminances.empty()) return 1;
+  std::sort(luminances.begin(), luminances.end());
+
+  double total = 0;
+  for (const auto& [value, share] : luminances) total += share;
+  double below = 0;
+  for (const auto& [value, share] : luminances) {
+    below += share;
+    if (below >= percentile * total) return percentile_value / value;
+  }
+  return percentile_value / luminances.back().first;
+}
+
+std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure) {
+  std::vector<std::array<std::uint8_t, 3>> colours(static_cast<std::size_t>(radiance.rows()));
+  for (Eigen::Index row = 0; row < radiance.rows(); ++row) {
+    const Spectrum exposed = exposure * radiance.row(row);
+    const double value = display_luminance(exposed);
+    // One factor for all channels keeps the hue.
+    const double scale = value > 0 ? roll_off(value) / value : 0;
+    auto& colour = colours[static_cast<std::size_t>(row)];
+    for (Eigen::Index channel = 0; channel < 3; ++channel) {
+      colour[static_cast<std::size_t>(channel)] = srgb(scale * (exposed.size() == 3 ? exposed[channel] : value));
+    }
+  }
+  return colours;
+}
+
+std::vector<std::array<std::uint8_t, 3>> false_color(const Eigen::VectorXd& values, double lower, double upper) {
+  // sRGB at equal steps: blue, cyan, green, yellow, red.
+  constexpr std::array<std::array<double, 3>, 5> stops = {
+      {{25, 40, 190}, {0, 165, 215}, {40, 190, 60}, {250, 225, 40}, {215, 25, 25}}};
+  std::vector<std::array<std::uint8_t, 3>> colours;
+  colours.reserve(static_cast<std::size_t>(values.size()));
+  for (const double value : values) {
+    const double ratio = (value - lower) / (upper - lower);
+    const double position = ratio > 0 ? 4 * std::min(ratio, 1.0) : 0.0;
+    const auto stop = std::min(static_cast<std::size_t>(position), std::size_t{3});
+    const double part = position - static_cast<double>(stop);
+    std::array<std::uint8_t, 3> colour{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      colour[c] = static_cast<std::uint8_t>(std::lround((1 - part) * stops[stop][c] + part * stops[stop + 1][c]));
+    }
+    colours.push_back(colour);
+  }
+  return colours;
+}
+
+}  // namespace patchlight

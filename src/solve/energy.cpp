@@ -1,1 +1,27 @@
 #include "patchlight/solve/energy.h"
+
+namespace patchlight {
+
+EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& solution, const Eigen::VectorXd& row_sum,
+                             const LostShare& lost) {
+  // Flux of a field, per band: sum_i A_i x_i.
+  const auto flux = [&](const Field& x) -> Eigen::ArrayXd {
+    return (x.colwise() * problem.area.array()).colwise().sum().transpose();
+  };
+  const Field& B = solution.radiosity;
+  const Field& H = solution.irradiance;
+
+  EnergyBalance balance;
+  balance.emitted = flux(problem.exitance);
+  balance.absorbed = flux((1 - problem.reflectance) * H);
+  balance.escaped = flux(B.colwise() * lost.escaped.array());
+  balance.lost_at_backs = flux(B.colwise() * lost.at_backs.array());
+  // What leaves a patch and arrives at no other, beyond the measured lost share.
+  balance.defect = flux(B.colwise() * (1 - row_sum.array() - lost.escaped.array() - lost.at_backs.array()));
+  const Eigen::ArrayXd left =
+      balance.emitted - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
+  balance.imbalance = (balance.emitted > 0).select(left.abs() / balance.emitted, 0.0).maxCoeff();
+  return balance;
+}
+
+}  // namespace patchlight

@@ -2,7 +2,6 @@
 
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/scene/sides.h"
 #include "patchlight/visibility/occluder.h"
 
 #include <Eigen/Core>
@@ -22,7 +21,7 @@ struct LostShare {
 
 /// Measures the lost shares with stratified cosine-hemisphere rays that start spread over each patch.
 /// \throws Cancelled.
-LostShare measure_lost_share(const PatchMesh& mesh, const KeptSides& sides, const Occluder& occluder,
-                             int rays_per_patch, std::uint64_t seed, const Observer& observer = {});
+LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
+                             const Observer& observer = {});
 
 }  // namespace patchlight

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <array>
+#include <vector>
+
+namespace patchlight {
+
+/// Points and weights that integrate over a patch; the weights in m^2 add up to its area.
+template <int capacity>
+struct Quadrature {
+  std::array<double, capacity> x, y, z, weight;
+  int count = 0;
+};
+
+/// One patch as the form factors see it.
+struct PatchShape {
+  PatchCorners corners;
+  Point centroid;
+  Vector normal;
+  double area = 0;       ///< m^2
+  double radius = 0;     ///< of the circle around the centroid that holds the corners, m
+  Quadrature<4> coarse;  ///< exact for polynomials of degree 2 (triangle) or 3 (parallelogram)
+  Quadrature<9> fine;    ///< of degree 4 or 5
+};
+
+/// The shapes of all patches.
+std::vector<PatchShape> patch_shapes(const PatchMesh& mesh);
+
+/// How two patches stand to each other.
+enum class Orientation {
+  averted,    ///< at least one lies wholly behind the other, or both in one plane: the form factor is 0
+  facing,     ///< each lies wholly before the other
+  straddling  ///< facing in part: one crosses the other's plane
+};
+
+Orientation orientation(const PatchShape& first, const PatchShape& second);
+
+/// Closer than two diameters of the larger patch: the geometry term varies too much for quadrature or area sampling.
+bool is_near(const PatchShape& first, const PatchShape& second);
+
+/// Unoccluded exchange area A_i F_ij in m^2 of two patches that are not averted: the contour integral for near patches,
+/// product quadrature for others; relative error below 1e-3 beyond two diameters and 1e-4 beyond four.
+double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second);
+
+}  // namespace patchlight

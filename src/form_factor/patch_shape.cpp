@@ -1,0 +1,176 @@
+#include "patchlight/form_factor/patch_shape.h"
+
+#include "patchlight/form_factor/contour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+// Heights below this share of the two radii count as zero: coplanar patches do not see each other.
+constexpr double height_tolerance = 1e-7;
+
+constexpr double near_diameters = 2;
+constexpr double middle_diameters = 4;
+
+template <int capacity>
+void add_point(Quadrature<capacity>& rule, const Point& point, double weight) {
+  const auto k = static_cast<std::size_t>(rule.count++);
+  rule.x[k] = point.x();
+  rule.y[k] = point.y();
+  rule.z[k] = point.z();
+  rule.weight[k] = weight;
+}
+
+// Symmetric Gaussian rules for triangles of degree 2 and 4; Dunavant 1985.
+Quadrature<4> coarse_triangle(const Point& a, const Point& b, const Point& c, double area) {
+  Quadrature<4> rule{};
+  for (int k = 0; k < 3; ++k) {
+    const std::array<double, 3> w{k == 0 ? 2.0 / 3 : 1.0 / 6, k == 1 ? 2.0 / 3 : 1.0 / 6, k == 2 ? 2.0 / 3 : 1.0 / 6};
+    add_point(rule, w[0] * a + w[1] * b + w[2] * c, area / 3);
+  }
+  return rule;
+}
+
+Quadrature<9> fine_triangle(const Point& a, const Point& b, const Point& c, double area) {
+  struct Orbit {
+    double single, pair, weight;
+  };
+  constexpr std::array<Orbit, 2> orbits{Orbit{0.816847572980459, 0.091576213509771, 0.109951743655322},
+                                        Orbit{0.108103018168070, 0.445948490915965, 0.223381589678011}};
+  Quadrature<9> rule{};
+  for (const Orbit& orbit : orbits) {
+    add_point(rule, orbit.single * a + orbit.pair * (b + c), orbit.weight * area);
+    add_point(rule, orbit.single * b + orbit.pair * (c + a), orbit.weight * area);
+    add_point(rule, orbit.single * c + orbit.pair * (a + b), orbit.weight * area);
+  }
+  return rule;
+}
+
+// Tensor Gauss-Legendre rule on the bilinear map of a quadrilateral.
+template <int capacity, std::size_t n>
+Quadrature<capacity> quadrilateral(const PatchCorners& corners, const Vector& normal,
+                                   const std::array<double, n>& nodes, const std::array<double, n>& weights) {
+  const auto& p = corners.points;
+  Quadrature<capacity> rule{};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const double u = 0.5 * (1 + nodes[i]);
+      const double v = 0.5 * (1 + nodes[j]);
+      const Point point = (1 - u) * (1 - v) * p[0] + u * (1 - v) * p[1] + u * v * p[2] + (1 - u) * v * p[3];
+      const Vector along_u = (1 - v) * (p[1] - p[0]) + v * (p[2] - p[3]);
+      const Vector along_v = (1 - u) * (p[3] - p[0]) + u * (p[2] - p[1]);
+      add_point(rule, point, 0.25 * weights[i] * weights[j] * normal.dot(along_u.cross(along_v)));
+    }
+  }
+  return rule;
+}
+
+PatchShape shape_of(const PatchMesh& mesh, PatchIndex patch) {
+  PatchShape shape{mesh.corner_points(patch), mesh.centroid[patch], mesh.normal[patch], mesh.area[patch], 0, {}, {}};
+  const auto& p = shape.corners.points;
+  for (int k = 0; k < shape.corners.count; ++k) {
+    shape.radius = std::max(shape.radius, (p[static_cast<std::size_t>(k)] - shape.centroid).norm());
+  }
+  if (shape.corners.count == 3) {
+    shape.coarse = coarse_triangle(p[0], p[1], p[2], shape.area);
+    shape.fine = fine_triangle(p[0], p[1], p[2], shape.area);
+  } else {
+    const double two = std::sqrt(1.0 / 3);
+    const double three = std::sqrt(0.6);
+    shape.coarse = quadrilateral<4, 2>(shape.corners, shape.normal, {-two, two}, {1, 1});
+    shape.fine = quadrilateral<9, 3>(shape.corners, shape.normal, {-three, 0, three}, {5.0 / 9, 8.0 / 9, 5.0 / 9});
+  }
+  return shape;
+}
+
+// int int cos cos' / (pi r^2): the sum over all pairs of quadrature points.
+template <typename Rule>
+double product_quadrature(const Rule& first, const Vector& n, const Rule& second, const Vector& m) {
+  double sum = 0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(first.count); ++a) {
+    double inner = 0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(second.count); ++b) {
+      const double x = second.x[b] - first.x[a];
+      const double y = second.y[b] - first.y[a];
+      const double z = second.z[b] - first.z[a];
+      const double squared = x * x + y * y + z * z;
+      const double cosine_first = std::max(0.0, n.x() * x + n.y() * y + n.z() * z);
+      const double cosine_second = std::max(0.0, -(m.x() * x + m.y() * y + m.z() * z));
+      inner += second.weight[b] * cosine_first * cosine_second / (squared * squared);
+    }
+    sum += first.weight[a] * inner;
+  }
+  return sum / std::numbers::pi;
+}
+
+// The fine rules of the fan triangles of a convex polygon.
+std::vector<Quadrature<9>> fan_rules(std::span<const Point> polygon) {
+  std::vector<Quadrature<9>> rules;
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    const std::array<Point, 3> triangle{polygon[0], polygon[k], polygon[k + 1]};
+    rules.push_back(fine_triangle(triangle[0], triangle[1], triangle[2], area_vector(triangle).norm()));
+  }
+  return rules;
+}
+
+// Quadrature over the parts that lie before each other's plane: there the integrand is smooth.
+double clipped_quadrature(const PatchShape& first, const PatchShape& second) {
+  const auto first_seen = clip_to_half_space(first.corners, second.centroid, second.normal);
+  const auto second_seen = clip_to_half_space(second.corners, first.centroid, first.normal);
+  double sum = 0;
+  for (const auto& a : fan_rules(first_seen)) {
+    for (const auto& b : fan_rules(second_seen)) sum += product_quadrature(a, first.normal, b, second.normal);
+  }
+  return sum;
+}
+
+// Lowest and highest corner of `patch` over the plane of `plane`.
+std::array<double, 2> heights(const PatchShape& patch, const PatchShape& plane) {
+  double lowest = 0;
+  double highest = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners.count); ++k) {
+    const double height = plane.normal.dot(patch.corners.points[k] - plane.centroid);
+    lowest = k == 0 ? height : std::min(lowest, height);
+    highest = k == 0 ? height : std::max(highest, height);
+  }
+  return {lowest, highest};
+}
+
+bool closer_than(const PatchShape& first, const PatchShape& second, double diameters) {
+  const double limit = 2 * diameters * std::max(first.radius, second.radius);
+  return (second.centroid - first.centroid).squaredNorm() < limit * limit;
+}
+
+}  // namespace
+
+std::vector<PatchShape> patch_shapes(const PatchMesh& mesh) {
+  std::vector<PatchShape> shapes;
+  shapes.reserve(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) shapes.push_back(shape_of(mesh, i));
+  return shapes;
+}
+
+Orientation orientation(const PatchShape& first, const PatchShape& second) {
+  const double tolerance = height_tolerance * (first.radius + second.radius);
+  const auto [first_lowest, first_highest] = heights(first, second);
+  if (first_highest <= tolerance) return Orientation::averted;
+  const auto [second_lowest, second_highest] = heights(second, first);
+  if (second_highest <= tolerance) return Orientation::averted;
+  return first_lowest < -tolerance || second_lowest < -tolerance ? Orientation::straddling : Orientation::facing;
+}
+
+bool is_near(const PatchShape& first, const PatchShape& second) { return closer_than(first, second, near_diameters); }
+
+double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second) {
+  if (is_near(first, second)) return contour_exchange_area(first.corners, second.corners);
+  if (orientation(first, second) == Orientation::straddling) return clipped_quadrature(first, second);
+  if (closer_than(first, second, middle_diameters)) {
+    return product_quadrature(first.fine, first.normal, second.fine, second.normal);
+  }
+  return product_quadrature(first.coarse, first.normal, second.coarse, second.normal);
+}
+
+}  // namespace patchlight

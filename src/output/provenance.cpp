@@ -1,0 +1,7 @@
+#include "patchlight/output/provenance.h"
+
+namespace patchlight {
+
+const char* version() { return PATCHLIGHT_VERSION; }
+
+}  // namespace patchlight

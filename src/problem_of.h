@@ -1,0 +1,15 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/solve/problem.h"
+
+namespace patchlight {
+
+/// The materials of the scene on the patches: lamps emit from their front sides, and from their back sides if asked.
+RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, bool emit_from_back);
+
+/// \throws MemoryError when the exchange areas of so many patches do not fit this machine's memory.
+void require_memory(PatchIndex patches);
+
+}  // namespace patchlight

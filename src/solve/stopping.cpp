@@ -1,0 +1,47 @@
+#include "solve/stopping.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace patchlight {
+
+Stopping::Stopping(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options)
+    : problem_(problem), options_(options), start_(wall_seconds()) {
+  // ||K||_A <= rho_max max_i sum_j F_ij, as A^(1/2) F A^(-1/2) is symmetric and similar to F. docs/theory.md section 7.
+  const double row_sum = transport.apply(Field::Ones(transport.size(), 1)).maxCoeff();
+  contraction_ = problem.reflectance.colwise().maxCoeff().transpose() * std::max(1.0, row_sum);
+}
+
+Iteration Stopping::measure(const FieldView& residual, const FieldView& reflected, double work,
+                            const Observer& observer) {
+  const Eigen::ArrayXd norm = area_norm(residual, problem_.area);
+  const Eigen::ArrayXd reflected_norm = area_norm(reflected, problem_.area);
+  if (number_ == 0) first_residual_ = norm;
+
+  Iteration iteration{number_++, 0, 0, wall_seconds() - start_, work};
+  for (Eigen::Index band = 0; band < norm.size(); ++band) {
+    if (norm[band] == 0) continue;
+    // ||B* - B||_A <= ||r||_A / (1 - ||K||_A)
+    const double bound =
+        contraction_[band] < 1 ? norm[band] / (1 - contraction_[band]) : std::numeric_limits<double>::infinity();
+    iteration.relative_residual = std::max(iteration.relative_residual, norm[band] / first_residual_[band]);
+    iteration.error_bound = std::max(iteration.error_bound, bound / reflected_norm[band]);
+  }
+  if (observer) {
+    // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
+    const double wanted = std::log(options_.relative_error);
+    const double measured = std::log(std::clamp(iteration.relative_residual, options_.relative_error, 1.0));
+    if (!observer({.stage = Stage::solve, .fraction = measured / wanted, .iteration = &iteration})) throw Cancelled();
+  }
+  return iteration;
+}
+
+bool Stopping::reached(const Iteration& iteration) const {
+  if ((contraction_ >= 1).any()) return iteration.relative_residual <= options_.relative_error;
+  return iteration.error_bound <= options_.relative_error;
+}
+
+}  // namespace patchlight

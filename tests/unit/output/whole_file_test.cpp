@@ -1,0 +1,110 @@
+#include "patchlight/output/whole_file.h"
+
+#include "patchlight/base/error.h"
+
+#include "temporary_folder.h"
+
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <sys/fsuid.h>
+#include <sys/stat.h>
+
+namespace patchlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(WholeFile, IsOldUntilItIsWholeAndNew) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "result.vtp";
+  put(file, "old");
+  write_whole_file(file, [&](const fs::path& temporary) {
+    EXPECT_EQ(temporary.parent_path(), folder.path());
+    EXPECT_EQ(temporary.extension(), ".vtp");
+    put(temporary, "new");
+    EXPECT_EQ(content_of(file), "old");
+  });
+  EXPECT_EQ(content_of(file), "new");
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(WholeFile, StaysUntouchedWhenWritingFails) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "result.vtp";
+  put(file, "old");
+  EXPECT_THROW(write_whole_file(file,
+                                [](const fs::path& temporary) {
+                                  put(temporary, "half");
+                                  throw Cancelled();
+                                }),
+               Cancelled);
+  EXPECT_THROW(write_whole_file(file,
+                                [](const fs::path& temporary) {
+                                  put(temporary, "half");
+                                  throw fs::filesystem_error("no", std::make_error_code(std::errc::io_error));
+                                }),
+               OutputError);
+  EXPECT_EQ(content_of(file), "old");
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(WholeFile, IsAnErrorWhenNothingWasWritten) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_whole_file(folder.path() / "result.vtp", [](const fs::path&) {}), OutputError);
+  EXPECT_EQ(folder.entries(), 0U);
+}
+
+TEST(WholeFile, NamesNestWithoutCollision) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "result.vtp";
+  write_whole_file(file, [&](const fs::path& outer) {
+    put(outer, "outer");
+    write_whole_file(file, [](const fs::path& inner) { put(inner, "inner"); });
+    EXPECT_EQ(content_of(file), "inner");
+  });
+  EXPECT_EQ(content_of(file), "outer");
+}
+
+TEST(WholeFile, KeepsPermissionsAndFollowsLinks) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "result.vtp";
+  const fs::path link = folder.path() / "link.vtp";
+  put(file, "old");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink(file, link);
+  write_whole_file(link, [](const fs::path& temporary) { put(temporary, "new"); });
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content_of(file), "new");
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(CheckWritable, LeavesNoTrace) {
+  const TemporaryFolder folder;
+  check_writable(folder.path() / "result.vtp");
+  EXPECT_EQ(folder.entries(), 0U);
+}
+
+TEST(CheckWritable, RefusesWhatIsNotAFileToWrite) {
+  const TemporaryFolder folder;
+  put(folder.path() / "plain", "");
+  EXPECT_THROW(check_writable(""), OutputError);
+  EXPECT_THROW(check_writable(folder.path()), OutputError);
+  EXPECT_THROW(check_writable(folder.path() / ""), OutputError);
+  EXPECT_THROW(check_writable(folder.path() / "missing" / "result.vtp"), OutputError);
+  EXPECT_THROW(check_writable(folder.path() / "plain" / "result.vtp"), OutputError);
+  EXPECT_THROW(check_writable("/dev/null"), OutputError);
+}
+
+TEST(CheckWritable, RefusesAFolderWithoutPermission) {
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  // The superuser may write everywhere: as somebody else, where that is possible.
+  const int before = setfsuid(65534);
+  EXPECT_THROW(check_writable(folder.path() / "result.vtp"), OutputError);
+  setfsuid(static_cast<uid_t>(before));
+  fs::permissions(folder.path(), fs::perms::owner_all);
+}
+
+}  // namespace
+}  // namespace patchlight

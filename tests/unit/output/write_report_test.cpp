@@ -1,0 +1,87 @@
+#include "patchlight/output/write_report.h"
+
+#include "temporary_folder.h"
+#include "tiny_simulation.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace patchlight {
+namespace {
+
+nlohmann::json report_of(const Scene& scene, const Simulation& simulation) {
+  const TemporaryFolder folder;
+  Request request;
+  request.max_edge = 0.25;
+  write_report(folder.path() / "report.json", scene, request, simulation, {"patchlight solve tiny.obj", 0.125});
+  return nlohmann::json::parse(content_of(folder.path() / "report.json"));
+}
+
+// With B = E + rho o H: sum A E - sum A (1 - rho) H = sum A (B - H).
+TEST(WriteReport, FluxesOfTheMaterialsAddUp) {
+  const Simulation simulation = tiny_simulation();
+  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  double area = 0;
+  Eigen::Array3d net = Eigen::Array3d::Zero();
+  for (const auto& material : report["materials"]) {
+    area += material["area_m2"].get<double>();
+    for (int band = 0; band < 3; ++band) {
+      net[band] += material["flux_emitted_W"][band].get<double>() - material["flux_absorbed_W"][band].get<double>();
+      const double mean = material["irradiance_mean_W_m2"][band];
+      EXPECT_LE(material["irradiance_min_W_m2"][band].get<double>(), mean * (1 + 1e-15));
+      EXPECT_GE(material["irradiance_max_W_m2"][band].get<double>(), mean * (1 - 1e-15));
+    }
+  }
+  const Eigen::VectorXd& areas = simulation.problem.area;
+  EXPECT_NEAR(area, areas.sum(), 1e-14);
+  const Eigen::Array3d expected =
+      ((simulation.solution.radiosity - simulation.solution.irradiance).matrix().transpose() * areas).array();
+  for (int band = 0; band < 3; ++band) {
+    // Six products and sums of numbers up to 50, rounded to 1e-16 each.
+    EXPECT_NEAR(net[band], expected[band], 1e-13);
+  }
+}
+
+TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
+  const nlohmann::json report = report_of(tiny_scene(), tiny_simulation());
+  EXPECT_EQ(report["version"], version());
+  EXPECT_EQ(report["command_line"], "patchlight solve tiny.obj");
+  EXPECT_EQ(report["input"]["sha256"], "00ff");
+  EXPECT_EQ(report["input"]["notes"][0], "a note");
+  EXPECT_EQ(report["request"]["max_edge_m"], 0.25);
+  EXPECT_TRUE(report["request"]["patches"].is_null());
+  EXPECT_EQ(report["plan"]["seed"], (std::uint64_t{1} << 60) + 1);
+  EXPECT_EQ(report["plan"]["decisions"][0]["reason"], "a reason");
+  EXPECT_EQ(report["mesh"]["patches"], 3);
+  EXPECT_EQ(report["transport"]["lost_share_rays"], 3 * 64);
+  EXPECT_EQ(report["transport"]["raw_row_sum"]["max"], 0.75);
+  EXPECT_EQ(report["solution"]["iterations"].size(), 2U);
+  EXPECT_EQ(report["costs"][1]["stage"], "solve");
+  EXPECT_EQ(report["energy_balance"]["emitted_W"], (std::vector<double>{1, 2, 3}));
+  EXPECT_GT(report["memory_peak_bytes"], 1 << 20);
+  EXPECT_EQ(report["exposure"], 0.125);
+}
+
+// The row sums are 1 - lost, so the closed ones have no defect; the raw ones are off by 0, 1/4 and -1/4.
+TEST(WriteReport, WeighsRowSumsByArea) {
+  const Simulation simulation = tiny_simulation();
+  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  const Eigen::VectorXd& area = simulation.problem.area;
+  const double raw = std::sqrt((area[1] + area[2]) / area.sum()) / 4;
+  EXPECT_NEAR(report["transport"]["raw_row_sum"]["rms_defect"].get<double>(), raw, 1e-15);
+  EXPECT_EQ(report["transport"]["row_sum"]["rms_defect"], 0);
+  EXPECT_NEAR(report["transport"]["row_sum"]["mean"].get<double>(), 0.5, 1e-15);
+}
+
+TEST(WriteReport, IsValidJsonWhateverItHolds) {
+  Scene scene = tiny_scene();
+  scene.materials.push_back({"not \xff UTF-8 \"quoted\"", rgb(0, 0, 0), rgb(0, 0, 0)});  // no patch has it
+  const nlohmann::json report = report_of(scene, tiny_simulation());
+  EXPECT_TRUE(report["solution"]["iterations"][0]["error_bound"].is_null());  // infinite
+  EXPECT_EQ(report["materials"][2]["area_m2"], 0);
+  EXPECT_TRUE(report["materials"][2]["irradiance_mean_W_m2"][0].is_null());
+  EXPECT_TRUE(report["materials"][2]["irradiance_min_W_m2"][0].is_null());
+}
+
+}  // namespace
+}  // namespace patchlight

@@ -1,0 +1,177 @@
+#include "patchlight/output/write_vtk.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/light/photometry.h"
+#include "patchlight/mesh/interpolate.h"
+#include "patchlight/render/tone_map.h"
+
+#include "temporary_folder.h"
+#include "tiny_simulation.h"
+
+#include <gtest/gtest.h>
+#include <numbers>
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataReader.h>
+
+namespace patchlight {
+namespace {
+
+constexpr double exposure = 0.125;
+
+vtkSmartPointer<vtkPolyData> read(const std::string& file) {
+  const vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> written_and_read(const Scene& scene, const Simulation& simulation) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "result.vtp";
+  write_vtk(file, scene, simulation, {"patchlight solve tiny.obj", exposure});
+  EXPECT_EQ(folder.entries(), 1U);
+  return read(file);
+}
+
+void expect_floats(vtkDataArray* array, const FieldView& values) {
+  ASSERT_NE(array, nullptr);
+  EXPECT_EQ(array->GetDataType(), VTK_FLOAT);
+  ASSERT_EQ(array->GetNumberOfComponents(), values.cols());
+  ASSERT_EQ(array->GetNumberOfTuples(), values.rows());
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (int band = 0; band < values.cols(); ++band) {
+      EXPECT_EQ(array->GetComponent(row, band), static_cast<float>(values(row, band))) << array->GetName();
+    }
+  }
+}
+
+std::string text(vtkPolyData* polygons, const char* name, int entry = 0) {
+  auto* const array = vtkStringArray::SafeDownCast(polygons->GetFieldData()->GetAbstractArray(name));
+  return array != nullptr && entry < array->GetNumberOfValues() ? array->GetValue(entry) : "none";
+}
+
+double number(vtkPolyData* polygons, const char* name, int entry = 0) {
+  vtkDataArray* const array = polygons->GetFieldData()->GetArray(name);
+  return array != nullptr && entry < array->GetNumberOfTuples() ? array->GetComponent(entry, 0) : -1;
+}
+
+TEST(WriteVtk, KeepsTrianglesAndQuadrilaterals) {
+  const Simulation simulation = tiny_simulation();
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  ASSERT_EQ(polygons->GetNumberOfPoints(), 5);
+  for (int k = 0; k < 5; ++k) {
+    const Point point(polygons->GetPoint(k));
+    EXPECT_EQ(point, simulation.mesh.vertices[static_cast<std::size_t>(k)]);
+  }
+  ASSERT_EQ(polygons->GetNumberOfCells(), 3);
+  for (int cell = 0; cell < 3; ++cell) {
+    const auto& corners = simulation.mesh.corners[static_cast<std::size_t>(cell)];
+    ASSERT_EQ(polygons->GetCell(cell)->GetNumberOfPoints(), cell == 0 ? 4 : 3);
+    for (int k = 0; k < polygons->GetCell(cell)->GetNumberOfPoints(); ++k) {
+      EXPECT_EQ(polygons->GetCell(cell)->GetPointId(k), corners[static_cast<std::size_t>(k)]);
+    }
+  }
+}
+
+TEST(WriteVtk, ValuesComeBackAsFloats) {
+  const Simulation simulation = tiny_simulation();
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  vtkCellData* const cells = polygons->GetCellData();
+  const Field radiance = simulation.solution.radiosity / std::numbers::pi;
+  Field luminances(3, 1);
+  for (int i = 0; i < 3; ++i) luminances(i, 0) = luminance(radiance.row(i));
+  expect_floats(cells->GetArray("radiance"), radiance);
+  expect_floats(cells->GetArray("radiosity"), simulation.solution.radiosity);
+  expect_floats(cells->GetArray("irradiance"), simulation.solution.irradiance);
+  expect_floats(cells->GetArray("exitance"), simulation.problem.exitance);
+  expect_floats(cells->GetArray("reflectance"), simulation.problem.reflectance);
+  expect_floats(cells->GetArray("luminance"), luminances);
+  expect_floats(cells->GetArray("area"), simulation.problem.area);
+  expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
+  expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
+  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"), vertex_means(simulation.mesh, radiance));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
+    EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);
+  }
+  const auto colours = tone_map(radiance, exposure);
+  vtkDataArray* const rgb = cells->GetArray("rgb");
+  EXPECT_EQ(rgb->GetDataType(), VTK_UNSIGNED_CHAR);
+  for (int i = 0; i < 3; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(rgb->GetComponent(i, c), colours[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)]);
+    }
+  }
+}
+
+TEST(WriteVtk, TellsWhereItComesFrom) {
+  const auto polygons = written_and_read(tiny_scene(), tiny_simulation());
+  EXPECT_EQ(text(polygons, "material_names", 1), "lamp");
+  EXPECT_EQ(text(polygons, "version"), std::string("patchlight ") + version());
+  EXPECT_EQ(text(polygons, "command_line"), "patchlight solve tiny.obj");
+  EXPECT_EQ(text(polygons, "input_file"), "tiny.obj");
+  EXPECT_EQ(text(polygons, "sha256"), "00ff");
+  EXPECT_EQ(text(polygons, "seed"), "1152921504606846977");
+  EXPECT_EQ(number(polygons, "exposure"), exposure);
+  EXPECT_EQ(number(polygons, "converged"), 1);
+  EXPECT_EQ(number(polygons, "iteration", 1), 1);
+  EXPECT_EQ(number(polygons, "iteration_relative_residual", 1), 1e-7);
+  EXPECT_TRUE(std::isinf(number(polygons, "iteration_error_bound", 0)));
+  EXPECT_EQ(number(polygons, "iteration_work", 1), 2);
+  EXPECT_EQ(text(polygons, "stage", 1), "solve");
+  EXPECT_EQ(number(polygons, "stage_seconds", 1), 0.25);
+}
+
+TEST(WriteVtk, EveryArrayOfValuesHasAUnit) {
+  const auto polygons = written_and_read(tiny_scene(), tiny_simulation());
+  for (vtkFieldData* const data :
+       {static_cast<vtkFieldData*>(polygons->GetCellData()), static_cast<vtkFieldData*>(polygons->GetPointData())}) {
+    ASSERT_GT(data->GetNumberOfArrays(), 0);
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) {
+      const std::string unit = std::string("unit_") + data->GetArrayName(k);
+      EXPECT_NE(text(polygons, unit.c_str()), "none") << unit;
+    }
+  }
+}
+
+TEST(WriteVtk, TakesAnyNumberOfBands) {
+  Scene scene = tiny_scene();
+  Simulation simulation = tiny_simulation();
+  for (Material& material : scene.materials) {
+    material.reflectance = material.reflectance.head(2).eval();
+    material.exitance = material.exitance.head(2).eval();
+  }
+  for (Field* field : {&simulation.problem.reflectance, &simulation.problem.exitance, &simulation.solution.irradiance,
+                       &simulation.solution.radiosity}) {
+    *field = field->leftCols(2).eval();
+  }
+  const auto polygons = written_and_read(scene, simulation);
+  expect_floats(polygons->GetCellData()->GetArray("radiosity"), simulation.solution.radiosity);
+  EXPECT_EQ(polygons->GetCellData()->GetArray("rgb")->GetNumberOfComponents(), 3);
+}
+
+// However many of the bytes find a place, also all but the last.
+TEST(WriteVtk, FullDiskIsAnErrorAndKeepsTheOldFile) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "result.vtp";
+  write_vtk(file, tiny_scene(), tiny_simulation(), {"", exposure});
+  const std::string old = content_of(file);
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{100}, old.size() / 2, old.size() - 1}) {
+    {
+      const FullDisk disk(bytes);
+      EXPECT_THROW(write_vtk(file, tiny_scene(), tiny_simulation(), {"", exposure}), OutputError) << bytes;
+    }
+    EXPECT_EQ(content_of(file), old);
+    EXPECT_EQ(folder.entries(), 1U);
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
