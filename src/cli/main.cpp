@@ -1,1 +1,54 @@
-int main() {}
+#include "patchlight/base/error.h"
+
+#include "cli/arguments.h"
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/solve.h"
+
+#include <exception>
+#include <iostream>
+#include <new>
+#include <variant>
+
+namespace {
+
+using namespace patchlight;
+using namespace patchlight::cli;
+
+ExitCode run(int count, const char* const* values) {
+  const Arguments arguments = parse_arguments(count, values);
+  if (const auto* information = std::get_if<Information>(&arguments)) {
+    std::cout << information->text;
+    return good;
+  }
+  return solve(std::get<SolveArguments>(arguments));
+}
+
+ExitCode failed(ExitCode code, const char* what) {
+  print_message("error", what);
+  return code;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  watch_interrupts();
+  try {
+    return run(count, values);
+  } catch (const UsageError& error) {
+    return failed(usage_error, error.what());
+  } catch (const InputError& error) {
+    return failed(input_error, error.what());
+  } catch (const OutputError& error) {
+    return failed(output_error, error.what());
+  } catch (const MemoryError& error) {
+    return failed(out_of_memory, error.what());
+  } catch (const std::bad_alloc&) {
+    return failed(out_of_memory, "the memory is used up; ask for fewer patches with --patches or --max-edge");
+  } catch (const Cancelled&) {
+    return failed(interrupted_run, "interrupted; no further file was written");
+  } catch (const std::exception& error) {
+    return failed(internal_error, (std::string("internal error: ") + error.what()).c_str());
+  }
+}

@@ -1,1 +1,156 @@
 #include "patchlight/mesh/patch_lookup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace patchlight {
+namespace {
+
+// Points this share of the polygon side's extent outside of a patch still find it.
+constexpr double slack = 4e-6;
+
+using Flat = Eigen::Vector2d;
+
+double cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
+  const Flat edge = to - from;
+  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (from + t * edge - point).norm();
+}
+
+// Zero inside. The patch is convex and counter-clockwise in the flat coordinates.
+double distance_to(const PatchCorners& patch, const Point& point, int axis_u, int axis_v) {
+  const auto flat = [&](const Point& x) { return Flat(x[axis_u], x[axis_v]); };
+  const Flat eye = flat(point);
+  bool inside = true;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < patch.count; ++k) {
+    const Flat from = flat(patch.points[static_cast<std::size_t>(k)]);
+    const Flat to = flat(patch.points[static_cast<std::size_t>((k + 1) % patch.count)]);
+    if (cross(to - from, eye - from) >= 0) continue;
+    inside = false;
+    nearest = std::min(nearest, distance_to_edge(eye, from, to));
+  }
+  return inside ? 0 : nearest;
+}
+
+struct Cell {
+  int u, v;
+};
+
+// The cell at a point; the closest one for a point outside.
+Cell cell_at(const auto& grid, const Point& point) {
+  const double u = (point[grid.axis_u] - grid.lower_u) * grid.cells_per_u;
+  const double v = (point[grid.axis_v] - grid.lower_v) * grid.cells_per_v;
+  return {static_cast<int>(std::clamp(u, 0.0, grid.count_u - 1.0)),
+          static_cast<int>(std::clamp(v, 0.0, grid.count_v - 1.0))};
+}
+
+std::size_t cell_index(const auto& grid, Cell cell) {
+  return static_cast<std::size_t>(cell.v) * static_cast<std::size_t>(grid.count_u) + static_cast<std::size_t>(cell.u);
+}
+
+Box box_of(const PatchMesh& mesh, PatchIndex patch) {
+  Box box;
+  for (const std::uint32_t vertex : mesh.corners[patch]) box.extend(mesh.vertices[vertex]);
+  return box;
+}
+
+// The grid with its axes and cells, still without patches.
+template <typename Grid>
+Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
+  Grid grid;
+  grid.first = range.begin;
+
+  // Leave out the coordinate in which the normal is longest; order the others so that patches stay counter-clockwise.
+  const Vector& normal = mesh.normal[range.begin];
+  Eigen::Index longest = 0;
+  normal.cwiseAbs().maxCoeff(&longest);
+  grid.axis_u = static_cast<int>((longest + 1) % 3);
+  grid.axis_v = static_cast<int>((longest + 2) % 3);
+  if (normal[longest] < 0) std::swap(grid.axis_u, grid.axis_v);
+
+  // About as many cells as patches, about square.
+  const double pad = slack * bounds.diagonal().norm();
+  const double count = range.end - range.begin;
+  const double size_u = bounds.sizes()[grid.axis_u] + 2 * pad;
+  const double size_v = bounds.sizes()[grid.axis_v] + 2 * pad;
+  const double cell = std::sqrt(size_u * size_v / count);
+  grid.count_u = static_cast<int>(std::clamp(std::ceil(size_u / cell), 1.0, count));
+  grid.count_v = static_cast<int>(std::clamp(std::ceil(size_v / cell), 1.0, count));
+  grid.lower_u = bounds.min()[grid.axis_u] - pad;
+  grid.lower_v = bounds.min()[grid.axis_v] - pad;
+  grid.cells_per_u = grid.count_u / size_u;
+  grid.cells_per_v = grid.count_v / size_v;
+  return grid;
+}
+
+}  // namespace
+
+PatchLookup::PatchLookup(const PatchMesh& mesh) : mesh_(mesh) {
+  for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
+    grids_.push_back(make_grid({mesh.first_patch[slot], mesh.first_patch[slot + 1]}));
+  }
+}
+
+PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
+  if (range.begin == range.end) return {};
+  Box bounds;
+  for (PatchIndex patch = range.begin; patch < range.end; ++patch) bounds.extend(box_of(mesh_, patch));
+  Grid grid = lay_out<Grid>(mesh_, range, bounds);
+
+  // Sort the patches into the cells that their padded bounds overlap: count, then fill from the back.
+  const Point pad = Point::Constant(slack * bounds.diagonal().norm());
+  const auto for_cells_of = [&](PatchIndex patch, const auto& visit) {
+    const Box box = box_of(mesh_, patch);
+    const Cell low = cell_at(grid, box.min() - pad);
+    const Cell high = cell_at(grid, box.max() + pad);
+    for (int v = low.v; v <= high.v; ++v) {
+      for (int u = low.u; u <= high.u; ++u) visit(grid.begin[cell_index(grid, {u, v})]);
+    }
+  };
+  grid.begin.assign(static_cast<std::size_t>(grid.count_u) * static_cast<std::size_t>(grid.count_v) + 1, 0);
+  for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
+    for_cells_of(patch, [](std::uint32_t& entry) { ++entry; });
+  }
+  std::partial_sum(grid.begin.begin(), grid.begin.end(), grid.begin.begin());
+  grid.patches.resize(grid.begin.back());
+  for (PatchIndex patch = range.end; patch-- > range.begin;) {
+    for_cells_of(patch, [&](std::uint32_t& entry) { grid.patches[--entry] = patch; });
+  }
+  return grid;
+}
+
+std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
+  const Grid& grid = grids_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)];
+  if (grid.patches.empty()) return std::nullopt;
+
+  std::optional<PatchIndex> nearest;
+  double shortest = std::numeric_limits<double>::infinity();
+  const auto search_cell = [&](Cell cell) {
+    if (cell.u < 0 || cell.u >= grid.count_u || cell.v < 0 || cell.v >= grid.count_v) return;
+    const std::size_t index = cell_index(grid, cell);
+    for (std::uint32_t k = grid.begin[index]; k < grid.begin[index + 1] && shortest > 0; ++k) {
+      const double distance = distance_to(mesh_.corner_points(grid.patches[k]), point, grid.axis_u, grid.axis_v);
+      if (distance < shortest) shortest = distance, nearest = grid.patches[k];
+    }
+  };
+
+  // The point's cell or, when that is empty, the closest ring of cells around it that is not.
+  const Cell home = cell_at(grid, point);
+  search_cell(home);
+  for (int ring = 1; !nearest; ++ring) {
+    for (int k = -ring; k < ring; ++k) {
+      search_cell({home.u + k, home.v - ring});
+      search_cell({home.u + ring, home.v + k});
+      search_cell({home.u - k, home.v + ring});
+      search_cell({home.u - ring, home.v - k});
+    }
+  }
+  return nearest;
+}
+
+}  // namespace patchlight

@@ -15,10 +15,11 @@ namespace patchlight {
 /// their longest inner edge and flipped to Delaunay until all edges are short enough. Patches of one polygon side are
 /// numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
 /// 30 degrees, and between those only. Both sides of a polygon have their own vertices.
+/// \throws MemoryError when more than 2^31 patches would be needed.
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
 
-/// The largest edge for which the number of patches is nearest to `patches`: exact to the steps in which the number can
-/// change at all. Costs some ten tessellations.
+/// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number can
+/// change allow. Costs some five tessellations; much less where all polygons become grids.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches);
 
 }  // namespace patchlight

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds patchlight and solves the Cornell box. Safe to run again.
+# usage: scripts/demo.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+echo "demo: packages, build, then the Cornell box; the first run takes some minutes"
+scripts/install_packages.sh
+cmake --preset release >/dev/null
+cmake --build build -j "$(nproc)" --target patchlight_tool
+build/src/patchlight solve meshes/cornell_box.obj --up y -o build/cornell_box.vtp --picture build/cornell_box.png
+echo "demo: open build/cornell_box.png, or build/cornell_box.vtp in ParaView"

@@ -1,0 +1,122 @@
+#include "cli/arguments.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/provenance.h"
+
+#include "cli/solve_options.h"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <numeric>
+
+namespace patchlight::cli {
+namespace {
+
+constexpr const char* exit_codes =
+    "Exit codes: 0 good, 1 usage, 2 input, 3 not converged (results are written), 4 out of memory,\n"
+    "5 a check failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
+
+// Number of insertions, removals and replacements that turn one word into the other (Levenshtein 1966), row by row.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// ": did you mean --max-edge?" when an option is at most two letters away, nothing otherwise.
+std::string suggestion(const CLI::App& command, const std::string& unknown) {
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      const std::size_t distance = edit_distance("--" + name, unknown.substr(0, unknown.find('=')));
+      if (distance >= least) continue;
+      least = distance;
+      nearest = name;
+    }
+  }
+  return nearest.empty() ? "" : ": did you mean --" + nearest + "?";
+}
+
+// Refuses what no option or positional argument took; an unknown option is named before its value.
+void require_nothing_left(const CLI::App& command, const std::string& name, const std::vector<std::string>& left) {
+  if (left.empty()) return;
+  const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
+  const auto unknown = std::find_if(left.begin(), left.end(), is_option);
+  if (unknown != left.end()) {
+    const std::string hint = suggestion(command, *unknown);
+    throw UsageError(name + ": unknown option " + *unknown +
+                     (hint.empty() ? "; patchlight " + name + (name.empty() ? "" : " ") + "--help lists them" : hint));
+  }
+  throw UsageError(name + ": unexpected argument '" + left.front() + "'; expected one model file");
+}
+
+// The command line as one would type it again.
+std::string joined(int count, const char* const* values) {
+  std::string line = "patchlight";
+  for (int k = 1; k < count; ++k) {
+    const std::string word = values[k];
+    const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+    line += ' ';
+    if (plain) {
+      line += word;
+      continue;
+    }
+    line += '\'';
+    for (const char letter : word) line += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace
+
+Arguments parse_arguments(int count, const char* const* values) {
+  CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
+  tool.get_formatter()->column_width(30);
+  tool.set_version_flag("--version", std::string("patchlight ") + version(), "prints the version");
+  tool.set_help_flag("-h,--help", "prints this help");
+  tool.footer(std::string("patchlight COMMAND --help lists the options of a command.\n\n") + exit_codes);
+  const std::shared_ptr<SolveOptions> options = add_solve(tool);
+  CLI::App& solve = *tool.get_subcommand("solve");
+  solve.footer(exit_codes);
+  tool.allow_extras();
+  solve.allow_extras();
+
+  // The parsing library speaks through its own exceptions; they end here.
+  try {
+    tool.parse(count, values);
+    if (!solve.parsed()) {
+      const std::vector<std::string> left = tool.remaining();
+      if (!left.empty() && left.front()[0] == '-') {
+        throw UsageError("unknown option " + left.front() + "; expected a command: solve");
+      }
+      if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected: solve");
+      throw UsageError("found no command; expected: solve. patchlight --help tells more");
+    }
+    require_nothing_left(solve, "solve", tool.remaining(true));
+    SolveArguments arguments = finish_solve(*options);
+    arguments.command_line = joined(count, values);
+    return arguments;
+  } catch (const CLI::CallForHelp&) {
+    return Information{tool.help()};
+  } catch (const CLI::CallForVersion& call) {
+    return Information{std::string(call.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  } catch (const InputError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/input/read_scene.h"
+#include "patchlight/plan/plan.h"
+
+#include "cli/messages.h"
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+namespace patchlight::cli {
+
+/// The command line cannot be understood; the message is one sentence that names the option.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class PictureColors { natural, luminance };
+
+/// What `patchlight solve` is asked to do. Lengths are in metres: the command line's model units are converted. A path
+/// that is empty stands for an output that is not wanted.
+struct SolveArguments {
+  std::filesystem::path model;
+  ReadOptions read;
+  Request request;
+
+  std::filesystem::path result;   ///< .vtp
+  std::filesystem::path report;   ///< .json
+  std::filesystem::path picture;  ///< .png
+  PictureColors colors = PictureColors::natural;
+  std::optional<Camera> camera;
+
+  std::filesystem::path points;         ///< input: where irradiance is wanted
+  std::filesystem::path points_output;  ///< .csv
+
+  Verbosity verbosity = Verbosity::normal;
+  std::string command_line;  ///< for the record
+};
+
+/// A text that the user asked for: --help or --version.
+struct Information {
+  std::string text;
+};
+
+using Arguments = std::variant<Information, SolveArguments>;
+
+/// Understands the command line; nothing is read or written. \throws UsageError.
+Arguments parse_arguments(int count, const char* const* values);
+
+}  // namespace patchlight::cli

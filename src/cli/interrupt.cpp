@@ -1,0 +1,56 @@
+#include "cli/interrupt.h"
+
+#include "cli/exit_code.h"
+
+#include <atomic>
+#include <csignal>
+#include <string_view>
+#include <sys/time.h>
+#include <unistd.h>
+
+namespace patchlight::cli {
+namespace {
+
+// A signal handler can reach nothing but static state.
+std::atomic<bool> stop_asked{false};
+std::atomic<bool> writing{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may use lock-free atomics only");
+
+constexpr suseconds_t patience_microseconds = 500'000;
+
+extern "C" void end_at_once(int) {
+  if (writing) return;
+  constexpr std::string_view message = "\npatchlight: interrupted; nothing was written\n";
+  [[maybe_unused]] const ssize_t count = write(STDERR_FILENO, message.data(), message.size());
+  _exit(interrupted_run);
+}
+
+extern "C" void ask_to_stop(int) {
+  stop_asked = true;
+  itimerval timer{};
+  timer.it_value.tv_usec = patience_microseconds;
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void watch_interrupts() {
+  handle(SIGALRM, end_at_once);
+  handle(SIGINT, ask_to_stop);
+  handle(SIGTERM, ask_to_stop);
+}
+
+bool interrupted() { return stop_asked; }
+
+WritingGuard::WritingGuard() { writing = true; }
+
+WritingGuard::~WritingGuard() { writing = false; }
+
+}  // namespace patchlight::cli

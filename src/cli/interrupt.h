@@ -1,0 +1,21 @@
+#pragma once
+
+namespace patchlight::cli {
+
+/// From now on SIGINT and SIGTERM ask the run to stop: interrupted() becomes true. A stage that does not ask in time is
+/// ended half a second later, which loses nothing as long as no result is being written.
+void watch_interrupts();
+
+/// True once the run was asked to stop.
+bool interrupted();
+
+/// Results are being written while this lives: the file at hand is finished or removed before the run stops.
+class WritingGuard {
+ public:
+  WritingGuard();
+  ~WritingGuard();
+  WritingGuard(const WritingGuard&) = delete;
+  WritingGuard& operator=(const WritingGuard&) = delete;
+};
+
+}  // namespace patchlight::cli

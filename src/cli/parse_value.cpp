@@ -1,0 +1,62 @@
+#include "cli/parse_value.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace patchlight::cli {
+
+std::optional<double> to_number(const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  constexpr const char* separators = " \t\r,";
+  std::vector<std::string> parts;
+  std::size_t begin = text.find_first_not_of(separators);
+  while (begin != std::string::npos) {
+    const std::size_t end = text.find_first_of(separators, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(separators, end);
+  }
+  return parts;
+}
+
+UsageError refusal(const std::string& option, const std::string& found, const std::string& expected) {
+  return UsageError(option + ": found '" + found + "'; expected " + expected);
+}
+
+double number(const std::string& option, const std::string& text, const std::string& expected,
+              const std::function<bool(double)>& accepted) {
+  const std::optional<double> value = to_number(text);
+  if (!value || !accepted(*value)) throw refusal(option, text, expected);
+  return *value;
+}
+
+std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lower,
+                           std::uint64_t upper) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || value < lower || value > upper) {
+    throw refusal(option, text, "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
+  }
+  return value;
+}
+
+Point point(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = split(text);
+  Point result = Point::Zero();
+  if (parts.size() != 3) throw refusal(option, text, "three numbers X,Y,Z");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::optional<double> value = to_number(parts[axis]);
+    if (!value) throw refusal(option, text, "three numbers X,Y,Z");
+    result[axis] = *value;
+  }
+  return result;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include "cli/arguments.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight::cli {
+
+/// The finite number that all of `text` stands for, with a decimal point whatever the locale; nothing otherwise.
+std::optional<double> to_number(const std::string& text);
+
+/// The parts of `text` between spaces, tabs and commas, empty parts left out.
+std::vector<std::string> split(const std::string& text);
+
+/// The value of an option as a number that `accepted` likes; `expected` describes it. \throws UsageError.
+double number(const std::string& option, const std::string& text, const std::string& expected,
+              const std::function<bool(double)>& accepted);
+
+/// The value of an option as a whole number from `lower` to `upper`. \throws UsageError.
+std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lower,
+                           std::uint64_t upper);
+
+/// The value of an option as a point X,Y,Z. \throws UsageError.
+Point point(const std::string& option, const std::string& text);
+
+/// The sentence that refuses a value.
+UsageError refusal(const std::string& option, const std::string& found, const std::string& expected);
+
+/// What one of several allowed words stands for. \throws UsageError that lists them.
+template <typename Value>
+Value choice(const std::string& option, const std::string& text,
+             const std::vector<std::pair<std::string, Value>>& allowed) {
+  std::string words;
+  for (const auto& [word, value] : allowed) {
+    if (word == text) return value;
+    words += (words.empty() ? "" : ", ") + word;
+  }
+  throw refusal(option, text, allowed.size() > 1 ? "one of " + words : words);
+}
+
+}  // namespace patchlight::cli

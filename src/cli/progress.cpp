@@ -1,0 +1,50 @@
+#include "cli/progress.h"
+
+#include "patchlight/base/parallel.h"
+
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <unistd.h>
+
+namespace patchlight::cli {
+namespace {
+
+std::string duration(double seconds) {
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 60) return std::to_string(whole) + " s";
+  if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(whole / 3600) + " h " + std::to_string(whole / 60 % 60) + " min";
+}
+
+}  // namespace
+
+ProgressLine::~ProgressLine() {
+  if (width_ > 0) std::cerr << '\r' << std::string(width_, ' ') << '\r' << std::flush;
+}
+
+void ProgressLine::show(const Progress& progress) {
+  if (!visible_) return;
+  const double now = wall_seconds();
+  if (stage_ != progress.stage) {
+    stage_ = progress.stage;
+    stage_begin_ = now;
+  }
+
+  std::string line = name_of(progress.stage);
+  line += ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
+  // The time left follows from the time taken; too early it would only flicker.
+  const double taken = now - stage_begin_;
+  if (taken > 1 && progress.fraction > 0.02 && progress.fraction < 1) {
+    line += ", " + duration(taken * (1 - progress.fraction) / progress.fraction) + " left";
+  }
+
+  const std::size_t length = line.size();
+  if (length < width_) line.append(width_ - length, ' ');  // covers what is left of a longer line
+  width_ = length;
+  std::cerr << '\r' << line << std::flush;
+}
+
+bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
+
+}  // namespace patchlight::cli

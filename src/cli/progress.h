@@ -1,0 +1,31 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace patchlight::cli {
+
+/// One line on stderr that is rewritten while the work goes on: stage, percent, time left. Erased at the end.
+class ProgressLine {
+ public:
+  /// An invisible line shows nothing.
+  explicit ProgressLine(bool visible) : visible_(visible) {}
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const Progress& progress);
+
+ private:
+  bool visible_;
+  std::optional<Stage> stage_;
+  double stage_begin_ = 0;  // wall seconds
+  std::size_t width_ = 0;   // characters on the line
+};
+
+/// True when stderr is a terminal.
+bool stderr_is_terminal();
+
+}  // namespace patchlight::cli

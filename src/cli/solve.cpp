@@ -1,0 +1,137 @@
+#include "cli/solve.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_image.h"
+#include "patchlight/output/write_points.h"
+#include "patchlight/output/write_report.h"
+#include "patchlight/output/write_vtk.h"
+#include "patchlight/render/tone_map.h"
+#include "patchlight/simulate.h"
+
+#include "cli/interrupt.h"
+#include "cli/picture.h"
+#include "cli/points_file.h"
+#include "cli/progress.h"
+#include "cli/summary.h"
+
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+// All that is computed before anything is written.
+struct Results {
+  Scene scene;
+  Simulation simulation;
+  SensorList points;
+  Field irradiance;  // at the points, W/m^2
+  DisplayImage picture;
+  Provenance provenance;
+};
+
+// Wall and processor time since it was made.
+class StageClock {
+ public:
+  StageCost cost(Stage stage) const { return {stage, wall_seconds() - wall_, cpu_seconds() - cpu_}; }
+
+ private:
+  double wall_ = wall_seconds();
+  double cpu_ = cpu_seconds();
+};
+
+void check_outputs(const SolveArguments& arguments) {
+  for (const auto* file : {&arguments.result, &arguments.report, &arguments.picture, &arguments.points_output}) {
+    if (!file->empty()) check_writable(*file);
+  }
+}
+
+Results compute(const SolveArguments& arguments, const Observer& observer) {
+  Results results;
+  Simulation& simulation = results.simulation;
+
+  // 1. Read the model and the points
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  const StageClock reading;
+  results.scene = read_scene(arguments.model, arguments.read);
+  if (!arguments.points.empty()) results.points = read_points(arguments.points, arguments.read.metres_per_unit);
+  const StageCost read_cost = reading.cost(Stage::read);
+
+  // 2. Solve
+  simulation = simulate(results.scene, arguments.request, observer);
+  simulation.costs.insert(simulation.costs.begin(), read_cost);
+  const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
+  const double exposure = exposure_for(display_radiance(simulation), area);
+  results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
+  if (arguments.points.empty() && arguments.picture.empty()) return results;
+
+  // 3. Look at the solution: irradiance at points, picture
+  const Occluder occluder(results.scene);
+  if (!arguments.points.empty()) {
+    const StageClock gathering;
+    results.irradiance =
+        gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,
+                          results.points.sensors, {.seed = arguments.request.seed}, observer);
+    simulation.costs.push_back(gathering.cost(Stage::gather));
+  }
+  if (!arguments.picture.empty()) {
+    const StageClock rendering;
+    results.picture = make_picture(arguments, results.scene, simulation, occluder, exposure, observer);
+    simulation.costs.push_back(rendering.cost(Stage::render));
+  }
+  return results;
+}
+
+// Writes one file after the other; the run can be stopped between two. Returns the files written.
+std::vector<std::filesystem::path> write(const SolveArguments& arguments, const Results& results) {
+  std::vector<std::filesystem::path> written;
+  const auto write_to = [&written](const std::filesystem::path& file, const std::function<void()>& write_it) {
+    if (file.empty()) return;
+    if (interrupted()) throw Cancelled();
+    write_it();
+    written.push_back(file);
+  };
+  const WritingGuard guard;
+  write_to(arguments.result,
+           [&] { write_vtk(arguments.result, results.scene, results.simulation, results.provenance); });
+  write_to(arguments.picture, [&] { write_png(arguments.picture, results.picture); });
+  write_to(arguments.points_output,
+           [&] { write_points(arguments.points_output, results.points.lines, results.irradiance); });
+  write_to(arguments.report, [&] {
+    write_report(arguments.report, results.scene, arguments.request, results.simulation, results.provenance);
+  });
+  return written;
+}
+
+}  // namespace
+
+ExitCode solve(const SolveArguments& arguments) {
+  check_outputs(arguments);
+
+  const ThreadLimit limit(arguments.request.threads);
+  const bool quiet = arguments.verbosity == Verbosity::quiet;
+  const Results results = [&] {
+    ProgressLine line(!quiet && stderr_is_terminal());
+    return compute(arguments, [&line](const Progress& progress) {
+      line.show(progress);
+      return !interrupted();
+    });
+  }();
+  const std::vector<std::filesystem::path> written = write(arguments, results);
+
+  if (!quiet) {
+    for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
+    std::cout << summary(results.scene, results.simulation, arguments.verbosity == Verbosity::verbose);
+    std::cout << files_line(written) << std::flush;
+  }
+  if (results.simulation.solution.converged) return good;
+  print_message("warning", explain_not_converged(results.simulation));
+  return not_converged;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,235 @@
+#include "cli/solve_options.h"
+
+#include "patchlight/base/error.h"
+
+#include "cli/parse_value.h"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+using std::filesystem::path;
+
+struct CameraOption {
+  Point eye;
+  Point target;
+  double field_of_view = 0;
+};
+
+}  // namespace
+
+struct SolveOptions {
+  std::string model, result, report, picture, points, points_output;
+  std::vector<std::string> settings;
+  double metres_per_unit = 1;
+  Vector up = Vector::UnitZ();
+  std::optional<double> max_edge;
+  std::optional<CameraOption> camera;
+  std::optional<PictureColors> colors;
+  Request request;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+namespace {
+
+// Adds an option with one value, which `take` understands or refuses.
+template <typename Take>
+CLI::Option* add(CLI::App& command, const std::string& name, const std::string& value, const std::string& help,
+                 Take take) {
+  return command.add_option_function<std::string>(name, take, help)->option_text(value);
+}
+
+// Adds an option that holds the name of a file.
+void add_file(CLI::App& command, const std::string& name, std::string& file, const std::string& help) {
+  const std::string option = name.substr(name.rfind(',') + 1);
+  add(command, name, "FILE", help, [&file, option](const std::string& text) {
+    if (text.empty()) throw UsageError(option + ": found an empty name; expected the name of a file");
+    file = text;
+  });
+}
+
+void add_outputs(CLI::App& command, SolveOptions& options) {
+  add_file(command, "-o,--output", options.result, "solved patches for ParaView (.vtp)");
+  add_file(command, "--report", options.report, "what was asked, decided and found, with energy balance (JSON)");
+  add_file(command, "--picture", options.picture, "a picture of the solution (.png), 800 x 800 pixels");
+  add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
+      [&options](const std::string& text) {
+        options.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
+      });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--camera",
+          [&options](const std::vector<std::string>& values) {
+            const auto angle = [](double x) { return x > 0 && x < 180; };
+            options.camera = {point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
+                              number("--camera (FOV)", values[2], "an angle above 0 and below 180 degrees", angle)};
+          },
+          "view of the picture: eye and target as X,Y,Z in model\nunits, vertical field of view in degrees; "
+          "default: a view\nfrom within the scene's bounds that shows most of it")
+      ->expected(3)
+      ->option_text("EYE TARGET FOV");
+}
+
+void add_points(CLI::App& command, SolveOptions& options) {
+  add_file(command, "--points", options.points,
+           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
+           "receiving side");
+  add_file(command, "--points-output", options.points_output,
+           "irradiance at these points in W/m^2 per band (CSV);\ndefault: the points file's name with "
+           ".irradiance.csv, in\nthe folder of -o, else in the current one");
+}
+
+void add_model(CLI::App& command, SolveOptions& options) {
+  command.add_option("MODEL", options.model, "the model (.obj with .mtl)")->option_text(" ");
+  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m", [&options](const std::string& text) {
+    options.metres_per_unit =
+        choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
+  });
+  add(command, "--up", "y|z", "the model's upright axis, for the picture; default z",
+      [&options](const std::string& text) {
+        options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
+      });
+  add(command, "--sides", "auto|front|both",
+      "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
+      [&options](const std::string& text) {
+        options.request.sides = choice<Sides>(
+            "--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
+      });
+  command
+      .add_option("--set", options.settings,
+                  "changes a material: reflectance (0 to 1), exitance (W/m^2)\nor radiance (W/(m^2 sr)); may be "
+                  "repeated; default: as in\nthe model")
+      ->allow_extra_args(false)
+      ->option_text("MATERIAL.reflectance|exitance|radiance=R,G,B");
+}
+
+void add_accuracy(CLI::App& command, SolveOptions& options) {
+  Request& request = options.request;
+  add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
+      [&options](const std::string& text) {
+        options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
+      });
+  add(command, "--patches", "N", "number of patches, met within 10 %; default " + std::to_string(default_patches),
+      [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
+  add(command, "--solver", "jacobi|gauss-seidel|progressive", "how the equations are solved; default gauss-seidel",
+      [&request](const std::string& text) {
+        request.solver = choice<Solver>(
+            "--solver", text,
+            {{"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}, {"progressive", Solver::progressive}});
+      });
+  add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
+      [&request](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 1; };
+        request.tolerance = number("--tolerance", text, "a number above 0 and below 1", inside);
+      });
+  add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
+      [&request](const std::string& text) {
+        request.samples = static_cast<int>(whole_number("--samples", text, 4, 65536));
+      });
+  add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
+      [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
+  add(command, "--threads", "N", "number of threads; default 0: one per processor",
+      [&request](const std::string& text) {
+        request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
+      });
+}
+
+void require_extension(const std::string& option, const std::string& file, const std::string& extension) {
+  if (!file.empty() && path(file).extension() != extension) {
+    throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + extension);
+  }
+}
+
+void require_consistent(const SolveOptions& options) {
+  if (options.model.empty()) throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
+  if (options.result.empty() && options.picture.empty() && options.report.empty() && options.points.empty()) {
+    throw UsageError("solve: nothing would be written; give at least one of -o, --picture, --report, --points");
+  }
+  if (options.max_edge && options.request.patches) {
+    throw UsageError("--max-edge and --patches both set the size of the patches; give one of them");
+  }
+  if (options.picture.empty() && (options.camera || options.colors)) {
+    throw UsageError(std::string(options.camera ? "--camera" : "--false-color") + " needs --picture FILE");
+  }
+  if (options.points.empty() && !options.points_output.empty()) {
+    throw UsageError("--points-output needs --points FILE");
+  }
+  if (options.camera && options.camera->eye == options.camera->target) {
+    throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
+  }
+  if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
+  require_extension("-o", options.result, ".vtp");
+  require_extension("--picture", options.picture, ".png");
+}
+
+// Every output must be a file of its own, and no output may replace an input.
+void require_distinct_files(const SolveArguments& arguments) {
+  const std::array<std::pair<const char*, const path*>, 6> files = {{{"the model", &arguments.model},
+                                                                     {"--points", &arguments.points},
+                                                                     {"-o", &arguments.result},
+                                                                     {"--report", &arguments.report},
+                                                                     {"--picture", &arguments.picture},
+                                                                     {"--points-output", &arguments.points_output}}};
+  for (std::size_t b = 1; b < files.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (files[a].second->empty() || files[b].second->empty()) continue;
+      if (weakly_canonical(*files[a].second) == weakly_canonical(*files[b].second)) {
+        throw UsageError(std::string(files[b].first) + ": '" + files[b].second->string() + "' is also " +
+                         files[a].first + "; expected different files");
+      }
+    }
+  }
+}
+
+path points_output(const SolveOptions& options) {
+  if (options.points.empty() || !options.points_output.empty()) return options.points_output;
+  return path(options.result).parent_path() / (path(options.points).stem().string() + ".irradiance.csv");
+}
+
+}  // namespace
+
+std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App& command = *tool.add_subcommand("solve", "solves a model: interreflected light on all its surfaces");
+  add_model(command, *options);
+  add_outputs(command, *options);
+  add_points(command, *options);
+  add_accuracy(command, *options);
+  command.add_flag("-q,--quiet", options->quiet, "says nothing but errors; default: progress and a summary");
+  command.add_flag("-v,--verbose", options->verbose, "adds decisions, counts and speed to the summary; default: off");
+  return options;
+}
+
+SolveArguments finish_solve(const SolveOptions& options) {
+  require_consistent(options);
+  const double metres = options.metres_per_unit;
+  SolveArguments arguments;
+  arguments.model = options.model;
+  arguments.read = {.metres_per_unit = metres, .up = options.up, .settings = {}};
+  for (const std::string& setting : options.settings) {
+    arguments.read.settings.push_back(parse_material_setting(setting));
+  }
+  arguments.request = options.request;
+  if (options.max_edge) arguments.request.max_edge = *options.max_edge * metres;
+  arguments.result = options.result;
+  arguments.report = options.report;
+  arguments.picture = options.picture;
+  arguments.colors = options.colors.value_or(PictureColors::natural);
+  if (options.camera) {
+    arguments.camera =
+        Camera{options.camera->eye * metres, options.camera->target * metres, options.camera->field_of_view};
+  }
+  arguments.points = options.points;
+  arguments.points_output = points_output(options);
+  if (options.quiet) arguments.verbosity = Verbosity::quiet;
+  if (options.verbose) arguments.verbosity = Verbosity::verbose;
+  require_distinct_files(arguments);
+  return arguments;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,114 @@
+#include "cli/summary.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace patchlight::cli {
+namespace {
+
+std::string rounded(double value, int digits = 3) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+// Values per band, for three bands as R, G, B.
+std::string bands(const Eigen::ArrayXd& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + rounded(value);
+  return text;
+}
+
+std::string convergence(const Plan& plan, const Solution& solution) {
+  const Iteration& last = solution.history.back();
+  std::ostringstream text;
+  text << name_of(plan.solver.solver) << ": " << (solution.converged ? "converged" : "NOT converged") << " after "
+       << last.number << (last.number == 1 ? " iteration" : " iterations");
+  if (std::isfinite(last.error_bound)) {
+    text << ", relative error at most " << rounded(last.error_bound, 2);
+  } else {
+    text << ", relative residual " << rounded(last.relative_residual, 2) << " (no bound on the error is known)";
+  }
+  return text.str();
+}
+
+std::string energy(const EnergyBalance& balance) {
+  std::ostringstream text;
+  text << "flux in W per band: emitted " << bands(balance.emitted) << "; absorbed " << bands(balance.absorbed)
+       << "; escaped " << bands(balance.escaped) << "; lost at backs " << bands(balance.lost_at_backs)
+       << "; form factor defect " << bands(balance.defect) << "; imbalance " << rounded(balance.imbalance, 2);
+  return text.str();
+}
+
+std::string seconds(const std::vector<StageCost>& costs) {
+  std::ostringstream text;
+  double total = 0;
+  text << std::fixed << std::setprecision(2);
+  for (const StageCost& cost : costs) total += cost.seconds;
+  text << total << " s";
+  const char* separator = ": ";
+  for (const StageCost& cost : costs) {
+    text << separator << name_of(cost.stage) << ' ' << cost.seconds;
+    separator = ", ";
+  }
+  return text.str();
+}
+
+std::string details(const Simulation& simulation) {
+  std::ostringstream text;
+  for (const Decision& decision : simulation.plan.decisions) {
+    text << "decision: " << decision.effect << (decision.simulate ? ": simulated; " : ": left out; ") << decision.reason
+         << '\n';
+  }
+  const AssemblyCounts& counts = simulation.transport.counts;
+  text << "pairs of patches: " << counts.facing_pairs << " facing, of these " << counts.near_pairs << " near, "
+       << counts.partial_pairs << " partly and " << counts.blocked_pairs << " fully occluded\n";
+  text << "shadow rays: " << counts.shadow_rays;
+  for (const StageCost& cost : simulation.costs) {
+    if (cost.stage == Stage::form_factors && cost.seconds > 0) {
+      text << ", " << rounded(1e-6 * static_cast<double>(counts.shadow_rays) / cost.seconds) << " million per second";
+    }
+  }
+  text << "\nrow sums before closure: " << rounded(simulation.transport.raw_row_sum.minCoeff(), 6) << " to "
+       << rounded(simulation.transport.raw_row_sum.maxCoeff(), 6) << "; closure: " << simulation.transport.closure
+       << '\n';
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
+  std::vector<std::string> all = scene.notes;
+  const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
+  all.insert(all.end(), of_sides.begin(), of_sides.end());
+  return all;
+}
+
+std::string summary(const Scene& scene, const Simulation& simulation, bool long_form) {
+  std::ostringstream text;
+  text << scene.file << ": " << scene.polygons.size() << " polygons, " << simulation.mesh.size()
+       << " patches with edges up to " << rounded(simulation.plan.max_edge) << " m\n";
+  if (long_form) text << details(simulation);
+  text << convergence(simulation.plan, simulation.solution) << '\n';
+  text << energy(simulation.balance) << '\n';
+  text << seconds(simulation.costs) << '\n';
+  return text.str();
+}
+
+std::string files_line(const std::vector<std::filesystem::path>& files) {
+  std::string line;
+  for (const std::filesystem::path& file : files) line += (line.empty() ? "wrote " : ", ") + file.string();
+  return line + '\n';
+}
+
+std::string explain_not_converged(const Simulation& simulation) {
+  const Plan& plan = simulation.plan;
+  return convergence(plan, simulation.solution) + ", asked for " + rounded(plan.solver.relative_error, 2) +
+         ". Either " + std::to_string(plan.solver.max_iterations) +
+         " iterations are too few for this solver: try --solver gauss-seidel or a larger --tolerance; or light cannot "
+         "leave the scene because the largest reflectance, " +
+         rounded(simulation.problem.reflectance.maxCoeff(), 6) + ", is close to 1: lower it with --set";
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,48 @@
+#include "mesh/outline.h"
+
+#include <cmath>
+
+namespace patchlight {
+
+bool comes_before(const Point& a, const Point& b) {
+  if (a.x() != b.x()) return a.x() < b.x();
+  if (a.y() != b.y()) return a.y() < b.y();
+  return a.z() < b.z();
+}
+
+Outline make_outline(const Scene& scene, PolygonIndex polygon, double max_edge) {
+  // An edge of n max_edge has n parts, whatever the rounding of its length.
+  constexpr double rounding = 1e-9;
+  Outline outline{.corners = {}, .parts = {}, .normal = front_normal(scene, polygon)};
+  for (const Point& corner : corner_points(scene, polygon)) {
+    if (outline.corners.empty() || corner != outline.corners.back()) outline.corners.push_back(corner);
+  }
+  while (outline.corners.size() > 1 && outline.corners.back() == outline.corners.front()) outline.corners.pop_back();
+
+  const std::size_t n = outline.corners.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double length = (outline.corners[(k + 1) % n] - outline.corners[k]).norm();
+    outline.parts.push_back(static_cast<std::uint32_t>(std::max(1.0, std::ceil(length / max_edge - rounding))));
+  }
+  return outline;
+}
+
+Point edge_point(const Point& from, const Point& to, std::uint32_t index, std::uint32_t parts) {
+  if (index == 0) return from;
+  if (index == parts) return to;
+  if (comes_before(to, from)) return edge_point(to, from, parts - index, parts);
+  return from + static_cast<double>(index) / parts * (to - from);
+}
+
+std::vector<Point> boundary_points(const Outline& outline) {
+  std::vector<Point> points;
+  const std::size_t n = outline.corners.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::uint32_t i = 0; i < outline.parts[k]; ++i) {
+      points.push_back(edge_point(outline.corners[k], outline.corners[(k + 1) % n], i, outline.parts[k]));
+    }
+  }
+  return points;
+}
+
+}  // namespace patchlight

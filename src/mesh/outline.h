@@ -1,0 +1,35 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// A polygon's boundary as the mesher sees it.
+struct Outline {
+  std::vector<Point> corners;        ///< counter-clockwise from the front, no two consecutive ones at one place
+  std::vector<std::uint32_t> parts;  ///< of the edge from each corner to the next
+  Vector normal;                     ///< unit, of the front
+};
+
+/// The mesh of one polygon. Boundary points come first: every corner followed by the points on the edge after it.
+struct PolygonMesh {
+  std::vector<Point> inner;                           ///< the points that follow those of the boundary
+  std::vector<std::array<std::uint32_t, 4>> patches;  ///< counter-clockwise from the front; a triangle repeats its last
+};
+
+/// True when a comes before b in the order of their coordinates.
+bool comes_before(const Point& a, const Point& b);
+
+Outline make_outline(const Scene& scene, PolygonIndex polygon, double max_edge);
+
+/// Point `index` of 0 to `parts` on an edge. Taken from the end that comes first, so that it has the same bits
+/// whichever way the edge is traversed.
+Point edge_point(const Point& from, const Point& to, std::uint32_t index, std::uint32_t parts);
+
+/// All boundary points in the order of PolygonMesh.
+std::vector<Point> boundary_points(const Outline& outline);
+
+}  // namespace patchlight

@@ -1,0 +1,163 @@
+"""What cannot be done is refused: one sentence on stderr, the documented exit code, no file touched."""
+import unittest
+
+from support import MATERIALS, ROOM, ToolTest, content
+
+USAGE, INPUT, OUTPUT = 1, 2, 6
+
+
+class RefusalTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        for name in ("room.vtp", "room.png", "room.json", "spots.irradiance.csv"):
+            self.write(name, "an older result")
+        self.write("spots.txt", "0 0 0.5 0 0 1\n")
+
+    def assert_refused(self, code, named, *arguments):
+        """The run fails with this code and one sentence that names each of these words; the folder stays as it was."""
+        before = content(self.folder)
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertTrue(done.stderr.startswith("patchlight: error: "), done.stderr)
+        for word in named:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(content(self.folder), before)
+
+    def assert_model_refused(self, named, model="room.obj"):
+        outputs = ("-o", "room.vtp", "--picture", "room.png", "--report", "room.json", "--points", "spots.txt")
+        self.assert_refused(INPUT, named, "solve", model, *outputs)
+
+    def test_missing_file(self):
+        self.assert_model_refused(["missing.obj"], model="missing.obj")
+
+    def test_coordinate_that_is_not_a_number(self):
+        self.write("room.obj", ROOM.replace("v 1 1 0\n", "v 1 nan 0\n"))
+        self.assert_model_refused(["room.obj:4"])
+
+    def test_coordinate_that_is_not_finite(self):
+        self.write("room.obj", ROOM.replace("v 1 1 0\n", "v 1 inf 0\n"))
+        self.assert_model_refused(["room.obj:4"])
+
+    def test_reflectance_above_one(self):
+        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 1.6 0.5"))
+        self.assert_model_refused(["white", "1.6"])
+
+    def test_no_emitter(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 0 0 0"))
+        self.assert_model_refused(["room.obj"])
+
+    def test_empty_file(self):
+        self.write("empty.obj", "")
+        self.assert_model_refused(["empty.obj"], model="empty.obj")
+
+    def test_folder_as_model(self):
+        (self.folder / "folder.obj").mkdir()
+        self.assert_model_refused(["folder.obj"], model="folder.obj")
+
+    def test_unknown_format(self):
+        self.write("room.xyz", "")
+        self.assert_model_refused(["room.xyz"], model="room.xyz")
+
+    def test_unknown_material_in_set(self):
+        arguments = ("solve", "room.obj", "-o", "room.vtp", "--set", "brass.reflectance=0.5")
+        self.assert_refused(INPUT, ["brass"], *arguments)
+
+    def test_bad_line_of_points(self):
+        for line, named in (("0 0 1 0 0", "found 5"), ("0 0 1 0 0 up", "'up'"), ("0 0 1 0 0 0", "zero")):
+            with self.subTest(line):
+                self.write("spots.txt", "# x y z nx ny nz\n\n" + line + "\n")
+                self.assert_refused(INPUT, ["spots.txt:3", named], "solve", "room.obj", "--points", "spots.txt")
+
+    def test_missing_points(self):
+        self.assert_refused(INPUT, ["no.txt"], "solve", "room.obj", "--points", "no.txt")
+        self.assert_refused(INPUT, ["is a folder"], "solve", "room.obj", "--points", ".", "--points-output", "a.csv")
+
+    def test_output_that_cannot_be_written(self):
+        (self.folder / "folder.vtp").mkdir()
+        for output in ("nowhere/room.vtp", "room.obj/room.vtp", "folder.vtp"):
+            with self.subTest(output):
+                self.assert_refused(OUTPUT, [output], "solve", "room.obj", "-o", output)
+
+    def test_every_output_is_checked_before_any_is_written(self):
+        for option, output in (("--picture", "no/a.png"), ("--report", "no/a.json"), ("--points-output", "no/a.csv")):
+            with self.subTest(option):
+                arguments = ("solve", "room.obj", "-o", "room.vtp", "--points", "spots.txt", option, output)
+                self.assert_refused(OUTPUT, [output], *arguments)
+
+    def test_unknown_option(self):
+        solve = ("solve", "room.obj", "-o", "room.vtp")
+        self.assert_refused(USAGE, ["--max-egde", "--max-edge"], *solve, "--max-egde", "0.1")
+        self.assert_refused(USAGE, ["--max-egde=1", "--max-edge"], *solve, "--max-egde=1")
+        self.assert_refused(USAGE, ["--frobnicate", "--help"], *solve, "--frobnicate")
+        self.assert_refused(USAGE, ["-x"], *solve, "-x")
+        self.assert_refused(USAGE, ["--frobnicate"], "--frobnicate")
+
+    def test_unknown_command(self):
+        self.assert_refused(USAGE, ["sovle", "solve"], "sovle", "room.obj")
+        self.assert_refused(USAGE, ["solve"])
+
+    def test_two_models(self):
+        self.assert_refused(USAGE, ["other.obj"], "solve", "room.obj", "other.obj", "-o", "room.vtp")
+
+    def test_number_out_of_range(self):
+        for option, values in {
+            "--max-edge": ("0", "-1", "nan", "inf", "wide", "1x", ""),
+            "--patches": ("0", "-5", "1.5", "many"),
+            "--tolerance": ("0", "1", "-1e-6", "nan"),
+            "--samples": ("3", "-1", "16.5"),
+            "--seed": ("-1", "x", "99999999999999999999999"),
+            "--threads": ("-1", "two"),
+        }.items():
+            for value in values:
+                with self.subTest(option + " " + value):
+                    self.assert_refused(USAGE, [option, "expected"], "solve", "room.obj", "-o", "a.vtp", option, value)
+
+    def test_unknown_word_gets_the_list_of_allowed_ones(self):
+        for option, allowed in {
+            "--solver": ["jacobi", "gauss-seidel", "progressive"],
+            "--unit": ["mm", "cm", "m", "in", "ft"],
+            "--up": ["y", "z"],
+            "--sides": ["auto", "front", "both"],
+            "--false-color": ["luminance"],
+        }.items():
+            with self.subTest(option):
+                named = [option, "'strange'", *allowed]
+                self.assert_refused(USAGE, named, "solve", "room.obj", "--picture", "a.png", option, "strange")
+
+    def test_malformed_setting(self):
+        for setting in ("white", "white.reflectance", "white.colour=1,1,1", "white.reflectance=1,x,1", ".exitance=1"):
+            with self.subTest(setting):
+                self.assert_refused(USAGE, ["--set"], "solve", "room.obj", "-o", "a.vtp", "--set", setting)
+
+    def test_malformed_camera(self):
+        for camera in (("0,0,0",), ("0,0", "1,1,1", "40"), ("0,0,0", "1,1,1", "180"), ("0,0,0", "0,0,0", "40")):
+            with self.subTest(camera):
+                arguments = ("solve", "room.obj", "--picture", "a.png", "--camera", *camera)
+                self.assert_refused(USAGE, ["--camera"], *arguments)
+
+    def test_option_without_its_value(self):
+        self.assert_refused(USAGE, ["--tolerance"], "solve", "room.obj", "-o", "a.vtp", "--tolerance")
+
+    def test_options_that_need_or_exclude_another(self):
+        self.assert_refused(USAGE, ["-o", "--picture", "--report", "--points"], "solve", "room.obj")
+        self.assert_refused(USAGE, ["model"], "solve", "-o", "a.vtp")
+        solve = ("solve", "room.obj", "-o", "a.vtp")
+        self.assert_refused(USAGE, ["--max-edge", "--patches"], *solve, "--max-edge", "1", "--patches", "9")
+        self.assert_refused(USAGE, ["--camera", "--picture"], *solve, "--camera", "0,0,0", "1,1,1", "40")
+        self.assert_refused(USAGE, ["--false-color", "--picture"], *solve, "--false-color", "luminance")
+        self.assert_refused(USAGE, ["--points-output", "--points"], *solve, "--points-output", "a.csv")
+        self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
+
+    def test_wrong_extension(self):
+        self.assert_refused(USAGE, ["-o", "a.vtk", ".vtp"], "solve", "room.obj", "-o", "a.vtk")
+        self.assert_refused(USAGE, ["--picture", "a.jpg", ".png"], "solve", "room.obj", "--picture", "a.jpg")
+
+    def test_one_file_for_two_purposes(self):
+        self.assert_refused(USAGE, ["room.obj"], "solve", "room.obj", "--report", "./room.obj")
+        self.assert_refused(USAGE, ["a.png"], "solve", "room.obj", "--picture", "a.png", "--report", "a.png")
+
+
+if __name__ == "__main__":
+    unittest.main()

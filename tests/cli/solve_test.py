@@ -1,0 +1,159 @@
+"""What `patchlight solve` delivers: all files, the same bytes for any number of threads, or none when it is stopped."""
+import csv
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import unittest
+
+from support import TOOL, ToolTest
+
+OPTIONS = """--output --report --picture --false-color --camera --points --points-output --unit --up --sides --set --max-edge
+--patches --solver --tolerance --samples --seed --threads --quiet --verbose --help""".split()
+
+NOT_CONVERGED, INTERRUPTED = 3, 130
+
+
+class SolveTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("spots.txt", "# a comment\n0 0 0 0 0 1\n\n-0.5, 0.5, 0, 0, 0, 2  # any length\n")
+
+    def solve(self, *arguments, code=0):
+        done = self.run_tool("solve", "room.obj", *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def read(self, name):
+        return (self.folder / name).read_bytes()
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()}
+
+    def test_help_names_every_option(self):
+        done = self.run_tool("solve", "--help")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for option in OPTIONS:
+            self.assertRegex(done.stdout, re.escape(option) + r"\b")
+
+    def test_help_gives_every_default(self):
+        text = self.run_tool("solve", "--help").stdout
+        entries = re.split(r"\n  (?=-)", text.split("Options:")[1])[1:]
+        self.assertGreater(len(entries), 15)
+        always_given = ("-h,", "-o,", "--report", "--picture", "--points FILE")
+        for entry in entries:
+            if not entry.startswith(always_given):
+                self.assertIn("default", entry)
+
+    def test_version(self):
+        done = self.run_tool("--version")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"\Apatchlight \d+\.\d+\.\d+\n\Z")
+
+    def test_all_outputs(self):
+        done = self.solve("--patches", 300, "-o", "out.vtp", "--picture", "out.png", "--report", "out.json",
+                          "--points", "spots.txt")
+        for name in ("out.vtp", "out.png", "out.json", "spots.irradiance.csv"):
+            self.assertIn(name, done.stdout)
+        self.assertEqual(self.names() - {"room.obj", "room.mtl", "spots.txt"},
+                         {"out.vtp", "out.png", "out.json", "spots.irradiance.csv"})
+        self.assertTrue(self.read("out.png").startswith(b"\x89PNG"))
+        self.assertIn(b"<VTKFile", self.read("out.vtp")[:200])
+        json.loads(self.read("out.json"))
+        rows = list(csv.reader(self.read("spots.irradiance.csv").decode().splitlines()))
+        self.assertEqual([len(row) for row in rows], [9, 9, 9])
+        self.assertEqual(rows[2][:6], ["-0.5", "0.5", "0", "0", "0", "2"])
+        self.assertTrue(all(float(value) > 0 for value in rows[1][6:]))
+
+    def test_points_output_goes_beside_the_result(self):
+        (self.folder / "results").mkdir()
+        self.solve("--patches", 100, "-o", "results/out.vtp", "--points", "spots.txt")
+        self.assertTrue((self.folder / "results" / "spots.irradiance.csv").is_file())
+
+    def test_units_scale_everything_alike(self):
+        """Irradiance depends on angles only: the same model read in other units gives the same, up to rounding."""
+        values = []
+        for unit in ("m", "in"):
+            self.solve("--unit", unit, "--max-edge", 0.4, "--points", "spots.txt", "--points-output", unit + ".csv")
+            rows = list(csv.reader(self.read(unit + ".csv").decode().splitlines()))[1:]
+            values.append([float(value) for row in rows for value in row[6:]])
+        for in_metres, in_inches in zip(*values):
+            self.assertAlmostEqual(in_inches / in_metres, 1, delta=1e-4)
+
+    def test_light_adds_up(self):
+        """B is linear in E: a lamp of twice the radiance gives twice the irradiance, to the bit as 2 is a power of two."""
+        values = []
+        for radiance in (8, 16):
+            self.solve("--patches", 200, "--set", f"lamp.radiance={radiance}", "--points", "spots.txt",
+                       "--points-output", "spots.csv")
+            rows = list(csv.reader(self.read("spots.csv").decode().splitlines()))[1:]
+            values.append([float(value) for row in rows for value in row[6:]])
+        for single, double in zip(*values):
+            self.assertAlmostEqual(double / single, 2, delta=1e-5)  # the digits written
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        for threads in (1, 2):
+            self.solve("--patches", 500, "--threads", threads, "--picture", f"{threads}.png", "--points", "spots.txt",
+                       "--points-output", f"{threads}.csv")
+        self.assertEqual(self.read("1.csv"), self.read("2.csv"))
+        self.assertEqual(self.read("1.png"), self.read("2.png"))
+
+    def test_camera_and_false_colors_change_the_picture(self):
+        self.solve("--patches", 100, "--picture", "1.png", "--camera", "-0.9,-0.9,1.5", "0,0,0.5", 60)
+        self.solve("--patches", 100, "--picture", "2.png", "--camera", "-0.9,-0.9,1.5", "0,0,0.5", 60,
+                   "--false-color", "luminance")
+        self.solve("--patches", 100, "--picture", "3.png", "--camera", "-0.9,-0.9,1.5", "0,0,0.5", 90)
+        self.assertEqual(len({self.read(f"{k}.png") for k in (1, 2, 3)}), 3)
+
+    def test_quiet_says_nothing_and_verbose_says_more(self):
+        quiet = self.solve("--patches", 100, "-o", "out.vtp", "--quiet")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+        normal = self.solve("--patches", 100, "-o", "out.vtp")
+        verbose = self.solve("--patches", 100, "-o", "out.vtp", "-v")
+        self.assertNotIn("shadow rays", normal.stdout)
+        self.assertIn("shadow rays", verbose.stdout)
+        self.assertNotIn("%", normal.stderr)  # no progress where stderr is not a terminal
+
+    def test_not_converged_is_written_and_explained(self):
+        """With white walls of reflectance 0.99999 Jacobi needs tens of thousands of iterations: the lamp alone absorbs."""
+        done = self.solve("--patches", 100, "--set", "white.reflectance=0.99999", "--solver", "jacobi", "-o", "out.vtp",
+                          code=NOT_CONVERGED)
+        self.assertIn("out.vtp", self.names())
+        self.assertIn("NOT converged", done.stderr)
+        self.assertIn("0.99999", done.stderr)
+
+    def test_interrupt_leaves_no_file(self):
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(sent.name):
+                before = self.names()
+                shown, code = self.interrupt_in_stage(b"form factors", sent)
+                self.assertEqual(code, INTERRUPTED, shown)
+                self.assertIn(b"interrupted", shown)
+                self.assertEqual(self.names(), before)
+
+    def interrupt_in_stage(self, stage, sent):
+        """Starts a run of minutes on a terminal, sends the signal once the stage shows; what was shown, the exit code."""
+        ours, theirs = pty.openpty()
+        command = [TOOL, "solve", "room.obj", "--patches", "30000", "--samples", "4096", "-o", "out.vtp", "--picture",
+                   "out.png"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
+            os.close(theirs)
+            shown = b""
+            while stage not in shown:
+                shown += os.read(ours, 4096)
+            process.send_signal(sent)
+            # The tool promises a second; a run that overlooks the signal takes minutes.
+            code = process.wait(timeout=10)
+            try:
+                while part := os.read(ours, 4096):
+                    shown += part
+            except OSError:  # the terminal is closed at the other end
+                pass
+            os.close(ours)
+        return shown, code
+
+
+if __name__ == "__main__":
+    unittest.main()
