@@ -1,1 +1,131 @@
 #include "patchlight/input/read_scene.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/read_obj.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <numbers>
+#include <system_error>
+
+namespace patchlight {
+namespace {
+
+using Quantity = MaterialSetting::Quantity;
+
+[[noreturn]] void refuse_setting(const std::string& text, const std::string& message) {
+  throw InputError("--set", "found '" + text + "': " + message);
+}
+
+Quantity quantity_named(const std::string& name, const std::string& text) {
+  if (name == "reflectance") return Quantity::reflectance;
+  if (name == "exitance") return Quantity::exitance;
+  if (name == "radiance") return Quantity::radiance;
+  refuse_setting(text, "'" + name + "' cannot be set; expected reflectance, exitance or radiance");
+}
+
+Spectrum comma_separated(const std::string& list, const std::string& text) {
+  std::vector<double> values;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string word(trimmed(std::string_view(list).substr(begin, end - begin)));
+    const std::optional<double> value = finite_number(word);
+    if (!value) refuse_setting(text, "'" + word + "' is not a finite number");
+    values.push_back(*value);
+    begin = end + 1;
+  }
+  if (values.size() != 1 && values.size() != 3) {
+    refuse_setting(text, std::to_string(values.size()) + " values; expected one for all bands, or three: R,G,B");
+  }
+  return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// One value stands for all bands.
+Spectrum spread(const Spectrum& value, Eigen::Index bands) {
+  return value.size() == 1 ? Spectrum(Spectrum::Constant(bands, value[0])) : value;
+}
+
+Material changed(Material material, const MaterialSetting& setting) {
+  const Spectrum value = spread(setting.value, material.reflectance.size());
+  assert(value.size() == material.reflectance.size());
+  switch (setting.quantity) {
+    case Quantity::reflectance:
+      material.reflectance = value;
+      break;
+    case Quantity::exitance:
+      material.exitance = value;
+      break;
+    case Quantity::radiance:
+      material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
+      break;
+  }
+  return material;
+}
+
+std::vector<Material> changed(std::vector<Material> materials, const std::vector<MaterialSetting>& settings) {
+  for (const MaterialSetting& setting : settings) {
+    const auto found = std::find_if(materials.begin(), materials.end(),
+                                    [&](const Material& material) { return material.name == setting.material; });
+    if (found == materials.end()) {
+      std::vector<std::string> names;
+      for (const Material& material : materials) names.push_back(material.name);
+      throw InputError("--set", "no face has a material '" + setting.material + "'; expected one of " + listed(names));
+    }
+    *found = changed(*found, setting);
+  }
+  return materials;
+}
+
+// The extension in lower case, with its dot.
+std::string extension(const std::filesystem::path& file) {
+  std::string text = file.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+}  // namespace
+
+MaterialSetting parse_material_setting(const std::string& text) {
+  // Names may hold dots and equal signs; the value holds no equal sign and the quantity no dot.
+  const std::size_t equals = text.rfind('=');
+  const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
+  if (dot == std::string::npos || dot == 0) {
+    refuse_setting(text, "expected MATERIAL.reflectance=R,G,B, MATERIAL.exitance=R,G,B or MATERIAL.radiance=R,G,B");
+  }
+  MaterialSetting setting;
+  setting.material = text.substr(0, dot);
+  setting.quantity = quantity_named(text.substr(dot + 1, equals - dot - 1), text);
+  setting.value = comma_separated(text.substr(equals + 1), text);
+  if ((setting.value < 0).any()) refuse_setting(text, "a value is negative; expected 0 or more");
+  if (setting.quantity == Quantity::reflectance && (setting.value > 1).any()) {
+    refuse_setting(text, "a reflectance is above 1; expected 0 to 1");
+  }
+  return setting;
+}
+
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+  assert(options.metres_per_unit > 0);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    throw InputError(file.string(), "the model file does not exist; check the name and the folder");
+  }
+  if (std::filesystem::is_directory(file, error)) {
+    throw InputError(file.string(), "this is a folder; expected a model file (.obj)");
+  }
+  if (extension(file) != ".obj") {
+    throw InputError(file.string(),
+                     "the extension '" + extension(file) + "' is not known; expected a model file (.obj)");
+  }
+  Scene scene = read_obj(file, options.metres_per_unit);
+  scene.up = options.up;
+  scene.materials = changed(std::move(scene.materials), options.settings);
+  check(scene);
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "patchlight/light/spectrum.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// A material of an MTL file.
+struct MtlMaterial {
+  std::string name;
+  Spectrum reflectance;             ///< Kd
+  Spectrum radiance;                ///< Ke, W/(m^2 sr)
+  bool has_reflectance = false;     ///< Kd is given
+  bool is_specular = false;         ///< Ks is not 0
+  bool has_texture = false;         ///< any map_, bump, disp, refl or norm
+  bool is_transparent = false;      ///< d < 1 or Tr > 0
+  bool is_mirror_or_glass = false;  ///< illum 3 to 9
+  bool has_ambient = false;         ///< Ka is not 0
+};
+
+/// Reads the materials of an MTL file; of materials with the same name the first is kept.
+/// \throws InputError naming `file` and the line when Kd or Ke is not three finite numbers.
+std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file);
+
+/// One sentence per property that these materials have and the simulation ignores.
+std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials);
+
+}  // namespace patchlight

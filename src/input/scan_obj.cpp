@@ -1,0 +1,130 @@
+#include "input/scan_obj.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/text.h"
+
+#include <charconv>
+#include <map>
+
+namespace patchlight {
+namespace {
+
+// tinyobjloader counts the corners of a face in one byte.
+constexpr std::size_t most_corners = 255;
+
+// The largest vertex number a face uses, to be compared with the number of vertices when the file has been read: a face
+// may stand above its vertices.
+struct HighestVertex {
+  std::int64_t number = 0;
+  std::uint32_t line = 0;
+};
+
+std::string at(const std::string& file, std::uint32_t line) { return file + ":" + std::to_string(line); }
+
+std::string quoted(std::string_view word) { return std::string("'").append(word).append("'"); }
+
+Point vertex(const std::vector<std::string_view>& statement, const std::string& where) {
+  if (statement.size() < 4) {
+    throw InputError(where, "this vertex has " + std::to_string(statement.size() - 1) +
+                                " coordinates; expected three numbers after v");
+  }
+  Point point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::optional<double> value = finite_number(statement[axis + 1]);
+    if (!value) {
+      throw InputError(where, "the coordinate " + quoted(statement[axis + 1]) +
+                                  " is not a finite number; expected three numbers such as 1.25 after v");
+    }
+    point[axis] = *value;
+  }
+  return point;
+}
+
+// The vertex number of a corner such as 7, 7/2, 7//3 or -1/2/3, from 1. A negative number counts back from the last
+// vertex above.
+std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, const std::string& where) {
+  const std::string_view digits = corner.substr(0, corner.find('/'));
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || number == 0) {
+    throw InputError(where, "the corner " + quoted(corner) +
+                                " names no vertex; expected a whole number other than 0, such as 7, 7/2 or 7//3");
+  }
+  if (number > 0) return number;
+  const std::int64_t counted = static_cast<std::int64_t>(vertices_above) + 1 + number;
+  if (counted < 1) {
+    throw InputError(where, "the corner " + quoted(corner) + " counts back beyond the first of the " +
+                                std::to_string(vertices_above) + " vertices above it");
+  }
+  return counted;
+}
+
+// The vertex numbers of a face.
+std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& statement, std::size_t vertices_above,
+                                       const std::string& where) {
+  const std::size_t count = statement.size() - 1;
+  if (count < 3) {
+    throw InputError(where,
+                     "this face has " + std::to_string(count) + " corners; expected at least three. Remove the face");
+  }
+  if (count > most_corners) {
+    throw InputError(where, "this face has " + std::to_string(count) + " corners; expected at most " +
+                                std::to_string(most_corners) + ". Cut it into smaller faces");
+  }
+  std::vector<std::int64_t> corners;
+  for (std::size_t k = 1; k <= count; ++k) corners.push_back(vertex_number(statement[k], vertices_above, where));
+  return corners;
+}
+
+std::string face_statement(const std::vector<std::int64_t>& corners) {
+  std::string statement = "f";
+  for (const std::int64_t corner : corners) statement.append(" ").append(std::to_string(corner));
+  return statement;
+}
+
+}  // namespace
+
+ObjScan scan_obj(std::string_view text, const std::string& file) {
+  ObjScan scan;
+  std::map<std::string, std::uint32_t, std::less<>> known;  // usemtl names
+  std::uint32_t material = no_material;
+  HighestVertex highest;
+  for (const TextLine& line : logical_lines(text)) {
+    const std::vector<std::string_view> statement = words_before_comment(line.text);
+    if (statement.empty()) continue;
+    const std::string_view keyword = statement[0];
+    if (keyword == "v") {
+      scan.vertices.push_back(vertex(statement, at(file, line.number)));
+      scan.geometry += line.text + "\n";
+    } else if (keyword == "f") {
+      const auto corners = face_corners(statement, scan.vertices.size(), at(file, line.number));
+      for (const std::int64_t corner : corners) {
+        if (corner > highest.number) highest = {corner, line.number};
+      }
+      scan.faces.push_back({line.number, material});
+      scan.geometry += face_statement(corners) + "\n";
+    } else if (keyword == "g" || keyword == "o") {
+      scan.geometry += line.text + "\n";
+    } else if (keyword == "usemtl") {
+      const auto name = std::string(after_first_word(line.text));
+      const auto [entry, is_new] = known.emplace(name, static_cast<std::uint32_t>(scan.materials.size()));
+      if (is_new) scan.materials.push_back({name, line.number});
+      material = entry->second;
+    } else if (keyword == "mtllib") {
+      scan.libraries.push_back({std::string(after_first_word(line.text)), line.number});
+    } else {
+      scan.polylines += keyword == "l";
+      scan.points += keyword == "p";
+      scan.free_form_surfaces += keyword == "surf";
+    }
+  }
+  if (highest.number > static_cast<std::int64_t>(scan.vertices.size())) {
+    throw InputError(at(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
+                                                 ", but there are " + std::to_string(scan.vertices.size()) +
+                                                 " vertices in the file");
+  }
+  return scan;
+}
+
+}  // namespace patchlight

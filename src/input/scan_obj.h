@@ -1,0 +1,44 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace patchlight {
+
+/// A name in an OBJ file and the line it stands on.
+struct ObjName {
+  std::string name;
+  std::uint32_t line = 0;
+};
+
+/// Stands for a face before any usemtl.
+inline constexpr std::uint32_t no_material = ~std::uint32_t{0};
+
+/// What is known of a face from its line and those above it.
+struct ObjFace {
+  std::uint32_t line = 0;
+  std::uint32_t material = no_material;  ///< index into ObjScan::materials
+};
+
+/// An OBJ file whose numbers and indices are known to be good.
+struct ObjScan {
+  std::vector<Point> vertices;         ///< in model units
+  std::vector<ObjFace> faces;          ///< in the file's order
+  std::vector<ObjName> materials;      ///< the names after usemtl, each once
+  std::vector<ObjName> libraries;      ///< what follows each mtllib
+  std::string geometry;                ///< the v, f, g and o statements alone, one per line; faces with vertices only
+  std::size_t polylines = 0;           ///< l statements
+  std::size_t points = 0;              ///< p statements
+  std::size_t free_form_surfaces = 0;  ///< surf statements
+};
+
+/// Checks the statements of an OBJ file that tinyobjloader takes on trust, and records where they stand.
+/// \throws InputError naming `file` and the line: a coordinate that is not a finite number, a face with fewer than 3 or
+/// more than 255 corners, a corner that names no vertex.
+ObjScan scan_obj(std::string_view text, const std::string& file);
+
+}  // namespace patchlight

@@ -1,0 +1,100 @@
+#include "input/text.h"
+
+#include "patchlight/base/error.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+namespace patchlight {
+namespace {
+
+constexpr std::string_view blanks = " \t";
+
+}  // namespace
+
+std::string read_text(const std::filesystem::path& file, const std::string& where, const std::string& what) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(where, what + " does not exist; check the name and the folder");
+  }
+  if (std::filesystem::is_directory(status)) throw InputError(where, what + " is a folder; expected a file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(where, what + " is not a regular file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(where, what + " cannot be opened for reading; check its permissions");
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (stream.bad()) throw InputError(where, what + " could not be read to its end");
+  if (text.empty()) throw InputError(where, what + " is empty");
+  return text;
+}
+
+std::vector<TextLine> logical_lines(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  std::vector<TextLine> lines;
+  std::uint32_t number = 0;
+  bool continues = false;
+  while (!text.empty()) {
+    ++number;
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, text.size()));
+
+    if (!continues) lines.push_back({number, {}});
+    continues = line.ends_with('\\');
+    lines.back().text += continues ? line.substr(0, line.size() - 1) : line;
+    if (continues) lines.back().text += ' ';
+  }
+  return lines;
+}
+
+std::vector<std::string_view> words(std::string_view line) {
+  std::vector<std::string_view> found;
+  std::size_t begin = line.find_first_not_of(blanks);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
+    found.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(blanks, end);
+  }
+  return found;
+}
+
+std::vector<std::string_view> words_before_comment(std::string_view line) {
+  std::vector<std::string_view> found = words(line);
+  std::size_t count = 0;
+  while (count < found.size() && !found[count].starts_with('#')) ++count;
+  found.resize(count);
+  return found;
+}
+
+std::string_view after_first_word(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  const std::size_t end = text.find_first_of(blanks);
+  return end == std::string_view::npos ? std::string_view() : trimmed(text.substr(end));
+}
+
+std::string_view trimmed(std::string_view line) {
+  const std::size_t begin = line.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return line.substr(begin, line.find_last_not_of(blanks) - begin + 1);
+}
+
+std::optional<double> finite_number(std::string_view word) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // std::from_chars knows no plus sign
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string listed(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace patchlight
