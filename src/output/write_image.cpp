@@ -70,8 +70,10 @@ DisplayImage text_image(const std::string& text, int font_size) {
 }
 
 std::string short_number(double value) {
+  // Three digits; thousands are written out.
+  const double size = std::abs(value);
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
+  std::snprintf(text, sizeof text, size >= 999.5 && size < 1e6 ? "%.0f" : "%.3g", value);
   return text;
 }
 

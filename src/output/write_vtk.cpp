@@ -14,6 +14,7 @@
 #include <vtkCommand.h>
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
+#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
@@ -202,6 +203,7 @@ void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simu
     on_error->SetClientData(&error);
     const vtkNew<vtkXMLPolyDataWriter> writer;
     writer->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
     writer->SetInputData(polygons);
     writer->SetFileName(temporary.c_str());
     writer->SetDataModeToAppended();

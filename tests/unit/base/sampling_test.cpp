@@ -1,0 +1,99 @@
+#include "patchlight/base/sampling.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <set>
+
+namespace patchlight {
+namespace {
+
+TEST(ScrambledSobol, EveryPowerOfTwoPrefixIsStratified) {
+  // A (0, m, 1) net in every dimension: of 2^m points exactly one lies in each interval of width 2^-m.
+  const auto points = scrambled_sobol(256, 7);
+  for (std::size_t count = 1; count <= 256; count *= 2) {
+    for (std::size_t d = 0; d < 4; ++d) {
+      std::set<int> intervals;
+      for (std::size_t k = 0; k < count; ++k)
+        intervals.insert(static_cast<int>(points[k][d] * static_cast<double>(count)));
+      EXPECT_EQ(intervals.size(), count) << "dimension " << d;
+    }
+  }
+}
+
+TEST(ScrambledSobol, FirstTwoDimensionsFormANet) {
+  // A (0, 4, 2) net: 16 points, one in each cell of every 2^a x 2^b grid with a + b = 4.
+  const auto points = scrambled_sobol(16, 3);
+  for (int a = 0; a <= 4; ++a) {
+    std::set<std::pair<int, int>> cells;
+    for (const auto& point : points) cells.insert({std::ldexp(point[0], a), std::ldexp(point[1], 4 - a)});
+    EXPECT_EQ(cells.size(), 16U);
+  }
+}
+
+TEST(ScrambledSobol, SeedsDiffer) { EXPECT_NE(scrambled_sobol(1, 1)[0], scrambled_sobol(1, 2)[0]); }
+
+TEST(OwenScramble, IsAPermutationThatKeepsCommonPrefixes) {
+  // Numbers that agree in their first k bits still do after scrambling, and then differ.
+  for (int k = 0; k < 32; ++k) {
+    const std::uint32_t a = 0x12345678U;
+    const std::uint32_t b = a ^ (0x80000000U >> k);
+    const std::uint32_t difference = owen_scramble(a, 99) ^ owen_scramble(b, 99);
+    EXPECT_EQ(__builtin_clz(difference), k);
+  }
+}
+
+TEST(SquareToTriangle, MapsEqualAreasToEqualAreas) {
+  // The triangle b1 + b2 <= h has the share h^2 of the whole; 2^12 stratified points meet it to a few times 2^-12.
+  const auto points = scrambled_sobol(4096, 5);
+  for (const double h : {0.25, 0.5, 0.75}) {
+    int inside = 0;
+    for (const auto& point : points) {
+      const Eigen::Vector2d b = square_to_triangle(point[0], point[1]);
+      EXPECT_GE(b.minCoeff(), 0);
+      inside += b.sum() <= h;
+    }
+    EXPECT_NEAR(inside / 4096.0, h * h, 2 / 4096.0);
+  }
+}
+
+TEST(SquareToQuad, HasTheAreaCentroidAsMean) {
+  const std::array<Point, 4> kite{Point(0, 0, 0), Point(3, 0, 0), Point(2, 2, 0), Point(0, 1, 0)};
+  Vector mean = Vector::Zero();
+  const auto points = scrambled_sobol(1 << 14, 5);
+  for (const auto& point : points)
+    mean += square_to_quad(kite, point[0], point[1]) / static_cast<double>(points.size());
+  // Scrambled Sobol points integrate a Lipschitz function to about size / points.
+  EXPECT_LT((mean - area_centroid(kite)).norm(), 3.0 / (1 << 10));
+}
+
+TEST(SquareToCosineHemisphere, HasItsDensity) {
+  // P(cos theta > c) = 1 - c^2; and the density integrates to 1 over the hemisphere (midpoint rule in cos theta).
+  const auto points = scrambled_sobol(4096, 11);
+  int above = 0;
+  for (const auto& point : points) {
+    const Vector direction = square_to_cosine_hemisphere(point[0], point[1]);
+    EXPECT_NEAR(direction.norm(), 1, 1e-12);
+    above += direction.z() > 0.6;
+  }
+  EXPECT_NEAR(above / 4096.0, 0.64, 2 / 4096.0);
+
+  double integral = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double z = (k + 0.5) / 1000;
+    integral += 2 * std::numbers::pi / 1000 * square_to_cosine_hemisphere_pdf(Vector(std::sqrt(1 - z * z), 0, z));
+  }
+  EXPECT_NEAR(integral, 1, 1e-12);
+}
+
+TEST(FrameAround, IsRightHandedAndOrthonormal) {
+  for (const Vector& normal : {Vector(0, 0, 1), Vector(0, 0, -1), Vector(1, 2, 3), Vector(-1, 1e-9, -1)}) {
+    const Eigen::Matrix3d frame = frame_around(normal.normalized());
+    EXPECT_LT((frame.transpose() * frame - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(frame.determinant(), 1, 1e-12);
+    EXPECT_LT((frame.col(2) - normal.normalized()).norm(), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
