@@ -126,7 +126,7 @@ void add_values(vtkPolyData& polygons, const Simulation& simulation, double expo
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance)));
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance, simulation.problem.area)));
 }
 
 template <class Value>

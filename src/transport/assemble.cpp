@@ -17,6 +17,9 @@ namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
+// Near pairs are few and weigh much: they get this many times the samples of others.
+constexpr std::uint32_t near_factor = 4;
+
 // A pair of patches that face each other, and what its shadow rays have met so far.
 struct Pair {
   PatchIndex first = 0;
@@ -43,7 +46,7 @@ struct Assembler {
   PairSample sample(const Pair& pair, std::uint32_t k) const;
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   std::vector<Pair> row(PatchIndex first, PatchRange seconds, AssemblyCounts& counts) const;
-  double exchange_area(const Pair& pair, int sample_count) const;
+  double exchange_area(const Pair& pair) const;
 };
 
 std::vector<Pair> Assembler::facing_pairs(PatchIndex first, PatchRange seconds) const {
@@ -108,11 +111,11 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
       static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [](const Pair& p) { return p.near; }));
   if (pairs.empty() || !occluder.can_occlude()) return pairs;
 
-  // 1. A few probes for every pair, all samples for near pairs: they are few and weigh much.
+  // 1. A few probes for every pair, all samples for near pairs.
   const auto probes = static_cast<std::uint32_t>(options.probes);
   const auto all = static_cast<std::uint32_t>(options.samples);
   const auto near_end = std::stable_partition(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.near; });
-  trace({pairs.begin(), near_end}, 0, all);
+  trace({pairs.begin(), near_end}, 0, near_factor * all);
   trace({near_end, pairs.end()}, 0, probes);
 
   // 2. The remaining samples where the probes disagree.
@@ -122,7 +125,7 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
 
   const auto near = static_cast<std::uint64_t>(near_end - pairs.begin());
   const auto mixed = static_cast<std::uint64_t>(mixed_end - near_end);
-  counts.shadow_rays += (near + mixed) * all + (pairs.size() - near - mixed) * probes;
+  counts.shadow_rays += (near * near_factor + mixed) * all + (pairs.size() - near - mixed) * probes;
   const auto count = [&](const auto& condition) {
     return static_cast<std::uint64_t>(std::count_if(pairs.begin(), pairs.end(), condition));
   };
@@ -131,11 +134,11 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
   return pairs;
 }
 
-double Assembler::exchange_area(const Pair& pair, int sample_count) const {
+double Assembler::exchange_area(const Pair& pair) const {
   if (pair.blocked_weight == 0) return pair.unoccluded;
   if (pair.free_weight == 0) return 0;
   // Control variate: the exact unoccluded value less the mean of what is blocked.
-  const double blocked = pair.blocked_weight / sample_count;
+  const double blocked = pair.blocked_weight / (options.samples * (pair.near ? static_cast<int>(near_factor) : 1));
   return std::max(0.0, pair.unoccluded - blocked);
 }
 
@@ -162,7 +165,7 @@ AssemblyCounts fill_tile(const Assembler& assembler, const Tile& tile, std::span
   const PatchRange seconds = block(tile.J, size);
   for (PatchIndex first = firsts.begin; first < firsts.end; ++first) {
     for (const Pair& pair : assembler.row(first, seconds, counts)) {
-      const float area = narrow_toward_zero(assembler.exchange_area(pair, assembler.options.samples));
+      const float area = narrow_toward_zero(assembler.exchange_area(pair));
       const std::size_t r = pair.first % edge;
       const std::size_t c = pair.second % edge;
       entries[r * edge + c] = area;
@@ -178,7 +181,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
                                  const Observer& observer) {
   assert(options.probes >= 1 && options.samples >= options.probes);
   const Assembler assembler{mesh, occluder, options, patch_shapes(mesh),
-                            SamplePairs(static_cast<std::uint32_t>(options.samples), options.seed)};
+                            SamplePairs(near_factor * static_cast<std::uint32_t>(options.samples), options.seed)};
   Assembly result{ExchangeAreas(mesh.size()), {}};
   const std::vector<Tile> tiles = upper_tiles(result.exchange_areas.blocks());
   std::vector<AssemblyCounts> counts(tiles.size());

@@ -1,6 +1,7 @@
 // Compares the irradiance of the open Cornell box with that of two independent renderers, at points.
 // usage: benchmark_cornell_reference FOLDER PATCHES...
-// FOLDER holds cornell.obj (millimetres) and cornell_reference.csv: sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
+// FOLDER holds cornell.obj (millimetres) and cornell_reference.csv:
+// sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
 #include "patchlight/base/parallel.h"
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
@@ -40,7 +41,8 @@ Reference read_reference(const std::filesystem::path& file) {
     std::stringstream fields(line.substr(line.find(',') + 1));
     for (std::string field; std::getline(fields, field, ',');) numbers.push_back(std::strtod(field.c_str(), nullptr));
     if (numbers.at(14) != 0) continue;
-    reference.sensors.push_back({1e-3 * Point(numbers[2], numbers[3], numbers[4]), Vector(numbers[5], numbers[6], numbers[7])});
+    reference.sensors.push_back(
+        {1e-3 * Point(numbers[2], numbers[3], numbers[4]), Vector(numbers[5], numbers[6], numbers[7])});
     values.push_back(rgb(numbers[8], numbers[9], numbers[10]));
   }
   reference.irradiance.resize(static_cast<Eigen::Index>(values.size()), 3);
@@ -51,7 +53,7 @@ Reference read_reference(const std::filesystem::path& file) {
 // The solution's irradiance, interpolated between the vertices of the patch at each point.
 Field interpolated(const Simulation& simulation, const Occluder& occluder, const std::vector<Sensor>& sensors) {
   const PatchLookup lookup(simulation.mesh);
-  const Field at_vertices = vertex_means(simulation.mesh, simulation.solution.irradiance);
+  const Field at_vertices = vertex_means(simulation.mesh, simulation.solution.irradiance, simulation.problem.area);
   Field result = Field::Zero(static_cast<Eigen::Index>(sensors.size()), at_vertices.cols());
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const Ray down{sensors[k].point + 1e-3 * sensors[k].normal, -sensors[k].normal};
@@ -92,8 +94,8 @@ int main(int argc, char** argv) {
     const Simulation simulation =
         simulate(scene, {.patches = std::strtoul(argv[k], nullptr, 10), .sides = Sides::front});
     const double solved = cpu_seconds();
-    const Field gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance,
-                                             occluder, reference.sensors);
+    const Field gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
+                                             simulation.problem.exitance, occluder, reference.sensors);
     std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
                 reference.sensors.size(), solved - begin, cpu_seconds() - solved);
     print_differences("gathered", gathered, reference.irradiance);

@@ -16,10 +16,10 @@ struct RenderOptions {
 };
 
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, interpolated between
-/// the mesh's vertices. `patch_radiance` has one row per patch. Sides without patches are transparent to the camera;
-/// where nothing is met the picture is black. \throws InputError when eye and target are one point or the field of view
-/// is not between 0 and 180 degrees; Cancelled.
-Image render(const PatchMesh& mesh, const FieldView& patch_radiance, const Occluder& occluder, const Camera& camera,
+/// the mesh's vertices. `vertex_radiance` has one row per vertex of the mesh. Sides without patches are transparent to
+/// the camera; where nothing is met the picture is black. \throws InputError when eye and target are one point or the
+/// field of view is not between 0 and 180 degrees; Cancelled.
+Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 
 /// A view that shows most of the kept sides. Where an upright side of the scene's bounds is open, from before it

@@ -87,12 +87,16 @@ TEST(Interpolate, StaysWithinTheCornersValuesOutside) {
   }
 }
 
+Eigen::VectorXd areas(const PatchMesh& mesh) {
+  return Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+}
+
 TEST(VertexMeans, AreExactForConstants) {
   const Scene scene = tiny::in_triangles(tiny::box({4, 3, 2.5}));
   const PatchMesh mesh = tessellate(scene, tiny::both_sides(scene), 0.5);
   const Field constant = Field::Constant(mesh.size(), 3, 0.7);
   // A mean of some ten equal numbers: a few roundings.
-  EXPECT_LE((vertex_means(mesh, constant) - 0.7).abs().maxCoeff(), 1e-15);
+  EXPECT_LE((vertex_means(mesh, constant, areas(mesh)) - 0.7).abs().maxCoeff(), 1e-15);
 }
 
 TEST(VertexMeans, AreLinearInsideASymmetricGrid) {
@@ -102,7 +106,7 @@ TEST(VertexMeans, AreLinearInsideASymmetricGrid) {
   const PatchMesh mesh = tessellate(square, tiny::front_sides(square), 0.1);
   Field values(mesh.size(), 2);
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) values.row(patch) = linear(mesh.centroid[patch]);
-  const Field means = vertex_means(mesh, values);
+  const Field means = vertex_means(mesh, values, areas(mesh));
   int inner = 0;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Point& x = mesh.vertices[v];
@@ -119,7 +123,7 @@ TEST(VertexMeans, WeighByArea) {
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 10);
   Field values(2, 1);
   values << 8, 4;
-  const Field means = vertex_means(mesh, values);
+  const Field means = vertex_means(mesh, values, areas(mesh));
   EXPECT_DOUBLE_EQ(means(mesh.corners[0][0], 0), 8);
   EXPECT_DOUBLE_EQ(means(mesh.corners[0][1], 0), 5);  // (1 m^2 x 8 + 3 m^2 x 4) / 4 m^2
   EXPECT_DOUBLE_EQ(means(mesh.corners[1][1], 0), 4);

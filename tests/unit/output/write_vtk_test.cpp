@@ -96,7 +96,8 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("area"), simulation.problem.area);
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
   expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
-  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"), vertex_means(simulation.mesh, radiance));
+  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"),
+                vertex_means(simulation.mesh, radiance, simulation.problem.area));
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);

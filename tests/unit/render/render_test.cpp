@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
+#include "patchlight/mesh/interpolate.h"
 
 #include "quad_scene.h"
 
@@ -23,7 +24,9 @@ Camera camera_along_y(double field_of_view) { return {Point(0, 0, 0), Point(0, 1
 
 Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& camera, const RenderOptions& options,
                  const Vector& up = Vector::UnitZ()) {
-  return render(front_patches(scene), radiance, Occluder(scene), camera, up, options);
+  const PatchMesh mesh = front_patches(scene);
+  const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+  return render(mesh, vertex_means(mesh, radiance, area), Occluder(scene), camera, up, options);
 }
 
 // The area in pixels of a quadrilateral's image under y-axis perspective, by the shoelace formula.
@@ -162,7 +165,7 @@ TEST(Render, CanBeCancelled) {
     EXPECT_EQ(progress.stage, Stage::render);
     return false;
   };
-  EXPECT_THROW(render(front_patches(scene), Field::Constant(1, 1, 1), Occluder(scene), camera_along_y(50),
+  EXPECT_THROW(render(front_patches(scene), Field::Constant(4, 1, 1), Occluder(scene), camera_along_y(50),
                       Vector::UnitZ(), {}, stop),
                Cancelled);
 }
