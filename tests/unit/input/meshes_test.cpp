@@ -1,8 +1,8 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/scene/sides.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
-#include <numbers>
 
 namespace patchlight {
 namespace {

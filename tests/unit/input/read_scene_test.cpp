@@ -4,8 +4,8 @@
 
 #include "model_files.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
-#include <limits>
 #include <map>
 #include <numbers>
 
