@@ -251,7 +251,8 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   // 2. Keep the edge between one that gives too few patches and one that gives too many. The number goes as edge^-2;
   //    where this guess fails because the number changes in steps, halve the interval.
   double too_short = 0;
-  double edge = std::min(0.5 * too_long, std::sqrt(kept_area(scene, sides) / wanted));
+  //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
+  double edge = std::min(0.5 * too_long, 4 * std::sqrt(kept_area(scene, sides) / wanted));
   for (int guesses = 1; too_long > (1 + 1e-9) * too_short; ++guesses) {
     const double number = count(edge);
     const double error = std::abs(number - wanted);
@@ -260,7 +261,7 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
     (number < wanted ? too_long : too_short) = edge;
     edge *= std::sqrt(number / wanted);
     const bool inside = edge > too_short && edge < too_long;
-    if (!inside || guesses % 4 == 0) edge = too_short > 0 ? std::sqrt(too_short * too_long) : 0.5 * too_long;
+    if (!inside || guesses % 5 == 0) edge = too_short > 0 ? std::sqrt(too_short * too_long) : 0.5 * too_long;
   }
   return best;
 }
