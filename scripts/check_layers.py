@@ -34,9 +34,9 @@ def check_order(modules):
 
 
 def module_of(path):
-    """Module of a path below include/patchlight or src: its folder, or its stem at the top."""
+    """Module of a path below include/patchlight or src: its folder; the files at the top are the module simulate."""
     parts = pathlib.PurePosixPath(path).parts
-    return parts[0] if len(parts) > 1 else pathlib.PurePosixPath(path).stem
+    return parts[0] if len(parts) > 1 else "simulate"
 
 
 def check_include(module, public, quoted, angled, layers):

@@ -14,13 +14,16 @@ namespace {
 // A signal handler can reach nothing but static state.
 std::atomic<bool> stop_asked{false};
 std::atomic<bool> writing{false};
+std::atomic<bool> on_terminal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may use lock-free atomics only");
 
 constexpr suseconds_t patience_microseconds = 500'000;
 
 extern "C" void end_at_once(int) {
   if (writing) return;
-  constexpr std::string_view message = "\npatchlight: interrupted; nothing was written\n";
+  // Only what is safe inside a signal handler; the line break leaves the progress line.
+  std::string_view message = "\npatchlight: error: interrupted; no further file was written\n";
+  if (!on_terminal) message.remove_prefix(1);
   [[maybe_unused]] const ssize_t count = write(STDERR_FILENO, message.data(), message.size());
   _exit(interrupted_run);
 }
@@ -42,6 +45,7 @@ void handle(int signal, void (*handler)(int)) {
 }  // namespace
 
 void watch_interrupts() {
+  on_terminal = isatty(STDERR_FILENO) == 1;
   handle(SIGALRM, end_at_once);
   handle(SIGINT, ask_to_stop);
   handle(SIGTERM, ask_to_stop);

@@ -15,6 +15,7 @@
 #include "cli/points_file.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
+#include "stage_clock.h"
 
 #include <filesystem>
 #include <functional>
@@ -35,16 +36,6 @@ struct Results {
   Provenance provenance;
 };
 
-// Wall and processor time since it was made.
-class StageClock {
- public:
-  StageCost cost(Stage stage) const { return {stage, wall_seconds() - wall_, cpu_seconds() - cpu_}; }
-
- private:
-  double wall_ = wall_seconds();
-  double cpu_ = cpu_seconds();
-};
-
 void check_outputs(const SolveArguments& arguments) {
   for (const auto* file : {&arguments.result, &arguments.report, &arguments.picture, &arguments.points_output}) {
     if (!file->empty()) check_writable(*file);
@@ -57,33 +48,33 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 1. Read the model and the points
   if (!observer({.stage = Stage::read})) throw Cancelled();
-  const StageClock reading;
+  StageClock reading;
   results.scene = read_scene(arguments.model, arguments.read);
   if (!arguments.points.empty()) results.points = read_points(arguments.points, arguments.read.metres_per_unit);
-  const StageCost read_cost = reading.cost(Stage::read);
+  reading.finish(Stage::read);
 
   // 2. Solve
   simulation = simulate(results.scene, arguments.request, observer);
-  simulation.costs.insert(simulation.costs.begin(), read_cost);
+  simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);
   results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
   if (arguments.points.empty() && arguments.picture.empty()) return results;
 
   // 3. Look at the solution: irradiance at points, picture
+  StageClock looking;
   const Occluder occluder(results.scene);
   if (!arguments.points.empty()) {
-    const StageClock gathering;
     results.irradiance =
         gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,
                           results.points.sensors, {.seed = arguments.request.seed}, observer);
-    simulation.costs.push_back(gathering.cost(Stage::gather));
+    looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
-    const StageClock rendering;
     results.picture = make_picture(arguments, results.scene, simulation, occluder, exposure, observer);
-    simulation.costs.push_back(rendering.cost(Stage::render));
+    looking.finish(Stage::render);
   }
+  simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
   return results;
 }
 

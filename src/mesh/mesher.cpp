@@ -16,6 +16,9 @@
 namespace patchlight {
 namespace {
 
+// Patches have 32-bit indices.
+constexpr double max_patches = 0x1p31;
+
 // How a polygon is meshed.
 enum class Pattern { quad_grid, triangle_grid, delaunay };
 
@@ -124,7 +127,7 @@ std::size_t count_patches(const Scene& scene, const KeptSides& sides, double max
 struct Pieces {
   std::vector<Outline> outlines;
   std::vector<PolygonMesh> meshes;           // per polygon; empty when no side is kept
-  std::vector<std::uint32_t> first_inner;    // per 2 * polygon + side, one more at the end: its first inner vertex
+  std::vector<std::uint32_t> first_inner;    // per 2 * polygon + side: its first inner vertex
   std::array<BoundaryVertices, 2> boundary;  // per side
 };
 
@@ -216,9 +219,9 @@ double diameter(const Scene& scene) { return bounds(scene).diagonal().norm(); }
 
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge) {
   assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
-  // A patch is never larger than max_edge squared. Indices have 32 bits.
+  // A patch is never larger than max_edge squared.
   const double at_least = std::max(kept_area(scene, sides) / max_edge, diameter(scene)) / max_edge;
-  if (at_least > 0x1p31) throw MemoryError("the longest patch edge is too short: it asks for more than 2^31 patches");
+  if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 
   Pieces pieces = make_pieces(scene, sides, max_edge);
   PatchMesh mesh;
@@ -236,6 +239,7 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
   constexpr double close_enough = 0.005;
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
+  if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, sides, edge)); };
 
   // 1. No number below that of the uncut scene.
