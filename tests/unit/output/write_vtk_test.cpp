@@ -121,6 +121,8 @@ TEST(WriteVtk, TellsWhereItComesFrom) {
   EXPECT_EQ(text(polygons, "sha256"), "00ff");
   EXPECT_EQ(text(polygons, "seed"), "1152921504606846977");
   EXPECT_EQ(number(polygons, "exposure"), exposure);
+  ASSERT_NE(polygons->GetFieldData()->GetArray("up"), nullptr);
+  EXPECT_EQ(Vector(polygons->GetFieldData()->GetArray("up")->GetTuple3(0)), Vector::UnitZ());
   EXPECT_EQ(number(polygons, "converged"), 1);
   EXPECT_EQ(number(polygons, "iteration", 1), 1);
   EXPECT_EQ(number(polygons, "iteration_relative_residual", 1), 1e-7);
