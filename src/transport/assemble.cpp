@@ -137,9 +137,11 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
 double Assembler::exchange_area(const Pair& pair) const {
   if (pair.blocked_weight == 0) return pair.unoccluded;
   if (pair.free_weight == 0) return 0;
-  // Control variate: the exact unoccluded value less the mean of what is blocked.
-  const double blocked = pair.blocked_weight / (options.samples * (pair.near ? static_cast<int>(near_factor) : 1));
-  return std::max(0.0, pair.unoccluded - blocked);
+  // What is mostly hidden is estimated directly; what is mostly seen by the control variate, the exact unoccluded value
+  // less the mean of what is blocked. Either way the error is that of the smaller part.
+  const double count = options.samples * (pair.near ? static_cast<double>(near_factor) : 1.0);
+  if (pair.free_weight < pair.blocked_weight) return std::min(pair.unoccluded, pair.free_weight / count);
+  return std::max(0.0, pair.unoccluded - pair.blocked_weight / count);
 }
 
 // Block row and column of the k-th of all tiles of the upper triangle, long rows first.

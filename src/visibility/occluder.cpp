@@ -13,28 +13,55 @@
 namespace patchlight {
 namespace {
 
-// Hits nearer to an end of a segment are ignored: this share of the scene's extent plus this share of the length.
-constexpr float extent_offset = 2e-6F;
-constexpr float length_offset = 1e-5F;
+// A point nearer to a plane than this share of the scene's extent lies on it.
+constexpr double on_plane_tolerance = 1e-9;
+
+// Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
+constexpr double beyond = 1e6;
 
 constexpr unsigned packet = 16;
 
-// What the filters need beside Embree's own context: the polygons that the rays of one packet start and end on.
-struct Context {
-  RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to the whole
-  const PolygonIndex* from;
-  const PolygonIndex* to;  // null when rays have no end
+// The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
+struct Plane {
+  Vector normal;
+  double offset = 0;
+  PolygonIndex polygon = no_polygon;
+
+  double height(const Point& point) const { return normal.dot(point) - offset; }
 };
 
-// Rejects hits on a ray's two end polygons. The geometry's user data is the polygon of each triangle.
-void ignore_end_polygons(const RTCFilterFunctionNArguments* arguments) {
+// One ray in double: what decides whether a hit that Embree finds in single precision is one.
+struct ExactRay {
+  Point from;
+  Point to;  // or, for a ray without an end, a point far along it
+  PolygonIndex from_polygon = no_polygon;
+  PolygonIndex to_polygon = no_polygon;
+};
+
+// What the filter needs beside Embree's own context.
+struct Context {
+  RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to the whole
+  const ExactRay* rays;
+};
+
+// A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
+// ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
+bool separates(const Plane& plane, const ExactRay& ray) {
+  if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
+  const double from = plane.height(ray.from);
+  const double to = plane.height(ray.to);
+  return (from > on_plane_tolerance && to < -on_plane_tolerance) ||
+         (from < -on_plane_tolerance && to > on_plane_tolerance);
+}
+
+void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* polygon_of = static_cast<const PolygonIndex*>(arguments->geometryUserPtr);
+  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
   for (unsigned k = 0; k < arguments->N; ++k) {
     if (arguments->valid[k] != -1) continue;
     const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
-    const PolygonIndex polygon = polygon_of[RTCHitN_primID(arguments->hit, arguments->N, k)];
-    if (polygon == context->from[ray] || (context->to && polygon == context->to[ray])) arguments->valid[k] = 0;
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
+    if (!separates(planes[triangle], context->rays[ray])) arguments->valid[k] = 0;
   }
 }
 
@@ -51,7 +78,7 @@ RTCIntersectContext new_context() {
 // The triangles of some polygons, ready to be traced.
 struct TriangleScene {
   RTCScene scene = nullptr;
-  std::vector<PolygonIndex> polygon_of;  // per triangle
+  std::vector<Plane> planes;  // per triangle
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -68,16 +95,14 @@ struct Occluder::Tracer {
   Point centre = Point::Zero();
   double scale = 1;  // 1 / extent: rays are traced in a scene of about unit size
   TriangleScene everything;
-  TriangleScene blockers;      // all but the polygons on the convex hull
-  std::vector<Vector> normal;  // per polygon
-  std::vector<Point> on_plane;
+  TriangleScene blockers;  // all but the polygons on the convex hull
 
   explicit Tracer(const Scene& scene);
   ~Tracer() { rtcReleaseDevice(device); }
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  Eigen::Vector3f narrowed(const Point& point) const { return (scale * (point - centre)).cast<float>(); }
+  Point recentred(const Point& point) const { return scale * (point - centre); }
   void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& left_out) const;
   void trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const;
 };
@@ -87,10 +112,6 @@ Occluder::Tracer::Tracer(const Scene& scene) : device(rtcNewDevice(nullptr)) {
   const Box box = bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    normal.push_back(front_normal(scene, p));
-    on_plane.push_back(scene.vertices[scene.polygons[p].corners[0]]);
-  }
   build(everything, scene, std::vector<std::uint8_t>(scene.polygons.size(), 0));
   build(blockers, scene, on_convex_hull(scene));
 }
@@ -100,29 +121,31 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
   std::vector<Eigen::Vector3f> corners;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (left_out[p]) continue;
-    const std::vector<Point> points = patchlight::corner_points(scene, p);
-    for (const auto& triangle : triangulate(points)) {
-      for (const std::uint32_t corner : triangle) corners.push_back(narrowed(points[corner]));
-      target.polygon_of.push_back(p);
+    std::vector<Point> points = corner_points(scene, p);
+    for (Point& point : points) point = recentred(point);
+    for (const auto& [a, b, c] : triangulate(points)) {
+      for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
+      const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
+      target.planes.push_back({normal, normal.dot(points[a]), p});
     }
   }
   target.scene = rtcNewScene(device);
   // Robust: rays do not slip between two triangles that share an edge.
   rtcSetSceneFlags(target.scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(target.scene, RTC_BUILD_QUALITY_HIGH);
-  if (!target.polygon_of.empty()) {
+  if (!target.planes.empty()) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), corners.size()));
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), target.polygon_of.size()));
+                                                                   3 * sizeof(unsigned), target.planes.size()));
     for (std::size_t k = 0; k < corners.size(); ++k) {
       for (int d = 0; d < 3; ++d) vertices[3 * k + static_cast<std::size_t>(d)] = corners[k][d];
       indices[k] = static_cast<unsigned>(k);
     }
-    rtcSetGeometryUserData(geometry, target.polygon_of.data());
-    rtcSetGeometryOccludedFilterFunction(geometry, ignore_end_polygons);
-    rtcSetGeometryIntersectFilterFunction(geometry, ignore_end_polygons);
+    rtcSetGeometryUserData(geometry, target.planes.data());
+    rtcSetGeometryOccludedFilterFunction(geometry, keep_separating_hits);
+    rtcSetGeometryIntersectFilterFunction(geometry, keep_separating_hits);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(target.scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -133,35 +156,31 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const {
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[packet];
-  PolygonIndex from[packet];
-  PolygonIndex to[packet];
+  ExactRay exact[packet];
   for (unsigned k = 0; k < packet; ++k) {
     // Lanes beyond the last segment repeat it, so that every field of every ray is set.
     const Segment& segment = segments[std::min<std::size_t>(k, segments.size() - 1)];
-    const Eigen::Vector3f origin = narrowed(segment.from);
-    const Eigen::Vector3f direction = (scale * (segment.to - segment.from)).cast<float>();
-    const float offset = length_offset + extent_offset / std::max(direction.norm(), std::numeric_limits<float>::min());
+    exact[k] = {recentred(segment.from), recentred(segment.to), segment.from_polygon, segment.to_polygon};
+    const Eigen::Vector3f origin = exact[k].from.cast<float>();
+    const Eigen::Vector3f direction = (exact[k].to - exact[k].from).cast<float>();
     rays.org_x[k] = origin.x();
     rays.org_y[k] = origin.y();
     rays.org_z[k] = origin.z();
     rays.dir_x[k] = direction.x();
     rays.dir_y[k] = direction.y();
     rays.dir_z[k] = direction.z();
-    rays.tnear[k] = offset;
-    rays.tfar[k] = 1 - offset;
+    rays.tnear[k] = 0;
+    rays.tfar[k] = 1;
     rays.time[k] = 0;
     rays.mask[k] = ~0U;
     rays.id[k] = k;
     rays.flags[k] = 0;
-    from[k] = segment.from_polygon;
-    to[k] = segment.to_polygon;
-    // A segment shorter than its two offsets is free.
-    valid[k] = k < segments.size() && offset < 0.5F ? -1 : 0;
+    valid[k] = k < segments.size() ? -1 : 0;
   }
-  Context context{new_context(), from, to};
+  Context context{new_context(), exact};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
-  for (std::size_t k = 0; k < segments.size(); ++k) blocked[k] = valid[k] == -1 && rays.tfar[k] < 0;
+  for (std::size_t k = 0; k < segments.size(); ++k) blocked[k] = rays.tfar[k] < 0;
 }
 
 Occluder::Occluder(const Scene& scene) : tracer_(std::make_unique<Tracer>(scene)) {}
@@ -169,7 +188,7 @@ Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
-bool Occluder::can_occlude() const { return !tracer_->blockers.polygon_of.empty(); }
+bool Occluder::can_occlude() const { return !tracer_->blockers.planes.empty(); }
 
 std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) const {
   std::vector<std::uint8_t> blocked(segments.size(), 0);
@@ -185,13 +204,14 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   std::vector<std::optional<Hit>> hits(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
-    const Eigen::Vector3f origin = tracer_->narrowed(ray.origin);
+    const Point start = tracer_->recentred(ray.origin);
+    const Eigen::Vector3f origin = start.cast<float>();
     const Eigen::Vector3f direction = ray.direction.cast<float>();
     RTCRayHit query{};
     query.ray = {origin.x(),
                  origin.y(),
                  origin.z(),
-                 extent_offset,
+                 0,
                  direction.x(),
                  direction.y(),
                  direction.z(),
@@ -201,18 +221,19 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
                  0,
                  0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    Context context{new_context(), &ray.from_polygon, nullptr};
+    const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
+    Context context{new_context(), &exact};
     rtcIntersect1(tracer_->everything.scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 
-    // The hit in double: where the ray meets the polygon's plane, unless it grazes.
-    const PolygonIndex polygon = tracer_->everything.polygon_of[query.hit.primID];
-    const double cosine = tracer_->normal[polygon].dot(ray.direction);
-    double distance = static_cast<double>(query.ray.tfar) / tracer_->scale;
-    if (std::abs(cosine) > 1e-3) {
-      distance = tracer_->normal[polygon].dot(tracer_->on_plane[polygon] - ray.origin) / cosine;
-    }
-    hits[k] = Hit{polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance};
+    // The hit in double: where the ray meets the triangle's plane, unless it grazes.
+    const Plane& plane = tracer_->everything.planes[query.hit.primID];
+    const double cosine = plane.normal.dot(ray.direction);
+    const bool grazes = std::abs(cosine) < 1e-3;
+    const double distance =
+        (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->scale;
+    hits[k] =
+        Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance};
   }
   return hits;
 }

@@ -34,10 +34,10 @@ struct Hit {
 };
 
 /// Decides visibility: every polygon of the scene is opaque from both sides. Immutable and safe to use from several
-/// threads. Rays are traced in single precision after recentring on the scene's bounds in double, so a scene far from
-/// the origin loses nothing; a hit point is known to about 1e-6 of the scene's extent. Hits closer to an end of a
-/// segment than 2e-6 of the scene's extent plus 1e-5 of the segment's length are ignored: so much light can leak under
-/// a wall that does not quite touch its floor.
+/// threads. Rays are traced in single precision, in a scene recentred and scaled to unit extent in double; a hit counts
+/// only if the plane of the polygon separates the two ends of the ray in double, by more than 1e-9 of the extent at
+/// each end. So there is no offset to choose: a surface never shades itself or its neighbour at a shared edge, and a
+/// wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision, from its foot.
 class Occluder {
  public:
   explicit Occluder(const Scene& scene);

@@ -1,0 +1,112 @@
+// Whole runs against closed forms.
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/simulate.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+KeptSides fronts(const Scene& scene) { return kept_sides(scene, Sides::front); }
+
+// Form factor between the first two polygons of a scene, subdivided to patches of this edge.
+double polygon_form_factor(const Scene& scene, double max_edge) {
+  const PatchMesh mesh = tessellate(scene, fronts(scene), max_edge);
+  const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+  double exchange = 0;
+  double area = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (mesh.polygon[i] != 0) continue;
+    area += mesh.area[i];
+    for (PatchIndex j = 0; j < mesh.size(); ++j) {
+      if (mesh.polygon[j] == 1) exchange += static_cast<double>(S.at(i, j));
+    }
+  }
+  return exchange / area;
+}
+
+// Unit squares: Howell's catalogue C-11 and C-14, evaluated to 16 digits. The tolerance is a tenth of what is promised;
+// float storage alone is good to 1e-7.
+TEST(FormFactors, OpposedUnitSquares) {
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)});
+  for (const double max_edge : {2.0, 0.25, 0.1}) {
+    EXPECT_NEAR(polygon_form_factor(scene, max_edge), 0.19982489569838732, 1e-5) << "max_edge " << max_edge;
+  }
+}
+
+TEST(FormFactors, UnitSquaresSharingAnEdge) {
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 1), Point(0, 0, 1)});
+  for (const double max_edge : {2.0, 0.25, 0.1}) {
+    EXPECT_NEAR(polygon_form_factor(scene, max_edge), 0.20004377607540316, 1e-5) << "max_edge " << max_edge;
+  }
+}
+
+TEST(FormFactors, HalfHiddenByATriangle) {
+  // A right triangle half way between two opposed unit squares covers exactly one of the halves into which the
+  // symmetric plane x = y cuts the pair: by symmetry under the half turn about the middle line it hides one half.
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)});
+  scene = with_polygon(std::move(scene), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5)});
+  // 100 x 100 pairs; a tenth of them is partly hidden, with errors of some 10 % each: 0.1 * 0.1 / sqrt(1000) of the
+  // whole.
+  EXPECT_NEAR(polygon_form_factor(scene, 0.1), 0.5 * 0.19982489569838732, 1e-3 * 0.2);
+}
+
+// A closed room of one material with E = 1 - rho has B = 1 everywhere, whatever its shape: B = E + rho B. The stopping
+// rule bounds the error by 1e-7, and closure makes row sums exact to 1e-10.
+class Furnace : public testing::TestWithParam<double> {};
+
+TEST_P(Furnace, RadiosityIsOneEverywhere) {
+  const double rho = GetParam();
+  Scene scene = empty_scene({grey(rho, 1 - rho)});
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  scene = with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false);
+  Request request;
+  request.max_edge = 0.5;
+  request.sides = Sides::front;
+  request.tolerance = 1e-7;
+  const Simulation simulation = simulate(scene, request);
+  ASSERT_TRUE(simulation.solution.converged);
+  EXPECT_EQ(simulation.transport.closure, "least squares");
+  EXPECT_LT((simulation.solution.radiosity - 1).abs().maxCoeff(), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reflectances, Furnace, testing::Values(0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99));
+
+TEST(Simulate, IrradianceBelowASmallLampFollowsTheClosedForm) {
+  // A black floor under a lamp with no other surface: H = E F(point, lamp) with Lambert's formula; here at the floor's
+  // centre below the lamp's centre, four times the corner configuration of Howell B-3. The floor's patches have edges
+  // of 0.05 m at distance 1 m: their mean differs from the value at the centre by (h/d)^2/24 * 8 = 1e-3.
+  Scene scene = empty_scene({grey(0), grey(0, 7)});
+  scene = with_quad(std::move(scene), {Point(-1, -1, 0), Point(1, -1, 0), Point(1, 1, 0), Point(-1, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);
+  Request request;
+  request.max_edge = 2.0 / 41;
+  request.sides = Sides::front;
+  const Simulation simulation = simulate(scene, request);
+  const double root = std::sqrt(1 + 0.04);
+  const double form_factor = 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);
+  double nearest = 1;
+  double irradiance = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    const double distance = simulation.mesh.centroid[i].norm();
+    if (distance < nearest) {
+      nearest = distance;
+      irradiance = simulation.solution.irradiance(i, 0);
+    }
+  }
+  EXPECT_NEAR(irradiance, 7 * form_factor, 2e-3 * 7 * form_factor);
+}
+
+}  // namespace
+}  // namespace patchlight

@@ -1,0 +1,220 @@
+// Laws that every run obeys.
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/simulate.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/closure.h"
+#include "patchlight/transport/lost_share.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "support/scenes.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+Request coarse(double max_edge = 0.4) {
+  Request request;
+  request.max_edge = max_edge;
+  request.sides = Sides::front;
+  return request;
+}
+
+// The furnished room without its ceiling, so that light escapes.
+Scene open_room(double reflectance) {
+  Scene scene = furnished_room(reflectance);
+  scene.polygons.erase(scene.polygons.begin() + 1);
+  return scene;
+}
+
+bool same_bits(const Field& a, const Field& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+TEST(ExchangeAreas, AreSymmetricToTheBitAndZeroInOnePlane) {
+  const Scene scene = furnished_room(0.5);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
+  const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (PatchIndex j = 0; j < mesh.size(); ++j) {
+      ASSERT_EQ(S.at(i, j), S.at(j, i));
+      ASSERT_GE(S.at(i, j), 0);
+      if (mesh.polygon[i] == mesh.polygon[j]) {
+        ASSERT_EQ(S.at(i, j), 0);
+      }
+    }
+  }
+}
+
+TEST(ExchangeAreas, AreNeverMoreThanUnoccluded) {
+  // The same patches with the occluders of an empty scene: a single polygon that nothing can hide behind.
+  const Scene scene = furnished_room(0.5);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
+  const Scene nothing =
+      with_quad(empty_scene({grey(0)}), {Point(0, 0, -9), Point(1, 0, -9), Point(1, 1, -9), Point(0, 1, -9)});
+  const ExchangeAreas occluded = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+  const ExchangeAreas free = assemble_exchange_areas(mesh, Occluder(nothing)).exchange_areas;
+  bool some_less = false;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (PatchIndex j = 0; j < mesh.size(); ++j) {
+      ASSERT_LE(occluded.at(i, j), free.at(i, j));
+      some_less = some_less || occluded.at(i, j) < free.at(i, j);
+    }
+  }
+  EXPECT_TRUE(some_less);
+}
+
+TEST(Closure, MakesTheRowsOfAClosedRoomExact) {
+  const Scene scene = furnished_room(0.5);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
+  const Occluder occluder(scene);
+  const LostShare lost = measure_lost_share(mesh, occluder, 256, 1);
+  ASSERT_FALSE(lost.closed());  // the lamp's back is a one-sided face: some rays meet it
+
+  // With the lamp's back kept the room is closed.
+  KeptSides sides = kept_sides(scene, Sides::front);
+  sides.back[12] = 1;
+  const PatchMesh closed_mesh = tessellate(scene, sides, 0.4);
+  const LostShare none = measure_lost_share(closed_mesh, occluder, 256, 1);
+  ASSERT_TRUE(none.closed());
+  const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(closed_mesh.area.data(), closed_mesh.size());
+  const ClosedExchangeAreas closed =
+      close_exchange_areas(assemble_exchange_areas(closed_mesh, occluder).exchange_areas, area, none);
+  const Eigen::ArrayXd sums = (row_sums(closed.exchange_areas) + closed.remainder).array() / area.array();
+  EXPECT_LT((sums - 1).abs().maxCoeff(), 1e-9);
+  EXPECT_GE(closed.remainder.minCoeff(), 0);
+  EXPECT_LT((closed.remainder.array() / area.array()).maxCoeff(), 1e-7);
+}
+
+TEST(Closure, LeavesTwoPlatesThatCannotBeClosedAlone) {
+  // Two opposed plates of different size: no symmetric matrix between them has both areas as row sums.
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 2, 1), Point(1, 2, 1), Point(1, 0, 1)});
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.5);
+  const ExchangeAreas raw = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+  const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(mesh.size());
+  const ClosedExchangeAreas closed = close_exchange_areas(raw, area, {zero, zero, zero, 256});
+  EXPECT_EQ(closed.method.substr(0, 4), "none");
+  EXPECT_EQ(row_sums(closed.exchange_areas), row_sums(raw));
+}
+
+TEST(Closure, DoesNotCloseAnOpenRoom) {
+  const Scene scene = open_room(0.5);
+  const Simulation simulation = simulate(scene, coarse());
+  // A floor patch in the middle sees at least a third of the open ceiling: its row stays far below 1.
+  EXPECT_LT(simulation.transport.row_sum.minCoeff(), 0.7);
+  const Eigen::ArrayXd seen =
+      1 - simulation.transport.lost.escaped.array() - simulation.transport.lost.at_backs.array();
+  // 256 stratified rays know a share to better than 0.05, the binomial three-sigma bound of 0.5 +- 0.03 at worst.
+  EXPECT_LT((simulation.transport.row_sum.array() - seen).abs().maxCoeff(), 0.1);
+}
+
+TEST(Simulate, GivesTheSameBitsForAnyThreadCountAndEveryRun) {
+  const Scene scene = furnished_room(0.6);
+  Request one = coarse();
+  one.threads = 1;
+  Request two = coarse();
+  two.threads = 2;
+  const Simulation first = simulate(scene, one);
+  const Simulation again = simulate(scene, one);
+  const Simulation threaded = simulate(scene, two);
+  EXPECT_TRUE(same_bits(first.solution.radiosity, again.solution.radiosity));
+  EXPECT_TRUE(same_bits(first.solution.radiosity, threaded.solution.radiosity));
+  EXPECT_TRUE(same_bits(first.solution.irradiance, threaded.solution.irradiance));
+}
+
+TEST(Simulate, BalancesEnergy) {
+  for (const Scene& scene : {furnished_room(0.8), open_room(0.8)}) {
+    const Simulation simulation = simulate(scene, coarse());
+    EXPECT_LT(simulation.balance.imbalance, 1e-6);
+    // What the form factors lose or gain beyond the measured lost shares is small.
+    EXPECT_LT(std::abs(simulation.balance.defect[0]), 0.01 * simulation.balance.emitted[0]);
+  }
+}
+
+TEST(Simulate, IsLinearInTheLamps) {
+  // Twice the exitance, twice the radiosity: scaling by 2 is exact in floating point.
+  const Simulation once = simulate(furnished_room(0.6, 5), coarse());
+  const Simulation twice = simulate(furnished_room(0.6, 10), coarse());
+  EXPECT_TRUE(same_bits(2 * once.solution.radiosity, twice.solution.radiosity));
+}
+
+TEST(Simulate, DoesNotDependOnPositionAndScale) {
+  // Radiosity is invariant under rigid motion and scaling. Shadow rays that graze an edge may tip, which changes single
+  // partly hidden entries; the mean over the room barely moves.
+  const auto solved = [](const Eigen::Affine3d& motion, double scale) {
+    Request request = coarse(0.4 * scale);
+    return simulate(moved(furnished_room(0.6), motion), request);
+  };
+  const Simulation here = solved(Eigen::Affine3d::Identity(), 1);
+  Eigen::Affine3d turned(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
+  Eigen::Affine3d far(Eigen::Translation3d(1e6, -1e6, 1e6));
+  Eigen::Affine3d small(Eigen::UniformScaling<double>(1e-3));
+  for (const auto& [motion, scale] : {std::pair{turned, 1.0}, std::pair{far, 1.0}, std::pair{small, 1e-3}}) {
+    const Simulation there = solved(motion, scale);
+    ASSERT_EQ(there.mesh.size(), here.mesh.size());
+    const Eigen::ArrayXd difference = (there.solution.irradiance - here.solution.irradiance).col(0);
+    EXPECT_LT(std::sqrt(difference.square().mean()), 3e-3 * here.solution.irradiance.mean());
+  }
+}
+
+TEST(Simulate, ADarkSideOfAWallStaysDark) {
+  // A closed room divided by a wall of no thickness, a lamp on one side: no light at all on the other.
+  Scene scene = with_box(empty_scene({grey(0.8), grey(0, 10)}), Point(0, 0, 0), Point(2, 1, 1), true);
+  scene = with_quad(std::move(scene), {Point(1, 0, 0), Point(1, 1, 0), Point(1, 1, 1), Point(1, 0, 1)});
+  scene = with_quad(std::move(scene), {Point(.3, .3, .9), Point(.3, .6, .9), Point(.6, .6, .9), Point(.6, .3, .9)}, 1);
+  Request request = coarse(0.25);
+  request.sides = Sides::both;
+  const Simulation simulation = simulate(scene, request);
+  double lit = 0;
+  double dark = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    // Edges of 0.25 m meet the wall at x = 1: no patch straddles it.
+    const double flux = simulation.mesh.area[i] * simulation.solution.irradiance(i, 0);
+    const bool behind =
+        simulation.mesh.centroid[i].x() > 1 || (simulation.mesh.polygon[i] == 6 && simulation.mesh.normal[i].x() > 0);
+    (behind ? dark : lit) += flux;
+  }
+  EXPECT_GT(lit, 1);
+  EXPECT_LE(dark, 1e-9 * lit);
+}
+
+TEST(Simulate, PatchesInsideASolidTakeNoPart) {
+  // A box without a bottom stands on the floor: the floor patches below it see its backs only. Half covered patches
+  // keep the irradiance of their exposed half.
+  Scene scene = with_box(empty_scene({grey(0.5), grey(0, 10)}), Point(0, 0, 0), Point(2, 2, 2), true);
+  scene.polygons[1].material = 1;
+  const Scene empty = scene;
+  scene = with_box(std::move(scene), Point(0.5, 0.5, 0), Point(1.5, 1.5, 0.01), false);
+  scene.polygons.erase(scene.polygons.begin() + 6);
+  const Simulation flat = simulate(scene, coarse(0.2));
+  for (PatchIndex i = 0; i < flat.mesh.size(); ++i) {
+    if (flat.mesh.polygon[i] != 0) continue;
+    const Vector from_centre = flat.mesh.centroid[i] - Point(1, 1, 0);
+    const double reach = from_centre.cwiseAbs().maxCoeff();
+    const double expected = reach < 0.4 - 1e-9 ? 1 : reach > 0.6 + 1e-9 ? 0 : -1;
+    if (expected >= 0) {
+      EXPECT_NEAR(flat.transport.lost.covered[i], expected, 1e-12);
+    }
+  }
+  // The floor around is lit as in the empty room: the box is 1 cm high. Patch edges of 0.2 m; the box ends in their
+  // middle.
+  const Simulation without = simulate(empty, coarse(0.2));
+  double worst = 0;
+  for (PatchIndex i = 0; i < 100; ++i) {
+    if (flat.transport.lost.covered[i] < 0.99) {
+      const double change = flat.solution.irradiance(i, 0) / without.solution.irradiance(i, 0) - 1;
+      worst = std::max(worst, std::abs(change));
+    }
+  }
+  // 32 stratified points know a half-covered share to about 1 / 32.
+  EXPECT_LT(worst, 0.1);
+}
+
+}  // namespace
+}  // namespace patchlight
