@@ -245,7 +245,7 @@ void Refinement::insert_rows(const std::vector<std::vector<FlatPoint>>& rows) {
       mesh_.split(face, mesh_.add_vertex(point));
       flip_suspects();
     }
-    last_row = std::move(this_row);
+    if (!this_row.empty()) last_row = std::move(this_row);
   }
 }
 

@@ -19,7 +19,7 @@ namespace patchlight {
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
 
 /// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
-/// can change allow. Costs some five tessellations; much less where all polygons become grids. \throws MemoryError for
+/// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for
 /// more than 2^31 patches.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches);
 

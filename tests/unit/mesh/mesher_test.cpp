@@ -8,6 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <random>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -203,6 +204,43 @@ TEST(Mesher, TrianglesAreWellShaped) {
       EXPECT_GE(2 * mesh.area[patch] * std::min({ab, bc, ca}) / (ab * bc * ca), least_sine) << shape.name;
     }
   }
+}
+
+TEST(Mesher, MeshesAnyStarShapedPolygon) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t n = 3 + trial % 8;
+    const double squashed = trial % 5 == 0 ? 1e-5 : 1;
+    std::vector<Point> corners;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double angle =
+          2 * std::numbers::pi * (static_cast<double>(k) + 0.9 * share(random)) / static_cast<double>(n);
+      const double radius = 0.1 + share(random);
+      corners.emplace_back(radius * std::cos(angle), squashed * radius * std::sin(angle), 0);
+    }
+    const Scene scene = tiny::polygon(corners);
+    const double signed_area = area_vector(corners).z();
+    if (signed_area <= 0) continue;  // three corners need not go around the middle
+    const double max_edge = std::exp(-4 * share(random));
+    const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), max_edge);
+    double sum = 0;
+    for (const double area : mesh.area) {
+      EXPECT_GT(area, 0) << "trial " << trial;
+      sum += area;
+    }
+    EXPECT_NEAR(sum, signed_area, 1e-12 * signed_area + 1e-15) << "trial " << trial;
+    EXPECT_LE(longest_edge(mesh), max_edge * (1 + 1e-9)) << "trial " << trial;
+  }
+}
+
+TEST(Mesher, EndsForASelfIntersectingPolygon) {
+  // Two triangles of unequal size that touch crosswise: no mesh is right, but the net area is kept.
+  const Scene scene = tiny::polygon({{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 1, 0}});
+  const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
+  double sum = 0;
+  for (const double area : mesh.area) sum += area;
+  EXPECT_NEAR(sum, area_vector(corner_points(scene, 0)).norm(), 1e-12);
 }
 
 TEST(Mesher, DoesNotDependOnTheNumberOfThreads) {
