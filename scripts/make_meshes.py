@@ -285,14 +285,14 @@ def chair(model, name, centre, faces):
         for ly in (y - half + 0.01, y + half - 0.01 - leg):
             box(model, "steel", (lx, ly, 0), (lx + leg, ly + leg, seat - thick), sides="+x-x+y-y")
     # The back floats 12 cm above the seat, on two posts 1 cm behind the seat.
-    post, gap = 0.03, 0.01
+    post, gap, inset = 0.03, 0.01, 0.02
     if faces in ("+y", "-y"):
         rear = y - half - gap - post if faces == "+y" else y + half + gap
-        posts = [(x - half, rear), (x + half - post, rear)]
+        posts = [(x - half + inset, rear), (x + half - inset - post, rear)]
         low, high = (x - half, rear, seat + 0.12), (x + half, rear + post, 0.9)
     else:
         rear = x - half - gap - post if faces == "+x" else x + half + gap
-        posts = [(rear, y - half), (rear, y + half - post)]
+        posts = [(rear, y - half + inset), (rear, y + half - inset - post)]
         low, high = (rear, y - half, seat + 0.12), (rear + post, y + half, 0.9)
     box(model, "beech", low, high)
     for px, py in posts:

@@ -27,10 +27,10 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, bool emit_from_back) {
+RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
+                            bool emit_from_back) {
   const Eigen::Index bands = scene.materials.front().reflectance.size();
-  RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands),
-                           Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size())};
+  RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
     problem.reflectance.row(i) = material.reflectance;

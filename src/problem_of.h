@@ -7,7 +7,8 @@
 namespace patchlight {
 
 /// The materials of the scene on the patches: lamps emit from their front sides, and from their back sides if asked.
-RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, bool emit_from_back);
+RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
+                            bool emit_from_back);
 
 /// \throws MemoryError when the exchange areas of so many patches do not fit this machine's memory.
 void require_memory(PatchIndex patches);

@@ -37,9 +37,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::form_factors);
 
   // 4. Closure: each row sums up to what its patch sees.
-  result.problem = problem_of(scene, mesh, plan.sides.emit_from_back);
-  const Eigen::VectorXd& area = result.problem.area;
-  facts.raw_row_sum = row_sums(raw.exchange_areas).cwiseQuotient(area);
+  const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
+  const Eigen::VectorXd area = exposed_area(mesh, facts.lost, seen);
+  facts.raw_row_sum = seen.cwiseQuotient(area);
   ClosedExchangeAreas closed = close_exchange_areas(std::move(raw.exchange_areas), area, facts.lost, observer);
   facts.closure = closed.method;
   const auto transport = dense_transport(std::move(closed), area);
@@ -47,6 +47,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::closure);
 
   // 5. Solve B = E + rho o F B, and see where the light went.
+  result.problem = problem_of(scene, mesh, area, plan.sides.emit_from_back);
   result.solution = solve(*transport, result.problem, plan.solver, observer);
   result.balance = energy_balance(result.problem, result.solution, facts.row_sum, facts.lost);
   clock.finish(Stage::solve);

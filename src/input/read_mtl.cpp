@@ -5,6 +5,7 @@
 #include "input/text.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <tiny_obj_loader.h>
@@ -12,25 +13,43 @@
 namespace patchlight {
 namespace {
 
-// Checks Kd and Ke, which tinyobjloader would quietly turn into 0, and returns the names of the materials with a Kd.
-std::set<std::string> materials_with_reflectance(const std::string& text, const std::string& file) {
-  std::set<std::string> names;
-  std::string name;
-  for (const TextLine& line : logical_lines(text)) {
-    const std::vector<std::string_view> statement = words_before_comment(line.text);
-    if (statement.empty()) continue;
-    if (statement[0] == "newmtl") name = after_first_word(line.text);
-    if (statement[0] != "Kd" && statement[0] != "Ke") continue;
-    bool good = statement.size() >= 4;
-    for (std::size_t k = 1; good && k <= 3; ++k) good = finite_number(statement[k]).has_value();
-    if (!good) {
+// Kd and Ke of one material.
+struct Colors {
+  std::optional<Spectrum> reflectance;
+  std::optional<Spectrum> radiance;
+};
+
+Spectrum three_numbers(const TextLine& line, const std::vector<std::string_view>& statement, const std::string& file) {
+  Spectrum values(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::optional<double> value = k + 1 < statement.size() ? finite_number(statement[k + 1]) : std::nullopt;
+    if (!value) {
       throw InputError(file + ":" + std::to_string(line.number), "found '" + std::string(trimmed(line.text)) +
                                                                      "'; expected three finite numbers after " +
                                                                      std::string(statement[0]));
     }
-    if (statement[0] == "Kd") names.insert(name);
+    values[static_cast<Eigen::Index>(k)] = *value;
   }
-  return names;
+  return values;
+}
+
+// Kd and Ke of every material, read here because tinyobjloader turns what it cannot read into 0 and rounds the rest
+// (0.75 to 0.75 + 1e-16). Of materials with the same name the first counts.
+std::map<std::string, Colors> read_colors(const std::vector<TextLine>& lines, const std::string& file) {
+  std::map<std::string, Colors> colors;
+  Colors ignored;
+  Colors* current = &ignored;
+  for (const TextLine& line : lines) {
+    const std::vector<std::string_view> statement = words_before_comment(line.text);
+    if (statement.empty()) continue;
+    if (statement[0] == "newmtl") {
+      const auto [entry, is_new] = colors.try_emplace(std::string(after_first_word(line.text)));
+      current = is_new ? &entry->second : &ignored;
+    }
+    if (statement[0] == "Kd") current->reflectance = three_numbers(line, statement, file);
+    if (statement[0] == "Ke") current->radiance = three_numbers(line, statement, file);
+  }
+  return colors;
 }
 
 bool any(const tinyobj::real_t (&color)[3]) { return color[0] != 0 || color[1] != 0 || color[2] != 0; }
@@ -45,11 +64,12 @@ bool has_texture(const tinyobj::material_t& m) {
   return false;
 }
 
-MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name) {
+MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, const Colors& colors) {
   MtlMaterial material;
   material.name = name;
-  material.reflectance = rgb(read.diffuse[0], read.diffuse[1], read.diffuse[2]);
-  material.radiance = rgb(read.emission[0], read.emission[1], read.emission[2]);
+  material.has_reflectance = colors.reflectance.has_value();
+  material.reflectance = colors.reflectance.value_or(rgb(read.diffuse[0], read.diffuse[1], read.diffuse[2]));
+  material.radiance = colors.radiance.value_or(rgb(0, 0, 0));
   material.is_specular = any(read.specular);
   material.has_texture = has_texture(read);
   material.is_transparent = read.dissolve < 1;
@@ -69,10 +89,12 @@ std::vector<std::string> names_with(std::span<const MtlMaterial> materials, bool
 }  // namespace
 
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file) {
-  const std::set<std::string> with_reflectance = materials_with_reflectance(text, file);
+  const std::vector<TextLine> lines = logical_lines(text);
+  std::map<std::string, Colors> colors = read_colors(lines, file);
   std::map<std::string, int> by_name;
   std::vector<tinyobj::material_t> read;
-  std::istringstream stream(text);
+  std::stringstream stream;
+  for (const TextLine& line : lines) stream << line.text << '\n';
   tinyobj::LoadMtl(&by_name, &read, &stream, nullptr, nullptr);
 
   std::vector<MtlMaterial> materials;
@@ -80,8 +102,7 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
   for (const tinyobj::material_t& found : read) {
     const auto name = std::string(trimmed(found.name));
     if (name.empty() || !seen.insert(name).second) continue;
-    materials.push_back(material_from(found, name));
-    materials.back().has_reflectance = with_reflectance.contains(name);
+    materials.push_back(material_from(found, name, colors[name]));
   }
   return materials;
 }

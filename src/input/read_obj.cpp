@@ -153,16 +153,16 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
 
 std::vector<std::string> notes_on(const ObjScan& scan, const Palette& palette) {
   std::vector<std::string> notes;
-  const auto note = [&](std::size_t count, const std::string& sentence) {
-    if (count > 0) notes.push_back(std::to_string(count) + " " + sentence);
+  const auto note = [&](const std::string& what, std::size_t count) {
+    if (count > 0) notes.push_back(what + ": " + std::to_string(count));
   };
   const auto without = std::count_if(scan.faces.begin(), scan.faces.end(),
                                      [](const ObjFace& face) { return face.material == no_material; });
-  note(static_cast<std::size_t>(without), "faces have no material; they get '" + std::string(default_name) +
-                                              "', reflectance 0.5 unless the file defines it");
-  note(scan.polylines, "lines (l) are ignored");
-  note(scan.points, "points (p) are ignored");
-  note(scan.free_form_surfaces, "free-form surfaces (surf) are ignored");
+  note("faces without a material, which get the material 'default' (reflectance 0.5 unless the file defines it)",
+       static_cast<std::size_t>(without));
+  note("lines (l), ignored", scan.polylines);
+  note("points (p), ignored", scan.points);
+  note("free-form surfaces (surf), ignored", scan.free_form_surfaces);
   for (std::string& sentence : notes_on_ignored(palette.materials)) notes.push_back(std::move(sentence));
   return notes;
 }

@@ -83,6 +83,13 @@ std::string face_statement(const std::vector<std::int64_t>& corners) {
   return statement;
 }
 
+void check_vertices_exist(const HighestVertex& highest, std::size_t vertices, const std::string& file) {
+  if (highest.number <= static_cast<std::int64_t>(vertices)) return;
+  throw InputError(at(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
+                                               ", but there are " + std::to_string(vertices) +
+                                               " vertices in the file; mend the number");
+}
+
 }  // namespace
 
 ObjScan scan_obj(std::string_view text, const std::string& file) {
@@ -119,11 +126,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
       scan.free_form_surfaces += keyword == "surf";
     }
   }
-  if (highest.number > static_cast<std::int64_t>(scan.vertices.size())) {
-    throw InputError(at(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
-                                                 ", but there are " + std::to_string(scan.vertices.size()) +
-                                                 " vertices in the file");
-  }
+  check_vertices_exist(highest, scan.vertices.size(), file);
   return scan;
 }
 

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>

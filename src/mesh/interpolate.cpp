@@ -39,19 +39,19 @@ Weights inverse_bilinear(const PatchCorners& patch, const Vector& normal, const 
 
 }  // namespace
 
-Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values) {
+Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const Eigen::VectorXd& area) {
   Field sum = Field::Zero(static_cast<Eigen::Index>(mesh.vertices.size()), patch_values.cols());
-  std::vector<double> area(mesh.vertices.size(), 0);
+  std::vector<double> weight(mesh.vertices.size(), 0);
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
     const int count = mesh.corner_points(patch).count;
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const std::uint32_t vertex = mesh.corners[patch][k];
-      sum.row(vertex) += mesh.area[patch] * patch_values.row(patch);
-      area[vertex] += mesh.area[patch];
+      sum.row(vertex) += area[patch] * patch_values.row(patch);
+      weight[vertex] += area[patch];
     }
   }
-  for (std::size_t vertex = 0; vertex < area.size(); ++vertex) {
-    if (area[vertex] > 0) sum.row(static_cast<Eigen::Index>(vertex)) /= area[vertex];
+  for (std::size_t vertex = 0; vertex < weight.size(); ++vertex) {
+    if (weight[vertex] > 0) sum.row(static_cast<Eigen::Index>(vertex)) /= weight[vertex];
   }
   return sum;
 }

@@ -16,6 +16,9 @@
 namespace patchlight {
 namespace {
 
+// Patches have 32-bit indices.
+constexpr double max_patches = 0x1p31;
+
 // How a polygon is meshed.
 enum class Pattern { quad_grid, triangle_grid, delaunay };
 
@@ -124,7 +127,7 @@ std::size_t count_patches(const Scene& scene, const KeptSides& sides, double max
 struct Pieces {
   std::vector<Outline> outlines;
   std::vector<PolygonMesh> meshes;           // per polygon; empty when no side is kept
-  std::vector<std::uint32_t> first_inner;    // per 2 * polygon + side, one more at the end: its first inner vertex
+  std::vector<std::uint32_t> first_inner;    // per 2 * polygon + side: its first inner vertex
   std::array<BoundaryVertices, 2> boundary;  // per side
 };
 
@@ -216,9 +219,9 @@ double diameter(const Scene& scene) { return bounds(scene).diagonal().norm(); }
 
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge) {
   assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
-  // A patch is never larger than max_edge squared. Indices have 32 bits.
+  // A patch is never larger than max_edge squared.
   const double at_least = std::max(kept_area(scene, sides) / max_edge, diameter(scene)) / max_edge;
-  if (at_least > 0x1p31) throw MemoryError("the longest patch edge is too short: it asks for more than 2^31 patches");
+  if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 
   Pieces pieces = make_pieces(scene, sides, max_edge);
   PatchMesh mesh;
@@ -236,6 +239,7 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
   constexpr double close_enough = 0.005;
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
+  if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, sides, edge)); };
 
   // 1. No number below that of the uncut scene.
@@ -247,7 +251,8 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   // 2. Keep the edge between one that gives too few patches and one that gives too many. The number goes as edge^-2;
   //    where this guess fails because the number changes in steps, halve the interval.
   double too_short = 0;
-  double edge = std::min(0.5 * too_long, std::sqrt(kept_area(scene, sides) / wanted));
+  //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
+  double edge = std::min(0.5 * too_long, 4 * std::sqrt(kept_area(scene, sides) / wanted));
   for (int guesses = 1; too_long > (1 + 1e-9) * too_short; ++guesses) {
     const double number = count(edge);
     const double error = std::abs(number - wanted);
@@ -256,7 +261,7 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
     (number < wanted ? too_long : too_short) = edge;
     edge *= std::sqrt(number / wanted);
     const bool inside = edge > too_short && edge < too_long;
-    if (!inside || guesses % 4 == 0) edge = too_short > 0 ? std::sqrt(too_short * too_long) : 0.5 * too_long;
+    if (!inside || guesses % 5 == 0) edge = too_short > 0 ? std::sqrt(too_short * too_long) : 0.5 * too_long;
   }
   return best;
 }

@@ -1,7 +1,8 @@
 #include "mesh/refine_polygon.h"
 
-#include "patchlight/base/sampling.h"
 #include "patchlight/scene/triangulate.h"
+
+#include "mesh/lattice.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <cmath>
@@ -13,6 +14,7 @@ namespace {
 
 using Workbench = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 using OpenMesh::EdgeHandle;
+using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
@@ -25,15 +27,43 @@ double dot(const Workbench::Point& a, const Workbench::Point& b, const Workbench
   return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]);
 }
 
+// The polygon's plane: the origin is the beginning of its longest edge, the axes are that edge's direction, the one to
+// its left, and the normal.
+struct Plane {
+  Point origin;
+  Eigen::Matrix3d axes;
+  double spacing;  // of the points on that edge
+
+  FlatPoint flat(const Point& point) const { return axes.leftCols<2>().transpose() * (point - origin); }
+  Point lifted(const FlatPoint& point) const { return origin + axes.leftCols<2>() * point; }
+};
+
+Plane plane_of(const Outline& outline) {
+  // Edges that are equal but for rounding count as equal: the first is taken.
+  constexpr double rounding = 1e-9;
+  const std::size_t n = outline.corners.size();
+  Vector longest = Vector::Zero();
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector edge = outline.corners[(k + 1) % n] - outline.corners[k];
+    if (edge.norm() > (1 + rounding) * longest.norm()) longest = edge, first = k;
+  }
+  Plane plane{.origin = outline.corners[first], .axes = {}, .spacing = longest.norm() / outline.parts[first]};
+  const Vector left = outline.normal.cross(longest).normalized();
+  plane.axes << left.cross(outline.normal), left, outline.normal;
+  return plane;
+}
+
 // The triangles of one polygon in its plane, and the inner edges that are too long.
 class Refinement {
  public:
-  Refinement(const Outline& outline, const Eigen::Matrix3d& frame, double max_edge);
+  Refinement(const Outline& outline, const Plane& plane, double max_edge);
 
   void make_delaunay();
   void cut_boundary();
+  void insert_rows(const std::vector<std::vector<FlatPoint>>& rows);
   void split_long_edges();
-  PolygonMesh result(const Point& origin, const Eigen::Matrix3d& frame) const;
+  PolygonMesh result(const Plane& plane) const;
 
  private:
   struct LongEdge {
@@ -51,6 +81,8 @@ class Refinement {
   bool must_flip(EdgeHandle edge) const;
   void flip_suspects();
   void split(EdgeHandle edge, VertexHandle at);
+  bool is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const;
+  FaceHandle find_face(FaceHandle start, const Workbench::Point& point) const;
 
   Workbench mesh_;
   double max_square_;
@@ -59,12 +91,11 @@ class Refinement {
   std::priority_queue<LongEdge> long_edges_;
 };
 
-Refinement::Refinement(const Outline& outline, const Eigen::Matrix3d& frame, double max_edge)
-    : max_square_(max_edge * max_edge) {
+Refinement::Refinement(const Outline& outline, const Plane& plane, double max_edge) : max_square_(max_edge * max_edge) {
   const std::vector<Point> boundary = boundary_points(outline);
   boundary_count_ = boundary.size();
   for (const Point& point : boundary) {
-    const Vector flat = frame.transpose() * (point - outline.corners[0]);
+    const FlatPoint flat = plane.flat(point);
     mesh_.add_vertex({flat.x(), flat.y(), 0});
   }
   std::vector<VertexHandle> corners;
@@ -164,7 +195,62 @@ void Refinement::cut_boundary() {
   }
 }
 
+// Twice the signed area of the triangle of an edge and a point, a point on the edge but for rounding counting as
+// inside.
+bool Refinement::is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const {
+  constexpr double rounding = 1e-9;
+  const auto& from = mesh_.point(mesh_.from_vertex_handle(edge));
+  const auto& to = mesh_.point(mesh_.to_vertex_handle(edge));
+  return turn(from, to, point) >= -rounding * max_square_;
+}
+
+// Walks from triangle to triangle towards the point. Where the boundary of a concave polygon is in the way, every
+// triangle is tried.
+FaceHandle Refinement::find_face(FaceHandle start, const Workbench::Point& point) const {
+  const auto exit_of = [&](FaceHandle face) {
+    for (const auto edge : mesh_.fh_range(face)) {
+      if (!is_left_of(edge, point)) return HalfedgeHandle(edge);
+    }
+    return HalfedgeHandle();
+  };
+  FaceHandle face = start;
+  for (std::size_t step = 0; face.is_valid() && step < mesh_.n_faces(); ++step) {
+    const HalfedgeHandle exit = exit_of(face);
+    if (!exit.is_valid()) return face;
+    face = mesh_.opposite_face_handle(exit);
+  }
+  for (const FaceHandle any : mesh_.faces()) {
+    if (!exit_of(any).is_valid()) return any;
+  }
+  return FaceHandle();
+}
+
+void Refinement::insert_rows(const std::vector<std::vector<FlatPoint>>& rows) {
+  struct Known {
+    double x;
+    FaceHandle face;
+  };
+  std::vector<Known> last_row{{0, FaceHandle(0)}};
+  for (const std::vector<FlatPoint>& row : rows) {
+    std::vector<Known> this_row;
+    std::size_t below = 0;
+    for (const FlatPoint& flat : row) {
+      // Begin at the face of the nearest point of the last row.
+      while (below + 1 < last_row.size() && last_row[below].x < flat.x()) ++below;
+      const Workbench::Point point(flat.x(), flat.y(), 0);
+      const FaceHandle face = find_face(last_row[below].face, point);
+      if (!face.is_valid()) continue;
+      this_row.push_back({flat.x(), face});
+      for (const auto edge : mesh_.fe_range(face)) suspects_.push_back(edge);
+      mesh_.split(face, mesh_.add_vertex(point));
+      flip_suspects();
+    }
+    last_row = std::move(this_row);
+  }
+}
+
 void Refinement::split_long_edges() {
+  long_edges_ = {};
   for (const EdgeHandle edge : mesh_.edges()) remember_if_long(edge);
   while (!long_edges_.empty()) {
     const auto [length, edge] = long_edges_.top();
@@ -177,11 +263,11 @@ void Refinement::split_long_edges() {
   }
 }
 
-PolygonMesh Refinement::result(const Point& origin, const Eigen::Matrix3d& frame) const {
+PolygonMesh Refinement::result(const Plane& plane) const {
   PolygonMesh result;
   for (std::size_t v = boundary_count_; v < mesh_.n_vertices(); ++v) {
     const auto& point = mesh_.point(mesh_.vertex_handle(static_cast<unsigned>(v)));
-    result.inner.push_back(origin + frame.leftCols<2>() * Eigen::Vector2d(point[0], point[1]));
+    result.inner.push_back(plane.lifted({point[0], point[1]}));
   }
   result.patches.reserve(mesh_.n_faces());
   for (const auto face : mesh_.faces()) {
@@ -197,12 +283,18 @@ PolygonMesh Refinement::result(const Point& origin, const Eigen::Matrix3d& frame
 }  // namespace
 
 PolygonMesh refine_polygon(const Outline& outline, double max_edge) {
-  const Eigen::Matrix3d frame = frame_around(outline.normal);
-  Refinement refinement(outline, frame, max_edge);
+  // Of the lattice to the boundary: of .3 to .7, the one with the fewest patches.
+  constexpr double margin = 0.6;
+  const Plane plane = plane_of(outline);
+  std::vector<FlatPoint> corners;
+  for (const Point& corner : outline.corners) corners.push_back(plane.flat(corner));
+
+  Refinement refinement(outline, plane, max_edge);
   refinement.make_delaunay();
   refinement.cut_boundary();
+  refinement.insert_rows(lattice_rows(corners, plane.spacing, margin * plane.spacing));
   refinement.split_long_edges();
-  return refinement.result(outline.corners[0], frame);
+  return refinement.result(plane);
 }
 
 }  // namespace patchlight

@@ -126,7 +126,7 @@ void add_values(vtkPolyData& polygons, const Simulation& simulation, double expo
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance)));
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance, simulation.problem.area)));
 }
 
 template <class Value>
@@ -168,6 +168,9 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   facts.AddArray(strings("sha256", {scene.sha256}));
   facts.AddArray(strings("seed", {std::to_string(simulation.plan.seed)}));  // 64 bits do not fit a double
   facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
+  const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);
+  up->SetNumberOfComponents(3);
+  facts.AddArray(up);
   // One array per unit: ParaView's information panel shows the value of a string array with one entry.
   for (const auto& [name, unit] : units) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }

@@ -59,6 +59,16 @@ Camera view_from_corner(const Surroundings& around, Eigen::Vector2d corner) {
   return camera;
 }
 
+// For what is flat and seen edge-on from its sides: from above one corner, and so far that everything is in the
+// picture.
+Camera view_from_above(const Surroundings& around) {
+  const double half_angle = outside_field_of_view * std::numbers::pi / 360;
+  Vector direction = Vector::Ones();
+  if (around.up_is_negative) direction[around.up_axis] = -1;
+  const double distance = 0.5 * margin * around.box.diagonal().norm() / std::sin(half_angle);
+  return {around.box.center() + distance * direction.normalized(), around.box.center(), outside_field_of_view};
+}
+
 // Is most of this side of the bounds a hole through which one sees into the depth?
 bool is_open(const Surroundings& around, const UprightSide& side, const Occluder& occluder) {
   const Eigen::Index across = 3 - side.axis - around.up_axis;
@@ -117,6 +127,7 @@ Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder
   scene.up.cwiseAbs().maxCoeff(&around.up_axis);
   around.up_is_negative = scene.up[around.up_axis] < 0;
 
+  // Views through open sides, if there are any; otherwise from the corners inside.
   std::vector<Camera> candidates;
   for (const Eigen::Index axis : {Eigen::Index{2}, Eigen::Index{1}, Eigen::Index{0}}) {
     for (const bool upper : {false, true}) {
@@ -129,10 +140,15 @@ Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder
       for (const double second : {-1.0, 1.0}) candidates.push_back(view_from_corner(around, {first, second}));
     }
   }
-  // The first of the best.
-  return *std::max_element(candidates.begin(), candidates.end(), [&](const Camera& a, const Camera& b) {
-    return score(a, scene.up, sides, occluder) < score(b, scene.up, sides, occluder);
-  });
+  Camera best = view_from_above(around);
+  double best_score = 0;
+  for (const Camera& candidate : candidates) {
+    const double candidate_score = score(candidate, scene.up, sides, occluder);
+    if (candidate_score <= best_score) continue;
+    best = candidate;
+    best_score = candidate_score;
+  }
+  return best;
 }
 
 }  // namespace patchlight

@@ -115,14 +115,13 @@ std::vector<std::optional<Seen>> first_patches(const Occluder& occluder, const P
 
 }  // namespace
 
-Image render(const PatchMesh& mesh, const FieldView& patch_radiance, const Occluder& occluder, const Camera& camera,
+Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options, const Observer& observer) {
   const PicturePlane plane = picture_plane(camera, up);
   const PatchLookup lookup(mesh);
-  const Field vertex_radiance = vertex_means(mesh, patch_radiance);
   const auto rays_per_pixel = static_cast<std::size_t>(options.rays_per_pixel_edge * options.rays_per_pixel_edge);
   Image image{options.width, options.height,
-              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, patch_radiance.cols())};
+              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, vertex_radiance.cols())};
 
   const std::vector<Tile> tiles = tiles_of(options);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {

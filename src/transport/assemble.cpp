@@ -4,7 +4,7 @@
 #include "patchlight/base/sampling.h"
 #include "patchlight/form_factor/monte_carlo.h"
 #include "patchlight/form_factor/patch_shape.h"
-#include "patchlight/form_factor/point_polygon.h"
+#include "patchlight/form_factor/solid_angle.h"
 
 #include "transport/narrow.h"
 
@@ -17,6 +17,9 @@ namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
+// Near pairs are few and weigh much: they get this many times the samples of others.
+constexpr std::uint32_t near_factor = 4;
+
 // A pair of patches that face each other, and what its shadow rays have met so far.
 struct Pair {
   PatchIndex first = 0;
@@ -27,6 +30,11 @@ struct Pair {
   double blocked_weight = 0;  // and of those whose ray is blocked
 };
 
+struct PairSample {
+  Segment shadow_ray;
+  double weight = 0;
+};
+
 struct Assembler {
   const PatchMesh& mesh;
   const Occluder& occluder;
@@ -35,9 +43,10 @@ struct Assembler {
   SamplePairs samples;
 
   std::vector<Pair> facing_pairs(PatchIndex first, PatchRange seconds) const;
+  PairSample sample(const Pair& pair, std::uint32_t k) const;
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   std::vector<Pair> row(PatchIndex first, PatchRange seconds, AssemblyCounts& counts) const;
-  double exchange_area(const Pair& pair, int sample_count) const;
+  double exchange_area(const Pair& pair) const;
 };
 
 std::vector<Pair> Assembler::facing_pairs(PatchIndex first, PatchRange seconds) const {
@@ -52,24 +61,39 @@ std::vector<Pair> Assembler::facing_pairs(PatchIndex first, PatchRange seconds) 
   return pairs;
 }
 
-// Traces samples [begin, end) of every pair and adds their weights. The weight is what a sample contributes to the
-// unoccluded form factor: the geometry term G, or for near patches, where G has no finite variance, the closed form
-// from the sample's point to the whole other patch.
+// Sample k of a pair: its shadow ray, and its weight, the mean of which is the unoccluded exchange area.
+PairSample Assembler::sample(const Pair& pair, std::uint32_t k) const {
+  const PatchShape& a = shapes[pair.first];
+  const PatchShape& b = shapes[pair.second];
+  const auto& [u, v, s, t] = samples.at(pair.first, pair.second, k);
+  if (!pair.near) {
+    const Point x = square_to_quad(a.corners.points, u, v);
+    const Point y = square_to_quad(b.corners.points, s, t);
+    return {{x, y, mesh.polygon[pair.first], mesh.polygon[pair.second]},
+            a.area * b.area * geometry_term(x, a.normal, y, b.normal)};
+  }
+  // Near patches: from a point of the smaller one by solid angle, as the geometry term has no finite variance there.
+  const bool first_is_smaller = a.area <= b.area;
+  const PatchShape& small = first_is_smaller ? a : b;
+  const PatchShape& large = first_is_smaller ? b : a;
+  const Point x = square_to_quad(small.corners.points, u, v);
+  const PolygonSample y = sample_solid_angle(x, small.normal, large.corners, s, t);
+  const PatchIndex from = first_is_smaller ? pair.first : pair.second;
+  const PatchIndex to = first_is_smaller ? pair.second : pair.first;
+  return {{x, y.weight > 0 ? y.point : large.centroid, mesh.polygon[from], mesh.polygon[to]}, small.area * y.weight};
+}
+
+// Traces samples [begin, end) of every pair and adds up their weights.
 void Assembler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   std::vector<Segment> segments;
   std::vector<double> weights;
   segments.reserve(pairs.size() * (end - begin));
   weights.reserve(segments.capacity());
   for (const Pair& pair : pairs) {
-    const PatchShape& a = shapes[pair.first];
-    const PatchShape& b = shapes[pair.second];
     for (std::uint32_t k = begin; k < end; ++k) {
-      const auto& [u, v, s, t] = samples.at(pair.first, pair.second, k);
-      const Point x = square_to_quad(a.corners.points, u, v);
-      const Point y = square_to_quad(b.corners.points, s, t);
-      segments.push_back({x, y, mesh.polygon[pair.first], mesh.polygon[pair.second]});
-      const double geometry = geometry_term(x, a.normal, y, b.normal);
-      weights.push_back(pair.near && geometry > 0 ? point_to_polygon(x, a.normal, b.corners) : geometry);
+      const PairSample next = sample(pair, k);
+      segments.push_back(next.shadow_ray);
+      weights.push_back(next.weight);
     }
   }
   const std::vector<std::uint8_t> blocked = occluder.occluded(segments);
@@ -87,32 +111,34 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
       static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [](const Pair& p) { return p.near; }));
   if (pairs.empty() || !occluder.can_occlude()) return pairs;
 
-  // 1. A few probes for every pair.
+  // 1. A few probes for every pair, all samples for near pairs.
   const auto probes = static_cast<std::uint32_t>(options.probes);
-  trace(pairs, 0, probes);
-  counts.shadow_rays += pairs.size() * probes;
+  const auto all = static_cast<std::uint32_t>(options.samples);
+  const auto near_end = std::stable_partition(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.near; });
+  trace({pairs.begin(), near_end}, 0, near_factor * all);
+  trace({near_end, pairs.end()}, 0, probes);
 
   // 2. The remaining samples where the probes disagree.
   const auto partial = [](const Pair& pair) { return pair.free_weight > 0 && pair.blocked_weight > 0; };
-  const auto first_whole = std::stable_partition(pairs.begin(), pairs.end(), partial);
-  const std::span<Pair> mixed(pairs.begin(), first_whole);
-  const auto all = static_cast<std::uint32_t>(options.samples);
-  if (!mixed.empty() && all > probes) {
-    trace(mixed, probes, all);
-    counts.shadow_rays += mixed.size() * (all - probes);
-  }
-  counts.partial_pairs += mixed.size();
-  counts.blocked_pairs += static_cast<std::size_t>(std::count_if(
-      first_whole, pairs.end(), [](const Pair& p) { return p.free_weight == 0 && p.blocked_weight > 0; }));
+  const auto mixed_end = std::stable_partition(near_end, pairs.end(), partial);
+  trace({near_end, mixed_end}, probes, all);
+
+  const auto near = static_cast<std::uint64_t>(near_end - pairs.begin());
+  const auto mixed = static_cast<std::uint64_t>(mixed_end - near_end);
+  counts.shadow_rays += (near * near_factor + mixed) * all + (pairs.size() - near - mixed) * probes;
+  const auto count = [&](const auto& condition) {
+    return static_cast<std::uint64_t>(std::count_if(pairs.begin(), pairs.end(), condition));
+  };
+  counts.partial_pairs += count(partial);
+  counts.blocked_pairs += count([](const Pair& p) { return p.free_weight == 0 && p.blocked_weight > 0; });
   return pairs;
 }
 
-double Assembler::exchange_area(const Pair& pair, int sample_count) const {
+double Assembler::exchange_area(const Pair& pair) const {
   if (pair.blocked_weight == 0) return pair.unoccluded;
   if (pair.free_weight == 0) return 0;
-  if (pair.near) return pair.unoccluded * pair.free_weight / (pair.free_weight + pair.blocked_weight);
-  // Control variate: the exact unoccluded value less the sampled blocked part, A_i A_j / s sum_k G_k (1 - V_k).
-  const double blocked = shapes[pair.first].area * shapes[pair.second].area * pair.blocked_weight / sample_count;
+  // Control variate: the exact unoccluded value less the mean of what is blocked.
+  const double blocked = pair.blocked_weight / (options.samples * (pair.near ? static_cast<int>(near_factor) : 1));
   return std::max(0.0, pair.unoccluded - blocked);
 }
 
@@ -139,7 +165,7 @@ AssemblyCounts fill_tile(const Assembler& assembler, const Tile& tile, std::span
   const PatchRange seconds = block(tile.J, size);
   for (PatchIndex first = firsts.begin; first < firsts.end; ++first) {
     for (const Pair& pair : assembler.row(first, seconds, counts)) {
-      const float area = narrow_toward_zero(assembler.exchange_area(pair, assembler.options.samples));
+      const float area = narrow_toward_zero(assembler.exchange_area(pair));
       const std::size_t r = pair.first % edge;
       const std::size_t c = pair.second % edge;
       entries[r * edge + c] = area;
@@ -155,7 +181,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
                                  const Observer& observer) {
   assert(options.probes >= 1 && options.samples >= options.probes);
   const Assembler assembler{mesh, occluder, options, patch_shapes(mesh),
-                            SamplePairs(static_cast<std::uint32_t>(options.samples), options.seed)};
+                            SamplePairs(near_factor * static_cast<std::uint32_t>(options.samples), options.seed)};
   Assembly result{ExchangeAreas(mesh.size()), {}};
   const std::vector<Tile> tiles = upper_tiles(result.exchange_areas.blocks());
   std::vector<AssemblyCounts> counts(tiles.size());

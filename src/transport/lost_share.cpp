@@ -3,54 +3,109 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// A ray that meets nothing may have slipped through the crack where two polygons meet without sharing vertices: it
-// counts as escaped only if it also meets nothing when moved by this share of the scene's extent.
-constexpr double crack_width = 1e-5;
+// Second tries start this share of the way to the centroid, and this share of the scene's extent behind the patch.
+constexpr double toward_centroid = 0.01;
+constexpr double behind = 1e-5;
 
-struct LostRays {
-  int escaped = 0;
-  int at_backs = 0;
+// Rays that start at one point, when it has to be decided whether the point is covered.
+constexpr int rays_per_point = 8;
+
+enum class Sight { patch, nothing, back, contact };
+
+struct Shares {
+  double escaped = 0;
+  double at_backs = 0;
+  double covered = 0;
 };
 
-std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int count, std::uint64_t seed) {
-  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(count), hash({seed, patch, 0x6c6f7374}));
+struct Observatory {
+  const PatchMesh& mesh;
+  const Occluder& occluder;
+  double extent;
+
+  std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays) const;
+  Shares shares_of_point_groups(const std::vector<Sight>& sights) const;
+  Shares measure(PatchIndex patch, int rays, std::uint64_t seed) const;
+};
+
+// `groups` starting points, each with `size` directions.
+std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint64_t seed) {
+  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), hash({seed, patch, 0x6c6f7374}));
   const PatchCorners corners = mesh.corner_points(patch);
   const Eigen::Matrix3d frame = frame_around(mesh.normal[patch]);
   std::vector<Ray> rays;
   rays.reserve(samples.size());
-  for (const auto& [u, v, s, t] : samples) {
-    rays.push_back(
-        {square_to_quad(corners.points, u, v), frame * square_to_cosine_hemisphere(s, t), mesh.polygon[patch]});
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto& start = samples[k / static_cast<std::size_t>(size) * static_cast<std::size_t>(size)];
+    rays.push_back({square_to_quad(corners.points, start[0], start[1]),
+                    frame * square_to_cosine_hemisphere(samples[k][2], samples[k][3]), mesh.polygon[patch]});
   }
   return rays;
 }
 
-LostRays count_lost(const PatchMesh& mesh, const Occluder& occluder, const std::vector<Ray>& rays, double extent) {
-  LostRays lost;
-  std::vector<Ray> second_tries;
-  const auto meets_back = [&](const Hit& hit) {
+std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& rays) const {
+  const auto sight_of = [&](const Hit& hit) {
     const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
-    return range.begin == range.end;
+    return range.begin == range.end ? Sight::back : Sight::patch;
   };
+  std::vector<Sight> sights(rays.size(), Sight::nothing);
+  std::vector<Ray> second_tries;
+  std::vector<std::size_t> tried_again;
   const auto hits = occluder.first_hits(rays);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (hits[k]) {
-      lost.at_backs += meets_back(*hits[k]);
-    } else {
-      Ray moved = rays[k];
-      moved.origin += crack_width * extent * frame_around(moved.direction) * Vector(0.6, 0.8, 0);
-      second_tries.push_back(moved);
+      sights[k] = sight_of(*hits[k]);
+      continue;
     }
+    Ray moved = rays[k];
+    moved.origin += toward_centroid * (mesh.centroid[patch] - moved.origin) - behind * extent * mesh.normal[patch];
+    second_tries.push_back(moved);
+    tried_again.push_back(k);
   }
-  for (const auto& hit : occluder.first_hits(second_tries)) {
-    if (!hit) ++lost.escaped;
+  const auto second_hits = occluder.first_hits(second_tries);
+  for (std::size_t k = 0; k < second_tries.size(); ++k) {
+    if (!second_hits[k]) continue;
+    const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh.normal[patch]);
+    sights[tried_again[k]] = height < 2 * behind * extent ? Sight::contact : sight_of(*second_hits[k]);
   }
-  return lost;
+  return sights;
+}
+
+// A point is covered when every ray from it meets a back or a face that lies against the patch.
+Shares Observatory::shares_of_point_groups(const std::vector<Sight>& sights) const {
+  int covered = 0;
+  int exposed = 0;
+  int escaped = 0;
+  int at_backs = 0;
+  for (auto group = sights.begin(); group != sights.end(); group += rays_per_point) {
+    const auto count = [&](Sight sight) { return static_cast<int>(std::count(group, group + rays_per_point, sight)); };
+    if (count(Sight::back) + count(Sight::contact) == rays_per_point) {
+      ++covered;
+      continue;
+    }
+    ++exposed;
+    escaped += count(Sight::nothing);
+    at_backs += count(Sight::back);
+  }
+  const double rays = std::max(1, exposed * rays_per_point);
+  return {escaped / rays, at_backs / rays, static_cast<double>(covered) / (covered + exposed)};
+}
+
+Shares Observatory::measure(PatchIndex patch, int rays, std::uint64_t seed) const {
+  // 1. Single rays settle it for most patches.
+  const auto sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
+  const auto count = [&](Sight sight) { return std::count(sights.begin(), sights.end(), sight); };
+  if (count(Sight::back) + count(Sight::contact) == 0) {
+    return {static_cast<double>(count(Sight::nothing)) / rays, 0, 0};
+  }
+  // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
+  return shares_of_point_groups(look(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed)));
 }
 
 }  // namespace
@@ -59,16 +114,26 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
                              const Observer& observer) {
   Box box;
   for (const Point& vertex : mesh.vertices) box.extend(vertex);
-  const double extent = box.diagonal().norm();
+  const Observatory observatory{mesh, occluder, box.diagonal().norm()};
 
-  LostShare lost{Eigen::VectorXd::Zero(mesh.size()), Eigen::VectorXd::Zero(mesh.size()), rays_per_patch};
-  parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t patch) {
-    const auto i = static_cast<PatchIndex>(patch);
-    const LostRays count = count_lost(mesh, occluder, hemisphere_rays(mesh, i, rays_per_patch, seed), extent);
-    lost.escaped[i] = static_cast<double>(count.escaped) / rays_per_patch;
-    lost.at_backs[i] = static_cast<double>(count.at_backs) / rays_per_patch;
+  const auto zero = Eigen::VectorXd::Zero(mesh.size());
+  LostShare lost{zero, zero, zero, rays_per_patch};
+  parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
+    const auto i = static_cast<PatchIndex>(k);
+    const Shares shares = observatory.measure(i, rays_per_patch, seed);
+    lost.escaped[i] = shares.escaped;
+    lost.at_backs[i] = shares.at_backs;
+    lost.covered[i] = shares.covered;
   });
   return lost;
+}
+
+Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen) {
+  constexpr double smallest_share = 1e-6;
+  const Eigen::Map<const Eigen::ArrayXd> area(mesh.area.data(), mesh.size());
+  const Eigen::ArrayXd measured = area * (1 - lost.covered.array());
+  const Eigen::ArrayXd shown = (lost.covered.array() > 0).select(seen.array(), 0.0);
+  return measured.max(shown).max(smallest_share * area);
 }
 
 }  // namespace patchlight

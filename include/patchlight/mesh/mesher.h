@@ -11,15 +11,16 @@ namespace patchlight {
 ///
 /// An edge is cut into ceil(length / max_edge) equal parts, whichever polygon it belongs to, so neighbours that share
 /// an edge share its points. Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
-/// triangles with three equal counts a grid of triangles; every other polygon is cut into triangles which are split at
-/// their longest inner edge and flipped to Delaunay until all edges are short enough. Patches of one polygon side are
-/// numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
+/// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
+/// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
+/// are numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
 /// 30 degrees, and between those only. Both sides of a polygon have their own vertices.
 /// \throws MemoryError when more than 2^31 patches would be needed.
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
 
-/// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number can
-/// change allow. Costs some five tessellations; much less where all polygons become grids.
+/// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
+/// can change allow. Costs some five tessellations; much less where all polygons become grids. \throws MemoryError for
+/// more than 2^31 patches.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches);
 
 }  // namespace patchlight

@@ -16,13 +16,15 @@ struct RenderOptions {
 };
 
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, interpolated between
-/// the mesh's vertices. `patch_radiance` has one row per patch. Sides without patches are transparent to the camera;
-/// where nothing is met the picture is black. \throws Cancelled.
-Image render(const PatchMesh& mesh, const FieldView& patch_radiance, const Occluder& occluder, const Camera& camera,
+/// the mesh's vertices. `vertex_radiance` has one row per vertex of the mesh. Sides without patches are transparent to
+/// the camera; where nothing is met the picture is black. \throws InputError when eye and target are one point or the
+/// field of view is not between 0 and 180 degrees; Cancelled.
+Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 
-/// A view that shows most of the kept sides: of the eye points in the corners of the scene's bounds and before its
-/// four upright sides, that from which the most different polygons are seen over the widest part of the picture.
+/// A view that shows most of the kept sides. Where an upright side of the scene's bounds is open, from before it
+/// through the opening; otherwise from a corner of the bounds, inside, at eye height, to the opposite one. Of several
+/// such views that from which the most different polygons are seen over the widest part of the picture.
 Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
 
 }  // namespace patchlight

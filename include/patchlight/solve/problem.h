@@ -12,7 +12,7 @@ namespace patchlight {
 struct RadiosityProblem {
   Field reflectance;     ///< rho, in [0, 1]
   Field exitance;        ///< E, W/m^2
-  Eigen::VectorXd area;  ///< m^2
+  Eigen::VectorXd area;  ///< m^2, the exposed part of each patch
 };
 
 struct Solution {

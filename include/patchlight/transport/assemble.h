@@ -11,7 +11,7 @@ namespace patchlight {
 
 struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
-  int samples = 16;  ///< shadow rays of a partly occluded pair; at least `probes`
+  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; near pairs take four times as many
   std::uint64_t seed = 1;
 };
 

@@ -9,19 +9,26 @@
 
 namespace patchlight {
 
-/// Per patch, the share of its cosine-weighted hemisphere from which no patch can be seen.
+/// What rays see of each patch's surroundings, all per patch and in [0, 1].
 struct LostShare {
-  Eigen::VectorXd escaped;   ///< rays that meet nothing
-  Eigen::VectorXd at_backs;  ///< rays that meet a side without patches
+  Eigen::VectorXd escaped;   ///< share of the exposed part's cosine-weighted hemisphere in which nothing is met
+  Eigen::VectorXd at_backs;  ///< share of it in which a side without patches is met
+  Eigen::VectorXd
+      covered;  ///< share of the area from which nothing else can be seen: inside a solid, or against a face
   int rays_per_patch = 0;
 
   /// True when no ray of any patch was lost.
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }
 };
 
-/// Measures the lost shares with stratified cosine-hemisphere rays that start spread over each patch.
-/// \throws Cancelled.
+/// Measures the shares with stratified cosine-hemisphere rays that start spread over each patch. A ray that meets
+/// nothing is traced again from a place 1 % nearer to the patch's centroid and a little behind its plane, so that
+/// cracks between polygons and faces that lie against each other do not count as openings. \throws Cancelled.
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer = {});
+
+/// The area in m^2 that takes part in the exchange of light: what is not covered. It is never below what the exchange
+/// areas S_ij, given by their row sums in m^2, show to be seen, nor below 1e-6 of the patch.
+Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen);
 
 }  // namespace patchlight

@@ -54,7 +54,7 @@ inline Simulation tiny_simulation() {
   TransportFacts& transport = simulation.transport;
   transport.raw_row_sum = Eigen::Vector3d(0.5, 0.75, 0.25);
   transport.row_sum = Eigen::Vector3d(0.5, 0.5, 0.5);
-  transport.lost = {Eigen::Vector3d(0.5, 0.25, 0.5), Eigen::Vector3d(0, 0.25, 0), 64};
+  transport.lost = {Eigen::Vector3d(0.5, 0.25, 0.5), Eigen::Vector3d(0, 0.25, 0), Eigen::Vector3d(0, 0, 0.5), 64};
   transport.closure = "scaling";
   const Eigen::Array3d flux(1, 2, 3);
   simulation.balance = {flux, flux, flux, flux, flux, 1e-7};

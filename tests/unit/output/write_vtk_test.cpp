@@ -96,7 +96,8 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("area"), simulation.problem.area);
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
   expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
-  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"), vertex_means(simulation.mesh, radiance));
+  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"),
+                vertex_means(simulation.mesh, radiance, simulation.problem.area));
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);
@@ -120,6 +121,8 @@ TEST(WriteVtk, TellsWhereItComesFrom) {
   EXPECT_EQ(text(polygons, "sha256"), "00ff");
   EXPECT_EQ(text(polygons, "seed"), "1152921504606846977");
   EXPECT_EQ(number(polygons, "exposure"), exposure);
+  ASSERT_NE(polygons->GetFieldData()->GetArray("up"), nullptr);
+  EXPECT_EQ(Vector(polygons->GetFieldData()->GetArray("up")->GetTuple3(0)), Vector::UnitZ());
   EXPECT_EQ(number(polygons, "converged"), 1);
   EXPECT_EQ(number(polygons, "iteration", 1), 1);
   EXPECT_EQ(number(polygons, "iteration_relative_residual", 1), 1e-7);

@@ -1,0 +1,105 @@
+// Compares the irradiance of the open Cornell box with that of two independent renderers, at points.
+// usage: benchmark_cornell_reference FOLDER PATCHES...
+// FOLDER holds cornell.obj (millimetres) and cornell_reference.csv:
+// sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
+#include "patchlight/base/parallel.h"
+#include "patchlight/gather/gather.h"
+#include "patchlight/input/read_scene.h"
+#include "patchlight/mesh/interpolate.h"
+#include "patchlight/mesh/patch_lookup.h"
+#include "patchlight/simulate.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace patchlight;
+
+struct Reference {
+  std::vector<Sensor> sensors;
+  Field irradiance;
+};
+
+// The rows without a flag, in metres.
+Reference read_reference(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  Reference reference;
+  std::vector<Spectrum> values;
+  while (std::getline(stream, line)) {
+    std::vector<double> numbers;
+    std::stringstream fields(line.substr(line.find(',') + 1));
+    for (std::string field; std::getline(fields, field, ',');) numbers.push_back(std::strtod(field.c_str(), nullptr));
+    if (numbers.at(14) != 0) continue;
+    reference.sensors.push_back(
+        {1e-3 * Point(numbers[2], numbers[3], numbers[4]), Vector(numbers[5], numbers[6], numbers[7])});
+    values.push_back(rgb(numbers[8], numbers[9], numbers[10]));
+  }
+  reference.irradiance.resize(static_cast<Eigen::Index>(values.size()), 3);
+  for (std::size_t k = 0; k < values.size(); ++k) reference.irradiance.row(static_cast<Eigen::Index>(k)) = values[k];
+  return reference;
+}
+
+// The solution's irradiance, interpolated between the vertices of the patch at each point.
+Field interpolated(const Simulation& simulation, const Occluder& occluder, const std::vector<Sensor>& sensors) {
+  const PatchLookup lookup(simulation.mesh);
+  const Field at_vertices = vertex_means(simulation.mesh, simulation.solution.irradiance, simulation.problem.area);
+  Field result = Field::Zero(static_cast<Eigen::Index>(sensors.size()), at_vertices.cols());
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const Ray down{sensors[k].point + 1e-3 * sensors[k].normal, -sensors[k].normal};
+    const auto hit = occluder.first_hits(std::vector<Ray>{down})[0];
+    const auto patch = hit ? lookup.patch_at(hit->polygon, hit->side, hit->point) : std::nullopt;
+    if (patch) result.row(static_cast<Eigen::Index>(k)) = interpolate(simulation.mesh, at_vertices, *patch, hit->point);
+  }
+  return result;
+}
+
+void print_differences(const char* how, const Field& ours, const Field& reference) {
+  std::printf("  %-14s", how);
+  for (Eigen::Index band = 0; band < 3; ++band) {
+    const Eigen::ArrayXd difference = ours.col(band) - reference.col(band);
+    Eigen::ArrayXd relative = difference.abs() / reference.col(band);
+    std::nth_element(relative.begin(), relative.begin() + relative.size() / 2, relative.end());
+    const double median = relative[relative.size() / 2];
+    const double rms = std::sqrt(difference.square().mean()) / reference.col(band).mean();
+    const double bias = difference.mean() / reference.col(band).mean();
+    std::printf("  %c: median %.3f %%  rms %.3f %%  bias %+.3f %%", "RGB"[band], 100 * median, 100 * rms, 100 * bias);
+  }
+  std::printf("\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3 || !std::filesystem::exists(std::filesystem::path(argv[1]) / "cornell_reference.csv")) {
+    std::printf("skipped: expected a folder with cornell_reference.csv, and numbers of patches\n");
+    return 0;
+  }
+  const std::filesystem::path folder = argv[1];
+  const Reference reference = read_reference(folder / "cornell_reference.csv");
+  const Scene scene = read_scene(folder / "cornell.obj", {.metres_per_unit = 1e-3});
+  const Occluder occluder(scene);
+  for (int k = 2; k < argc; ++k) {
+    const double begin = cpu_seconds();
+    const Simulation simulation =
+        simulate(scene, {.patches = std::strtoul(argv[k], nullptr, 10), .sides = Sides::front});
+    const double solved = cpu_seconds();
+    const Field gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
+                                             simulation.problem.exitance, occluder, reference.sensors);
+    std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
+                reference.sensors.size(), solved - begin, cpu_seconds() - solved);
+    print_differences("gathered", gathered, reference.irradiance);
+    print_differences("interpolated", interpolated(simulation, occluder, reference.sensors), reference.irradiance);
+  }
+  return 0;
+}

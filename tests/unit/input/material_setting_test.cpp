@@ -1,0 +1,50 @@
+#include "patchlight/base/error.h"
+#include "patchlight/input/read_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using Quantity = MaterialSetting::Quantity;
+
+TEST(ParseMaterialSetting, ReadsMaterialQuantityAndValues) {
+  const MaterialSetting setting = parse_material_setting("light.radiance=17,12,4.5");
+  EXPECT_EQ(setting.material, "light");
+  EXPECT_EQ(setting.quantity, Quantity::radiance);
+  ASSERT_EQ(setting.value.size(), 3);
+  EXPECT_EQ(setting.value[0], 17);
+  EXPECT_EQ(setting.value[1], 12);
+  EXPECT_EQ(setting.value[2], 4.5);
+}
+
+TEST(ParseMaterialSetting, OneValueStandsForAllBands) {
+  const MaterialSetting setting = parse_material_setting("w.reflectance=0.25");
+  EXPECT_EQ(setting.quantity, Quantity::reflectance);
+  ASSERT_EQ(setting.value.size(), 1);
+  EXPECT_EQ(setting.value[0], 0.25);
+}
+
+TEST(ParseMaterialSetting, NamesMayHoldDotsAndEqualSigns) {
+  EXPECT_EQ(parse_material_setting("Material.001.exitance=1").material, "Material.001");
+  EXPECT_EQ(parse_material_setting("a=b.c.exitance=1").material, "a=b.c");
+}
+
+TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
+  for (const char* text : {"", "light", "light=1", "light.radiance", ".radiance=1", "light.colour=1",
+                           "light.radiance=", "light.radiance=1,2", "light.radiance=1,2,3,4", "light.radiance=1,,2",
+                           "light.radiance=1,2,x", "light.radiance=nan", "light.radiance=inf", "light.exitance=-1",
+                           "light.reflectance=0.5,0.5,1.01"}) {
+    SCOPED_TRACE(text);
+    try {
+      parse_material_setting(text);
+      FAIL() << "accepted";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("--set: ", 0), 0U) << error.what();
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace patchlight

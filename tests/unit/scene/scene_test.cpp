@@ -1,0 +1,114 @@
+#include "patchlight/scene/scene.h"
+
+#include "patchlight/base/error.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+
+namespace patchlight {
+namespace {
+
+Scene square_scene() {
+  Scene scene;
+  scene.file = "room.obj";
+  scene.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {9, 9, 9}};
+  scene.polygons = {{.corners = {0, 1, 2, 3}, .material = 0, .group = 0, .line = 12}};
+  scene.materials = {{"wall", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}};
+  scene.groups = {"all"};
+  return scene;
+}
+
+// What check() says of a scene; empty when it is content.
+std::string refusal(const Scene& scene) {
+  try {
+    check(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+bool begins(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+TEST(Scene, TheFrontIsWhereCornersRunCounterClockwise) {
+  Scene scene = square_scene();
+  EXPECT_EQ(front_normal(scene, 0), Vector(0, 0, 1));
+  std::swap(scene.polygons[0].corners[1], scene.polygons[0].corners[3]);
+  EXPECT_EQ(front_normal(scene, 0), Vector(0, 0, -1));
+  scene.polygons[0].corners = {0, 1, 1};
+  EXPECT_EQ(front_normal(scene, 0), Vector(0, 0, 0));
+}
+
+TEST(Scene, BoundsCoverThePolygonsAlone) {
+  const Box box = bounds(square_scene());
+  EXPECT_EQ(box.min(), Point(0, 0, 0));
+  EXPECT_EQ(box.max(), Point(2, 2, 0));
+}
+
+TEST(Scene, ALampEmitsInAnyBand) {
+  Scene scene = square_scene();
+  EXPECT_FALSE(is_lamp(scene, 0));
+  scene.materials[0].exitance = rgb(0, 0, 1e-9);
+  EXPECT_TRUE(is_lamp(scene, 0));
+}
+
+TEST(CheckScene, AcceptsReflectancesFromZeroToOne) {
+  Scene scene = square_scene();
+  for (const double rho : {0.0, 0.5, 1.0}) {
+    scene.materials[0].reflectance = rgb(rho, rho, rho);
+    EXPECT_EQ(refusal(scene), "");
+  }
+}
+
+TEST(CheckScene, NamesTheMaterialThatIsOutOfRange) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double rho : {-1e-9, 1 + 1e-9, nan, infinity}) {
+    Scene scene = square_scene();
+    scene.materials[0].reflectance[1] = rho;
+    EXPECT_TRUE(begins(refusal(scene), "room.obj: material 'wall' has reflectance")) << rho;
+  }
+  for (const double exitance : {-1e-9, nan, infinity}) {
+    Scene scene = square_scene();
+    scene.materials[0].exitance[2] = exitance;
+    EXPECT_TRUE(begins(refusal(scene), "room.obj: material 'wall' has exitance")) << exitance;
+  }
+}
+
+TEST(CheckScene, NamesTheLineOfABadPolygon) {
+  Scene scene = square_scene();
+  scene.polygons[0].corners = {0, 1};
+  EXPECT_TRUE(begins(refusal(scene), "room.obj:12: this face has 2 corners"));
+  scene.polygons[0].corners = {0, 1, 5};
+  EXPECT_TRUE(begins(refusal(scene), "room.obj:12: this face uses vertex 6 of 5"));
+  scene.polygons[0].corners = {0, 1, 1};
+  EXPECT_TRUE(begins(refusal(scene), "room.obj:12: this face has no area"));
+  scene.polygons[0].corners = {0, 1, 2, 4};
+  EXPECT_NE(refusal(scene).find("room.obj:12: the corners of this face do not lie in one plane"), std::string::npos);
+  scene.polygons[0].line = 0;
+  EXPECT_TRUE(begins(refusal(scene), "room.obj: the corners"));
+}
+
+TEST(CheckScene, RefusesAnEmptySceneAndVerticesThatAreNotFinite) {
+  Scene scene = square_scene();
+  scene.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(begins(refusal(scene), "room.obj: "));
+  scene = square_scene();
+  scene.polygons.clear();
+  EXPECT_TRUE(begins(refusal(scene), "room.obj: found no faces"));
+}
+
+// Whether a face is planar or has an area is a question of shape, not of size.
+TEST(CheckScene, DoesNotDependOnTheSizeOfTheModel) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    Scene scene = square_scene();
+    for (Point& vertex : scene.vertices) vertex *= scale;
+    EXPECT_EQ(refusal(scene), "") << scale;
+    scene.polygons[0].corners = {0, 1, 2, 4};
+    EXPECT_NE(refusal(scene), "") << scale;
+  }
+}
+
+}  // namespace
+}  // namespace patchlight

@@ -1,0 +1,228 @@
+#include "patchlight/scene/sides.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+
+namespace patchlight {
+namespace {
+
+constexpr MaterialIndex wall = 0;
+constexpr MaterialIndex lamp = 1;
+
+Scene empty_scene() {
+  Scene scene;
+  scene.file = "room.obj";
+  scene.materials = {{"wall", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {"lamp", rgb(0, 0, 0), rgb(1, 1, 1)}};
+  scene.groups = {"all"};
+  return scene;
+}
+
+// Every polygon brings its own vertices, as many exporters write them.
+Scene with_polygon(Scene scene, const std::vector<Point>& points, MaterialIndex material = wall) {
+  Polygon polygon;
+  for (const Point& point : points) {
+    polygon.corners.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.push_back(point);
+  }
+  polygon.material = material;
+  polygon.line = static_cast<std::uint32_t>(scene.polygons.size()) + 1;
+  scene.polygons.push_back(polygon);
+  return scene;
+}
+
+enum class Normals { outward, inward };
+
+Scene with_cube(Scene scene, const Point& centre, double size, Normals normals) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      const Vector n = sign * Vector::Unit(axis);
+      const Vector u = Vector::Unit((axis + 1) % 3);
+      const Vector v = n.cross(u);  // u x v = n
+      std::vector<Point> corners;
+      for (const auto& [s, t] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+        corners.emplace_back(centre + size / 2 * (n + s * u + t * v));
+      }
+      if (normals == Normals::inward) std::reverse(corners.begin(), corners.end());
+      scene = with_polygon(std::move(scene), corners);
+    }
+  }
+  return scene;
+}
+
+// A small square lamp whose front looks down.
+Scene with_lamp(Scene scene, const Point& centre, double size = 0.1) {
+  const double h = size / 2;
+  return with_polygon(
+      std::move(scene),
+      {centre + Vector(-h, -h, 0), centre + Vector(-h, h, 0), centre + Vector(h, h, 0), centre + Vector(h, -h, 0)},
+      lamp);
+}
+
+using Pair = std::pair<int, int>;
+
+// Front and back of a polygon.
+Pair sides_of(const KeptSides& kept, PolygonIndex polygon) { return {kept.front[polygon], kept.back[polygon]}; }
+
+constexpr Pair front_only = {1, 0};
+constexpr Pair back_only = {0, 1};
+constexpr Pair both_sides = {1, 1};
+constexpr Pair no_side = {0, 0};
+
+void expect_all(const KeptSides& kept, PolygonIndex begin, PolygonIndex end, const Pair& expected) {
+  for (PolygonIndex p = begin; p < end; ++p) EXPECT_EQ(sides_of(kept, p), expected) << "polygon " << p;
+}
+
+KeptSides automatic(const Scene& scene) { return kept_sides(scene, Sides::automatic); }
+
+TEST(KeptSides, FrontAndBothDoNotLookAtTheScene) {
+  const Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 0});
+  const KeptSides front = kept_sides(scene, Sides::front);
+  expect_all(front, 0, 7, front_only);
+  EXPECT_FALSE(front.emit_from_back);
+  const KeptSides both = kept_sides(scene, Sides::both);
+  expect_all(both, 0, 7, both_sides);
+  EXPECT_TRUE(both.emit_from_back);
+  EXPECT_EQ(both.notes.size(), 1U) << "the doubled flux is reported";
+}
+
+TEST(KeptSides, ASolidWithoutALampKeepsItsOuterSides) {
+  const Scene outward = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2});
+  expect_all(automatic(outward), 0, 6, front_only);
+  const Scene inward = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 2});
+  expect_all(automatic(inward), 0, 6, back_only);
+  EXPECT_EQ(sides_of(automatic(outward), 6), both_sides) << "the lamp is no solid";
+  EXPECT_FALSE(automatic(outward).emit_from_back);
+}
+
+TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
+  const KeptSides outward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 0.2}));
+  expect_all(outward, 0, 6, back_only);
+  EXPECT_TRUE(std::any_of(outward.notes.begin(), outward.notes.end(),
+                          [](const std::string& note) { return note.find("outward normals") != std::string::npos; }));
+  const KeptSides inward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2}));
+  expect_all(inward, 0, 6, front_only);
+}
+
+TEST(KeptSides, ASolidAroundOneOfTwoLampsKeepsBothSides) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  scene = with_lamp(with_lamp(std::move(scene), {0, 0, 0.2}), {0, 0, 2});
+  expect_all(automatic(scene), 0, 6, both_sides);
+}
+
+TEST(KeptSides, ALampThatIsPartOfTheShellShinesWhereItsFrontLooks) {
+  Scene inward = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  inward.polygons[5].material = lamp;
+  expect_all(automatic(inward), 0, 6, front_only);
+  Scene outward = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  outward.polygons[5].material = lamp;
+  expect_all(automatic(outward), 0, 6, front_only);
+}
+
+TEST(KeptSides, ARoomHoldsItsFurniture) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward);        // 0 to 5: the room
+  scene = with_cube(std::move(scene), {0, 0, -1}, 1, Normals::outward);         // 6 to 11: a solid
+  scene = with_lamp(std::move(scene), {0, 0, 1.5});                             // 12
+  scene = with_polygon(std::move(scene), {{1, 1, 0}, {1.5, 1, 0}, {1, 1, 1}});  // 13: a sheet
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 12, front_only);
+  expect_all(kept, 12, 14, both_sides);
+}
+
+TEST(KeptSides, AnOpenOrInconsistentOrBranchedSurfaceKeepsEverything) {
+  Scene open = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  open.polygons.pop_back();
+  expect_all(automatic(open), 0, 5, both_sides);
+
+  Scene inconsistent = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  std::reverse(inconsistent.polygons[2].corners.begin(), inconsistent.polygons[2].corners.end());
+  expect_all(automatic(inconsistent), 0, 6, both_sides);
+
+  // Two cubes that share an edge: four polygons meet there.
+  Scene branched = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  branched = with_cube(std::move(branched), {1, 1, 0}, 1, Normals::outward);
+  expect_all(automatic(branched), 0, 12, both_sides);
+
+  // A sheet modelled as two coincident polygons encloses nothing.
+  Scene fold = with_polygon(empty_scene(), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  fold = with_polygon(std::move(fold), {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 0}});
+  expect_all(automatic(fold), 0, 2, both_sides);
+}
+
+TEST(KeptSides, TouchingAtACornerDoesNotJoinSolids) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  scene = with_cube(std::move(scene), {1, 1, 1}, 1, Normals::inward);
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 6, front_only);
+  expect_all(kept, 6, 12, back_only);
+}
+
+TEST(KeptSides, WithoutALampNothingIsLeftOutButTheInsides) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward);
+  scene = with_polygon(std::move(scene), {{1, 1, 0}, {1.5, 1, 0}, {1, 1, 1}});
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 6, back_only);
+  EXPECT_EQ(sides_of(kept, 6), both_sides);
+}
+
+// A concave lamp whose centroid lies outside of it, around a pillar: its own inside counts, not its centroid's.
+TEST(KeptSides, AConcaveLampIsLookedForWhereItIs) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  // A U around the cube, in the plane z = 0.1, front down.
+  scene = with_polygon(
+      std::move(scene),
+      {{-2, 2, 0.1}, {-1, 2, 0.1}, {-1, -1, 0.1}, {1, -1, 0.1}, {1, 2, 0.1}, {2, 2, 0.1}, {2, -2, 0.1}, {-2, -2, 0.1}},
+      lamp);
+  ASSERT_LT(front_normal(scene, 6).z(), 0.5);
+  expect_all(automatic(scene), 0, 6, front_only);
+}
+
+// Numbering and position carry no meaning: the same sides are kept after the polygons are shuffled and the model is
+// turned and moved.
+TEST(KeptSides, DoNotDependOnOrderOrPosition) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::outward);
+  scene = with_cube(std::move(scene), {0, 0, -1}, 1, Normals::outward);
+  scene = with_cube(std::move(scene), {1, 1, 1}, 0.3, Normals::inward);
+  scene = with_lamp(std::move(scene), {0, 0, 1.5});
+  const KeptSides expected = automatic(scene);
+
+  std::vector<PolygonIndex> order(scene.polygons.size());
+  std::iota(order.begin(), order.end(), PolygonIndex{0});
+  std::mt19937 random(1);
+  const Eigen::AngleAxisd rotation(1.1, Vector(0.3, 1, -2).normalized());
+  for (int trial = 0; trial < 5; ++trial) {
+    std::shuffle(order.begin(), order.end(), random);
+    Scene other = scene;
+    for (Point& vertex : other.vertices) vertex = rotation * vertex + Vector(100, -50, 20);
+    for (std::size_t k = 0; k < order.size(); ++k) other.polygons[k] = scene.polygons[order[k]];
+    const KeptSides kept = automatic(other);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      EXPECT_EQ(sides_of(kept, static_cast<PolygonIndex>(k)), sides_of(expected, order[k]));
+    }
+  }
+}
+
+// A slab of a thousandth of the room's size still has an inside and an outside.
+TEST(KeptSides, AThinSlabNextToALampStaysOutside) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward);
+  scene = with_cube(std::move(scene), {0, 0, 1}, 0.004, Normals::outward);
+  scene = with_lamp(std::move(scene), {0, 0, 1.0 + 0.002 + 0.004}, 0.004);
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 12, front_only);
+}
+
+// Nested rooms: the lamp is inside of both shells, so their outer sides are dark, and the space between them is not
+// known to be.
+TEST(KeptSides, ALampInTheInnermostShellIsHeldByAll) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward);
+  scene = with_cube(std::move(scene), {0, 0, 0}, 3, Normals::outward);
+  scene = with_lamp(std::move(scene), {0, 0, 0});
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 6, front_only);
+  expect_all(kept, 6, 12, back_only);
+  for (PolygonIndex p = 0; p < 12; ++p) EXPECT_NE(sides_of(kept, p), no_side);
+}
+
+}  // namespace
+}  // namespace patchlight
