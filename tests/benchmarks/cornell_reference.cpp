@@ -87,12 +87,16 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argv[1];
   const Reference reference = read_reference(folder / "cornell_reference.csv");
-  const Scene scene = read_scene(folder / "cornell.obj", {.metres_per_unit = 1e-3});
+  ReadOptions options;
+  options.metres_per_unit = 1e-3;
+  const Scene scene = read_scene(folder / "cornell.obj", options);
   const Occluder occluder(scene);
   for (int k = 2; k < argc; ++k) {
     const double begin = cpu_seconds();
-    const Simulation simulation =
-        simulate(scene, {.patches = std::strtoul(argv[k], nullptr, 10), .sides = Sides::front});
+    Request request;
+    request.patches = std::strtoul(argv[k], nullptr, 10);
+    request.sides = Sides::front;
+    const Simulation simulation = simulate(scene, request);
     const double solved = cpu_seconds();
     const Field gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
                                              simulation.problem.exitance, occluder, reference.sensors);
