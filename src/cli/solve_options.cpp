@@ -26,7 +26,7 @@ struct SolveOptions {
   std::string model, result, report, picture, points, points_output;
   std::vector<std::string> settings;
   double metres_per_unit = 1;
-  Vector up = Vector::UnitZ();
+  std::optional<Vector> up;
   std::optional<double> max_edge;
   std::optional<CameraOption> camera;
   std::optional<PictureColors> colors;
@@ -90,7 +90,8 @@ void add_model(CLI::App& command, SolveOptions& options) {
     options.metres_per_unit =
         choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
   });
-  add(command, "--up", "y|z", "the model's upright axis, for the picture; default z",
+  add(command, "--up", "y|z",
+      "the model's upright axis, for the picture; default: the one\nagainst which the lamps shine, else z",
       [&options](const std::string& text) {
         options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });
@@ -126,6 +127,10 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       [&request](const std::string& text) {
         const auto inside = [](double x) { return x > 0 && x < 1; };
         request.tolerance = number("--tolerance", text, "a number above 0 and below 1", inside);
+      });
+  add(command, "--max-iterations", "N", "the solver gives up after so many iterations; default 1000",
+      [&request](const std::string& text) {
+        request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
       });
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
       [&request](const std::string& text) {

@@ -122,9 +122,9 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
                      "the extension '" + extension(file) + "' is not known; expected a model file (.obj)");
   }
   Scene scene = read_obj(file, options.metres_per_unit);
-  scene.up = options.up;
   scene.materials = changed(std::move(scene.materials), options.settings);
   check(scene);
+  scene.up = options.up ? *options.up : upright_axis(scene);
   return scene;
 }
 

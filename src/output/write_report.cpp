@@ -53,6 +53,7 @@ Json request_part(const Request& request) {
   part["sides"] = name_of_sides(request.sides);
   part["solver"] = name_of(request.solver);
   part["tolerance"] = request.tolerance;
+  part["max_iterations"] = request.max_iterations;
   part["samples"] = request.samples;
   part["seed"] = request.seed;
   part["threads"] = request.threads;

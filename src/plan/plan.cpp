@@ -53,7 +53,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
       request.max_edge ? *request.max_edge : max_edge_for(scene, plan.sides, request.patches.value_or(default_patches));
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
-  plan.solver = {request.solver, request.tolerance, plan.solver.max_iterations};
+  plan.solver = {request.solver, request.tolerance, request.max_iterations};
   plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
   return plan;
 }

@@ -88,6 +88,17 @@ bool is_lamp(const Scene& scene, PolygonIndex polygon) {
   return (scene.materials[scene.polygons[polygon].material].exitance > 0).any();
 }
 
+Vector upright_axis(const Scene& scene) {
+  Vector shining = Vector::Zero();
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Spectrum& exitance = scene.materials[scene.polygons[p].material].exitance;
+    shining += exitance.sum() * area_vector(corner_points(scene, p));
+  }
+  constexpr double cosine_of_30_degrees = 0.866;
+  const bool along_y = -shining.y() > cosine_of_30_degrees * shining.norm();
+  return along_y ? Vector::UnitY() : Vector::UnitZ();
+}
+
 Box bounds(const Scene& scene) {
   Box box;
   for (const Polygon& polygon : scene.polygons) {

@@ -107,6 +107,7 @@ class RefusalTest(ToolTest):
             "--patches": ("0", "-5", "1.5", "many"),
             "--tolerance": ("0", "1", "-1e-6", "nan"),
             "--samples": ("3", "-1", "16.5"),
+            "--max-iterations": ("-1", "ten"),
             "--seed": ("-1", "x", "99999999999999999999999"),
             "--threads": ("-1", "two"),
         }.items():

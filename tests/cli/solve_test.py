@@ -11,7 +11,7 @@ import unittest
 from support import TOOL, ToolTest
 
 OPTIONS = """--output --report --picture --false-color --camera --points --points-output --unit --up --sides --set --max-edge
---patches --solver --tolerance --samples --seed --threads --quiet --verbose --help""".split()
+--patches --solver --tolerance --max-iterations --samples --seed --threads --quiet --verbose --help""".split()
 
 NOT_CONVERGED, INTERRUPTED = 3, 130
 

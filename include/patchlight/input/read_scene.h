@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,9 @@ struct MaterialSetting {
 MaterialSetting parse_material_setting(const std::string& text);
 
 struct ReadOptions {
-  double metres_per_unit = 1;  ///< length of one model unit
-  Vector up = Vector::UnitZ();
-  std::vector<MaterialSetting> settings;
+  double metres_per_unit = 1;     ///< length of one model unit
+  std::optional<Vector> up = {};  ///< if not given, upright_axis() of the scene
+  std::vector<MaterialSetting> settings = {};
 };
 
 /// Reads a model; the format follows from the extension (.obj). Lengths are converted to metres, Ke (emitted radiance)

@@ -14,12 +14,13 @@ namespace patchlight {
 
 /// What the user asks for; what is left open the plan fills in.
 struct Request {
-  std::optional<double> max_edge;      ///< longest patch edge, metres
-  std::optional<std::size_t> patches;  ///< or the number of kept patches
+  std::optional<double> max_edge = {};      ///< longest patch edge, metres
+  std::optional<std::size_t> patches = {};  ///< or the number of kept patches
   Sides sides = Sides::automatic;
   Solver solver = Solver::gauss_seidel;
-  double tolerance = 1e-6;  ///< the solver's relative error
-  int samples = 16;         ///< shadow rays of a partly occluded pair of patches
+  double tolerance = 1e-6;    ///< the solver's relative error
+  int max_iterations = 1000;  ///< after which the solver gives up
+  int samples = 16;           ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all processors
 };

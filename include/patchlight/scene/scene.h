@@ -55,6 +55,10 @@ Vector front_normal(const Scene& scene, PolygonIndex polygon);
 /// True when the polygon's material emits in any band.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
 
+/// The axis that points up, guessed: opposite to where the lamps shine on the average, if that is nearer to the y or
+/// the z axis than 30 degrees; z otherwise. For models whose files do not say.
+Vector upright_axis(const Scene& scene);
+
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
 
