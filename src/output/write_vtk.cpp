@@ -2,9 +2,10 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/mesh/interpolate.h"
 #include "patchlight/output/whole_file.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
+#include "patchlight/visibility/occluder.h"
 
 #include <numbers>
 #include <vtkCallbackCommand.h>
@@ -104,7 +105,7 @@ Pointer<vtkPolyData> geometry(const PatchMesh& mesh) {
   return polygons;
 }
 
-void add_values(vtkPolyData& polygons, const Simulation& simulation, double exposure) {
+void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
   const PatchMesh& mesh = simulation.mesh;
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
   Field luminances(radiance.rows(), 1);
@@ -125,7 +126,8 @@ void add_values(vtkPolyData& polygons, const Simulation& simulation, double expo
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance, simulation.problem.area)));
+  const SmoothField smooth_radiance = smooth(mesh, radiance, simulation.problem.area, Occluder(scene));
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", smooth_radiance.at_vertices));
 }
 
 template <class Value>
@@ -185,7 +187,7 @@ void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
 void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                const Provenance& provenance) {
   const Pointer<vtkPolyData> polygons = geometry(simulation.mesh);
-  add_values(*polygons, simulation, provenance.exposure);
+  add_values(*polygons, scene, simulation, provenance.exposure);
   add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
   add_history(*polygons->GetFieldData(), simulation);
 

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/mesh/interpolate.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
 
 #include "temporary_folder.h"
@@ -97,7 +97,7 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
   expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
   expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"),
-                vertex_means(simulation.mesh, radiance, simulation.problem.area));
+                smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);
