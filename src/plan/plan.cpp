@@ -51,6 +51,8 @@ Plan make_plan(const Scene& scene, const Request& request) {
   plan.sides = kept_sides(scene, request.sides);
   plan.max_edge =
       request.max_edge ? *request.max_edge : max_edge_for(scene, plan.sides, request.patches.value_or(default_patches));
+  // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
+  plan.probes = std::max(plan.probes, request.samples / 4);
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
   plan.solver = {request.solver, request.tolerance, request.max_iterations};
