@@ -34,7 +34,8 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
     problem.reflectance.row(i) = material.reflectance;
-    if (mesh.side[i] == Side::front || emit_from_back) problem.exitance.row(i) = material.exitance;
+    const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
+    if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
   }
   return problem;
 }

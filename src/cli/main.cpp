@@ -1,6 +1,7 @@
 #include "patchlight/base/error.h"
 
 #include "cli/arguments.h"
+#include "cli/check.h"
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
@@ -22,6 +23,7 @@ ExitCode run(int count, const char* const* values) {
     std::cout << information->text;
     return good;
   }
+  if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
   return solve(std::get<SolveArguments>(arguments));
 }
 

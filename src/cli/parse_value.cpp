@@ -59,4 +59,8 @@ Point point(const std::string& option, const std::string& text) {
   return result;
 }
 
+double unit_length(const std::string& text) {
+  return choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
+}
+
 }  // namespace patchlight::cli

@@ -30,6 +30,9 @@ std::uint64_t whole_number(const std::string& option, const std::string& text, s
 /// The value of an option as a point X,Y,Z. \throws UsageError.
 Point point(const std::string& option, const std::string& text);
 
+/// The value of --unit, m, cm, mm, in or ft, in metres. \throws UsageError.
+double unit_length(const std::string& text);
+
 /// The sentence that refuses a value.
 UsageError refusal(const std::string& option, const std::string& found, const std::string& expected);
 

@@ -86,10 +86,8 @@ void add_points(CLI::App& command, SolveOptions& options) {
 
 void add_model(CLI::App& command, SolveOptions& options) {
   command.add_option("MODEL", options.model, "the model (.obj with .mtl)")->option_text(" ");
-  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m", [&options](const std::string& text) {
-    options.metres_per_unit =
-        choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
-  });
+  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m",
+      [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
   add(command, "--up", "y|z",
       "the model's upright axis, for the picture; default: the one\nagainst which the lamps shine, else z",
       [&options](const std::string& text) {

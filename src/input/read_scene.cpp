@@ -1,6 +1,7 @@
 #include "patchlight/input/read_scene.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/repair.h"
 
 #include "input/read_obj.h"
 #include "input/text.h"
@@ -123,8 +124,15 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   }
   Scene scene = read_obj(file, options.metres_per_unit);
   scene.materials = changed(std::move(scene.materials), options.settings);
+  scene = repair(std::move(scene));
+  if (scene.polygons.empty() && !scene.problems.empty()) {
+    throw InputError(scene.file, "no face is left of which light could come: " + scene.problems[0].what);
+  }
   check(scene);
   scene.up = options.up ? *options.up : upright_axis(scene);
+  std::vector<std::string> notes;
+  for (const Problem& problem : scene.problems) notes.push_back(problem.what);
+  scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
 }
 

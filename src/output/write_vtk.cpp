@@ -1,20 +1,16 @@
 #include "patchlight/output/write_vtk.h"
 
-#include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/output/whole_file.h"
 #include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "output/write_polydata.h"
+
 #include <numbers>
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCommand.h>
 #include <vtkDoubleArray.h>
-#include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
@@ -25,7 +21,6 @@
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataWriter.h>
 
 namespace patchlight {
 namespace {
@@ -176,12 +171,6 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   for (const auto& [name, unit] : units) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }
 
-// The first error that VTK reports, kept instead of printed.
-void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
-  auto& kept = *static_cast<std::string*>(message);
-  if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
-}
-
 }  // namespace
 
 void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
@@ -191,25 +180,7 @@ void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simu
   add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
   add_history(*polygons->GetFieldData(), simulation);
 
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::string error;
-    const vtkNew<vtkCallbackCommand> on_error;
-    on_error->SetCallback(keep_first_error);
-    on_error->SetClientData(&error);
-    const vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->SetInputData(polygons);
-    writer->SetFileName(temporary.c_str());
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToLZ4();
-    writer->SetHeaderTypeToUInt64();
-    const bool written = writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError && error.empty();
-    if (!written) {
-      throw OutputError(file.string(), "cannot be written; is the disk full?");
-    }
-  });
+  write_polydata(file, *polygons);
 }
 
 }  // namespace patchlight

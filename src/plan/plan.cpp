@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/plan/survey.h"
 #include "patchlight/visibility/convex_hull.h"
 
 #include <algorithm>
@@ -17,12 +18,7 @@ bool has_lamp(const Scene& scene) {
 }
 
 void require_lamp(const Scene& scene) {
-  if (has_lamp(scene)) return;
-  std::string names;
-  for (const Material& material : scene.materials) names += (names.empty() ? "" : ", ") + material.name;
-  throw InputError(scene.file,
-                   "found no lamp: no material of a face emits. Expected Ke above 0 in at least one; use --set " +
-                       std::string("MATERIAL.radiance=R,G,B with one of: ") + names);
+  if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
 }
 
 Decision decide_occlusion(const Scene& scene) {

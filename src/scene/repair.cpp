@@ -1,0 +1,288 @@
+#include "patchlight/scene/repair.h"
+
+#include "patchlight/scene/shells.h"
+#include "patchlight/scene/weld.h"
+
+#include "scene/coincident.h"
+#include "scene/simple_polygon.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+using Faces = std::vector<ProblemFace>;
+
+ProblemFace face_of(const Scene& scene, const Polygon& polygon) {
+  ProblemFace face{.corners = {}, .file = polygon.file, .line = polygon.line, .face = polygon.face};
+  for (const std::uint32_t corner : polygon.corners) face.corners.push_back(scene.vertices[corner]);
+  return face;
+}
+
+// "3 faces", "1 face".
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+// "3 faces (first at room.obj:12)".
+std::string listed(const Scene& scene, const Faces& faces) {
+  const ProblemFace& first = faces.front();
+  const std::string& file = first.file < scene.files.size() ? scene.files[first.file] : scene.file;
+  const std::string line = first.line > 0 ? ":" + std::to_string(first.line) : "";
+  return counted(faces.size(), "face") + (faces.size() == 1 ? " (" : " (first at ") + file + line + ")";
+}
+
+// The scene with one more problem, unless no face is concerned. `does` follows the number of faces: "have no area".
+Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string& does) {
+  if (faces.empty()) return scene;
+  const std::string what = listed(scene, faces) + " " + does;
+  scene.problems.push_back({kind, faces.size(), what, std::move(faces)});
+  return scene;
+}
+
+Scene number_faces(Scene scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) scene.polygons[p].face = p;
+  return scene;
+}
+
+// Keeps one vertex of those at one place, and only those that polygons use.
+Scene weld_vertices(Scene scene) {
+  constexpr std::uint32_t unused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> number(scene.vertices.size(), unused);
+  for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t corner : polygon.corners) number[corner] = 0;
+  }
+  std::vector<Point> used;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == unused) continue;
+    number[v] = static_cast<std::uint32_t>(used.size());
+    used.push_back(scene.vertices[v]);
+  }
+  const double distance = weld_distance(bounds(scene));
+  const std::vector<std::uint32_t> stands_for = welded(used, distance);
+
+  std::size_t moved = 0;
+  std::vector<std::uint32_t> new_number(used.size());
+  scene.vertices.clear();
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    new_number[v] = static_cast<std::uint32_t>(scene.vertices.size());
+    if (stands_for[v] == v) {
+      scene.vertices.push_back(used[v]);
+    } else {
+      new_number[v] = new_number[stands_for[v]];
+      moved += used[v] != used[stands_for[v]];
+    }
+  }
+  for (Polygon& polygon : scene.polygons) {
+    for (std::uint32_t& corner : polygon.corners) corner = new_number[number[corner]];
+  }
+  if (moved == 0) return scene;
+  std::ostringstream what;
+  what << (moved == 1 ? "1 vertex is" : std::to_string(moved) + " vertices are") << " within " << distance
+       << " m of another one: each pair is taken as one vertex";
+  scene.problems.push_back({ProblemKind::welded_vertices, moved, what.str(), {}});
+  return scene;
+}
+
+// A loop without corners that repeat the one before, and without spikes: a b a becomes a.
+std::vector<std::uint32_t> without_repetition(const std::vector<std::uint32_t>& corners) {
+  std::vector<std::uint32_t> kept;
+  for (const std::uint32_t corner : corners) {
+    if (!kept.empty() && kept.back() == corner) continue;
+    if (kept.size() > 1 && kept[kept.size() - 2] == corner) {
+      kept.pop_back();
+      continue;
+    }
+    kept.push_back(corner);
+  }
+  // The same across the loop's end.
+  for (bool changed = true; changed && kept.size() > 1;) {
+    const std::size_t n = kept.size();
+    changed = true;
+    if (kept[n - 1] == kept[0]) {
+      kept.pop_back();
+    } else if (n > 2 && kept[n - 2] == kept[0]) {
+      kept.resize(n - 2);
+    } else if (n > 2 && kept[n - 1] == kept[1]) {
+      kept.erase(kept.begin(), kept.begin() + 2);
+    } else {
+      changed = false;
+    }
+  }
+  return kept;
+}
+
+Scene clean_corners(Scene scene) {
+  Faces repeated;
+  for (Polygon& polygon : scene.polygons) {
+    std::vector<std::uint32_t> kept = without_repetition(polygon.corners);
+    if (kept.size() == polygon.corners.size()) continue;
+    // The others have no area and are left out as such.
+    if (kept.size() < 3) continue;
+    repeated.push_back(face_of(scene, polygon));
+    polygon.corners = std::move(kept);
+  }
+  return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
+                      "repeat a corner or go out and back along one edge; the repetition is left out");
+}
+
+// The polygon with other corners.
+Polygon with_corners(Polygon polygon, std::vector<std::uint32_t> corners) {
+  polygon.corners = std::move(corners);
+  return polygon;
+}
+
+std::vector<Polygon> in_triangles(const Polygon& polygon, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Polygon> pieces;
+  for (const auto& [a, b, c] : triangles) {
+    pieces.push_back(with_corners(polygon, {polygon.corners[a], polygon.corners[b], polygon.corners[c]}));
+  }
+  return pieces;
+}
+
+// What becomes of one polygon.
+struct Pieces {
+  std::vector<Polygon> polygons;
+  std::vector<Point> new_vertices;  // numbered after those of the scene
+  std::optional<ProblemKind> kind;
+};
+
+// A polygon that does not cross itself: whole when it is planar, else in triangles.
+Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points) {
+  const bool planar = is_planar(points);
+  if (polygon.corners.size() == 3) return {{polygon}, {}, {}};
+  const auto triangles = proper_triangles(points);
+  if (!triangles) return {{}, {}, ProblemKind::self_intersecting};
+  if (planar) return {{polygon}, {}, {}};
+  return {in_triangles(polygon, *triangles), {}, ProblemKind::non_planar};
+}
+
+// A polygon that crosses itself, cut at the crossings.
+Pieces cut_pieces(const Scene& scene, const Polygon& polygon, const std::vector<Point>& points, double width) {
+  Pieces cut{{}, {}, ProblemKind::self_intersecting};
+  for (const std::vector<Point>& loop : cut_at_crossings(points, width)) {
+    std::vector<std::uint32_t> corners;
+    for (const Point& point : loop) {
+      corners.push_back(static_cast<std::uint32_t>(scene.vertices.size() + cut.new_vertices.size()));
+      cut.new_vertices.push_back(point);
+    }
+    Polygon piece = with_corners(polygon, corners);
+    for (Polygon& simple : simple_pieces(piece, loop).polygons) cut.polygons.push_back(std::move(simple));
+  }
+  return cut;
+}
+
+Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width) {
+  std::vector<Point> points;
+  for (const std::uint32_t corner : polygon.corners) points.push_back(scene.vertices[corner]);
+  if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, ProblemKind::zero_area};
+  if (crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
+  Pieces pieces = simple_pieces(polygon, points);
+  std::erase_if(pieces.polygons, [&](const Polygon& piece) {
+    std::vector<Point> corners;
+    for (const std::uint32_t corner : piece.corners) corners.push_back(scene.vertices[corner]);
+    return is_narrow(corners, width);
+  });
+  return pieces;
+}
+
+// Leaves out polygons without area and cuts those that are not simple and planar.
+Scene make_simple(Scene scene) {
+  const double width = weld_distance(bounds(scene));
+  Faces narrow, crossing, lost, bent;
+  std::vector<Polygon> polygons;
+  polygons.reserve(scene.polygons.size());
+  for (const Polygon& polygon : scene.polygons) {
+    Pieces pieces = pieces_of(scene, polygon, width);
+    if (pieces.kind == ProblemKind::zero_area) narrow.push_back(face_of(scene, polygon));
+    if (pieces.kind == ProblemKind::non_planar) bent.push_back(face_of(scene, polygon));
+    if (pieces.kind == ProblemKind::self_intersecting) {
+      (pieces.polygons.empty() ? lost : crossing).push_back(face_of(scene, polygon));
+    }
+    scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
+    for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
+  }
+  scene.polygons = std::move(polygons);
+  scene = with_problem(std::move(scene), ProblemKind::zero_area, std::move(narrow), "without area; left out");
+  scene = with_problem(std::move(scene), ProblemKind::non_planar, std::move(bent),
+                       "with corners that do not lie in one plane; cut into triangles");
+  scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
+                       "with an outline that crosses itself; cut at the crossings, all parts facing one way");
+  return with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(lost),
+                      "with an outline that crosses itself so that no area can be told; left out");
+}
+
+Scene merge_coincident(Scene scene) {
+  const Coincidence found = find_coincident(scene);
+  Faces duplicates, covered, two_sided;
+  std::size_t other_material = 0;
+  for (const Coincidence::Pair& pair : found.pairs) {
+    Polygon& first = scene.polygons[pair.first];
+    const Polygon& second = scene.polygons[pair.second];
+    if (!pair.same_front && !first.back_material) {
+      two_sided.push_back(face_of(scene, second));
+      first.back_material = second.material;
+      continue;
+    }
+    const Side side = pair.same_front ? Side::front : Side::back;
+    duplicates.push_back(face_of(scene, second));
+    other_material += material_on(first, side) != second.material;
+    if (emits(scene, pair.second, Side::front) && !emits(scene, pair.first, side)) {
+      covered.push_back(face_of(scene, second));
+    }
+  }
+  std::vector<Polygon> kept;
+  kept.reserve(scene.polygons.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!found.is_second[p]) kept.push_back(std::move(scene.polygons[p]));
+  }
+  scene.polygons = std::move(kept);
+  const std::string others =
+      other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
+  scene = with_problem(std::move(scene), ProblemKind::covered_lamp, std::move(covered),
+                       "of lamps at the place of an earlier face that does not emit; the earlier face stays, so remove "
+                       "it or move the lamp");
+  scene = with_problem(std::move(scene), ProblemKind::duplicate_faces, std::move(duplicates),
+                       "at the place of an earlier one with the same front" + others + "; the first stays");
+  return with_problem(std::move(scene), ProblemKind::two_sided_faces, std::move(two_sided),
+                      "back to back with an earlier one; the two become one polygon with a material on each side");
+}
+
+Scene report_shells(Scene scene) {
+  const Shells shells = shells_of(scene);
+  Faces turned, branched;
+  std::size_t lamps = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!shells.turned[p] || scene.polygons[p].back_material) continue;
+    turned.push_back(face_of(scene, scene.polygons[p]));
+    lamps += is_lamp(scene, p);
+  }
+  for (const PolygonIndex p : shells.branched) branched.push_back(face_of(scene, scene.polygons[p]));
+  const std::string shine = lamps > 0 ? ", " + counted(lamps, "lamp") + " among them" : "";
+  scene = with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
+                       "turned against the faces next to them" + shine +
+                           "; they stay: --sides auto finds the right sides of closed shells, a lamp shines from its "
+                           "front, --sides front shows the wrong side");
+  if (branched.empty()) return scene;
+  const std::string what = counted(shells.branched_edges, "edge") + " of three faces or more, " +
+                           listed(scene, branched) + " at them; --sides auto keeps both sides of shells joined there";
+  scene.problems.push_back({ProblemKind::non_manifold_edges, shells.branched_edges, what, std::move(branched)});
+  return scene;
+}
+
+}  // namespace
+
+Scene repair(Scene scene) {
+  check_vertices(scene);
+  scene = number_faces(std::move(scene));
+  scene = weld_vertices(std::move(scene));
+  scene = clean_corners(std::move(scene));
+  scene = make_simple(std::move(scene));
+  scene = merge_coincident(std::move(scene));
+  scene = report_shells(std::move(scene));
+  scene.problems = worst_first(std::move(scene.problems));
+  return scene;
+}
+
+}  // namespace patchlight
