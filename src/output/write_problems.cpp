@@ -2,6 +2,7 @@
 
 #include "output/write_polydata.h"
 
+#include <algorithm>
 #include <map>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -74,8 +75,14 @@ void write_problems(const std::filesystem::path& file, const Scene& scene, const
   points->SetDataTypeToDouble();
   const vtkNew<vtkCellArray> outlines;
   for (const Cell& cell : cells) {
-    outlines->InsertNextCell(static_cast<int>(cell.face->corners.size()));
-    for (const Point& corner : cell.face->corners) outlines->InsertCellPoint(points->InsertNextPoint(corner.data()));
+    // A face of which one or two corners are left repeats the last.
+    const std::size_t least = 3;
+    const std::vector<Point>& corners = cell.face->corners;
+    const std::size_t count = std::max(least, corners.size());
+    outlines->InsertNextCell(static_cast<int>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      outlines->InsertCellPoint(points->InsertNextPoint(corners[std::min(k, corners.size() - 1)].data()));
+    }
   }
   const vtkNew<vtkPolyData> polygons;
   polygons->SetPoints(points);

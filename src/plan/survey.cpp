@@ -14,10 +14,12 @@ namespace {
 
 // A model is between a chair's part and a large building. Metres.
 constexpr double smallest_plausible = 0.4;
-constexpr double largest_plausible = 300;
+constexpr double largest_plausible = 150;
 
-// What a room measures: the guess is the unit that comes nearest. Metres.
+// What a room measures: the guess is the unit that comes nearest, inches and feet only if they come nearer by a factor
+// of four. Metres.
 constexpr double usual_size = 6;
+constexpr double rarity = 4;
 
 // A radiance to begin with where the model names none: 1,800 cd/m^2, a lit panel. W/(m^2 sr).
 constexpr double usual_radiance = 10;
@@ -25,8 +27,10 @@ constexpr double usual_radiance = 10;
 struct Unit {
   const char* name;
   double metres;
+  double handicap;
 };
-constexpr std::array<Unit, 5> units = {{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
+constexpr std::array<Unit, 5> units = {
+    {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
 
 std::string rounded(double value) {
   std::ostringstream text;
@@ -38,7 +42,9 @@ std::string rounded(double value) {
 std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return std::nullopt;
   const double in_model_units = size / scene.metres_per_unit;
-  const auto distance = [&](const Unit& unit) { return std::abs(std::log(in_model_units * unit.metres / usual_size)); };
+  const auto distance = [&](const Unit& unit) {
+    return std::abs(std::log(in_model_units * unit.metres / usual_size)) + std::log(unit.handicap);
+  };
   const Unit& best = *std::min_element(units.begin(), units.end(),
                                        [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
   const double guessed = in_model_units * best.metres;

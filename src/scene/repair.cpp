@@ -27,10 +27,12 @@ std::string counted(std::size_t count, const std::string& noun) {
 
 // "3 faces (first at room.obj:12)".
 std::string listed(const Scene& scene, const Faces& faces) {
-  const ProblemFace& first = faces.front();
-  const std::string& file = first.file < scene.files.size() ? scene.files[first.file] : scene.file;
-  const std::string line = first.line > 0 ? ":" + std::to_string(first.line) : "";
-  return counted(faces.size(), "face") + (faces.size() == 1 ? " (" : " (first at ") + file + line + ")";
+  Polygon first;
+  first.file = faces.front().file;
+  first.line = faces.front().line;
+  std::ostringstream text;
+  text << counted(faces.size(), "face") << (faces.size() == 1 ? " (" : " (first at ") << place_of(scene, first) << ')';
+  return text.str();
 }
 
 // The scene with one more problem, unless no face is concerned. `does` follows the number of faces: "have no area".
@@ -118,9 +120,8 @@ Scene clean_corners(Scene scene) {
   for (Polygon& polygon : scene.polygons) {
     std::vector<std::uint32_t> kept = without_repetition(polygon.corners);
     if (kept.size() == polygon.corners.size()) continue;
-    // The others have no area and are left out as such.
-    if (kept.size() < 3) continue;
-    repeated.push_back(face_of(scene, polygon));
+    // Those of which fewer than three corners are left have no area and are left out as such.
+    if (kept.size() >= 3) repeated.push_back(face_of(scene, polygon));
     polygon.corners = std::move(kept);
   }
   return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
@@ -148,10 +149,21 @@ struct Pieces {
   std::optional<ProblemKind> kind;
 };
 
+// The two triangles of a bent quadrilateral: of both diagonals the one over which it is bent less.
+std::vector<std::array<std::uint32_t, 3>> folded(const std::vector<Point>& points) {
+  const auto cosine = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {  // over the diagonal a c
+    const Vector one = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
+    return one.dot((points[c] - points[a]).cross(points[d] - points[a]).normalized());
+  };
+  if (cosine(0, 1, 2, 3) >= cosine(1, 2, 3, 0)) return {{0, 1, 2}, {0, 2, 3}};
+  return {{1, 2, 3}, {1, 3, 0}};
+}
+
 // A polygon that does not cross itself: whole when it is planar, else in triangles.
 Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points) {
-  const bool planar = is_planar(points);
   if (polygon.corners.size() == 3) return {{polygon}, {}, {}};
+  const bool planar = is_planar(points);
+  if (!planar && points.size() == 4) return {in_triangles(polygon, folded(points)), {}, ProblemKind::non_planar};
   const auto triangles = proper_triangles(points);
   if (!triangles) return {{}, {}, ProblemKind::self_intersecting};
   if (planar) return {{polygon}, {}, {}};
@@ -177,7 +189,8 @@ Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width) {
   std::vector<Point> points;
   for (const std::uint32_t corner : polygon.corners) points.push_back(scene.vertices[corner]);
   if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, ProblemKind::zero_area};
-  if (crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
+  const bool is_bent_quadrilateral = points.size() == 4 && !is_planar(points);
+  if (!is_bent_quadrilateral && crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
   Pieces pieces = simple_pieces(polygon, points);
   std::erase_if(pieces.polygons, [&](const Polygon& piece) {
     std::vector<Point> corners;
