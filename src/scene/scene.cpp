@@ -15,7 +15,8 @@ constexpr double planarity_tolerance = 1e-4;
 constexpr double relative_area_tolerance = 1e-12;
 
 std::string where(const Scene& scene, const Polygon& polygon) {
-  return polygon.line > 0 ? scene.file + ":" + std::to_string(polygon.line) : scene.file;
+  const std::string& file = scene.files.empty() ? scene.file : scene.files[polygon.file];
+  return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;
 }
 
 void check_material(const Scene& scene, const Material& material) {

@@ -24,6 +24,7 @@ struct Polygon {
   MaterialIndex material = 0;
   std::uint32_t group = 0;  ///< index into Scene::groups
   std::uint32_t line = 0;   ///< in the model file, from 1; 0 if unknown
+  std::uint32_t file = 0;   ///< index into Scene::files
 };
 
 /// Where a picture is taken from.
@@ -40,6 +41,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<std::string> groups;  ///< names of objects and groups
   std::string file;                 ///< the model file's name, for messages
+  std::vector<std::string> files;   ///< the files the polygons come from; empty when `file` is the only one
   std::string sha256;               ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;       ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
