@@ -59,7 +59,7 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
     throw UsageError(name + ": unknown option " + *unknown +
                      (hint.empty() ? "; patchlight " + name + (name.empty() ? "" : " ") + "--help lists them" : hint));
   }
-  throw UsageError(name + ": unexpected argument '" + left.front() + "'; expected one model file");
+  throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
 void require_one_command(const CLI::App& tool) {

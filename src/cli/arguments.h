@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace patchlight::cli {
 
@@ -25,7 +26,7 @@ enum class PictureColors { natural, luminance };
 /// What `patchlight solve` is asked to do. Lengths are in metres: the command line's model units are converted. A path
 /// that is empty stands for an output that is not wanted.
 struct SolveArguments {
-  std::filesystem::path model;
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   Request request;
 

@@ -49,7 +49,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   // 1. Read the model and the points
   if (!observer({.stage = Stage::read})) throw Cancelled();
   StageClock reading;
-  results.scene = read_scene(arguments.model, arguments.read);
+  results.scene = read_scene(arguments.models, arguments.read);
   if (!arguments.points.empty()) results.points = read_points(arguments.points, arguments.read.metres_per_unit);
   reading.finish(Stage::read);
 

@@ -4,7 +4,6 @@
 
 #include "cli/parse_value.h"
 
-#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +22,8 @@ struct CameraOption {
 }  // namespace
 
 struct SolveOptions {
-  std::string model, result, report, picture, points, points_output;
+  std::vector<std::string> models;
+  std::string format, result, report, picture, points, points_output;
   std::vector<std::string> settings;
   double metres_per_unit = 1;
   std::optional<Vector> up;
@@ -84,12 +84,30 @@ void add_points(CLI::App& command, SolveOptions& options) {
            ".irradiance.csv, in\nthe folder of -o, else in the current one");
 }
 
+// The formats that can be read, as one word or list.
+std::string formats(const std::string& separator) {
+  std::string list;
+  for (const std::string& format : readable_formats()) list += (list.empty() ? "" : separator) + format;
+  return list;
+}
+
 void add_model(CLI::App& command, SolveOptions& options) {
-  command.add_option("MODEL", options.model, "the model (.obj with .mtl)")->option_text(" ");
+  command
+      .add_option(
+          "MODEL", options.models,
+          "the model, or several files that together are one\nscene: " + formats(", ") + "; - is the\nstandard input")
+      ->option_text("...");
+  add(command, "--format", formats("|"), "format of the model files; default: from the extension,\nobj for -",
+      [&options](const std::string& text) {
+        std::vector<std::pair<std::string, std::string>> allowed;
+        for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
+        options.format = choice<std::string>("--format", text, allowed);
+      });
   add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m",
       [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
   add(command, "--up", "y|z",
-      "the model's upright axis, for the picture; default: the one\nagainst which the lamps shine, else z",
+      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else against the "
+      "lamps' light",
       [&options](const std::string& text) {
         options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });
@@ -149,7 +167,7 @@ void require_extension(const std::string& option, const std::string& file, const
 }
 
 void require_consistent(const SolveOptions& options) {
-  if (options.model.empty()) throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
+  if (options.models.empty()) throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
   if (options.result.empty() && options.picture.empty() && options.report.empty() && options.points.empty()) {
     throw UsageError("solve: nothing would be written; give at least one of -o, --picture, --report, --points");
   }
@@ -172,12 +190,13 @@ void require_consistent(const SolveOptions& options) {
 
 // Every output must be a file of its own, and no output may replace an input.
 void require_distinct_files(const SolveArguments& arguments) {
-  const std::array<std::pair<const char*, const path*>, 6> files = {{{"the model", &arguments.model},
-                                                                     {"--points", &arguments.points},
-                                                                     {"-o", &arguments.result},
-                                                                     {"--report", &arguments.report},
-                                                                     {"--picture", &arguments.picture},
-                                                                     {"--points-output", &arguments.points_output}}};
+  std::vector<std::pair<const char*, const path*>> files;
+  for (const path& model : arguments.models) files.emplace_back("a model", &model);
+  files.insert(files.end(), {{"--points", &arguments.points},
+                             {"-o", &arguments.result},
+                             {"--report", &arguments.report},
+                             {"--picture", &arguments.picture},
+                             {"--points-output", &arguments.points_output}});
   for (std::size_t b = 1; b < files.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       if (files[a].second->empty() || files[b].second->empty()) continue;
@@ -212,8 +231,8 @@ SolveArguments finish_solve(const SolveOptions& options) {
   require_consistent(options);
   const double metres = options.metres_per_unit;
   SolveArguments arguments;
-  arguments.model = options.model;
-  arguments.read = {.metres_per_unit = metres, .up = options.up, .settings = {}};
+  for (const std::string& model : options.models) arguments.models.emplace_back(model);
+  arguments.read = {.metres_per_unit = metres, .up = options.up, .settings = {}, .format = options.format};
   for (const std::string& setting : options.settings) {
     arguments.read.settings.push_back(parse_material_setting(setting));
   }

@@ -3,7 +3,14 @@
 #include "patchlight/base/error.h"
 #include "patchlight/scene/repair.h"
 
+#include "input/merge_scenes.h"
+#include "input/read_collada.h"
+#include "input/read_gltf.h"
+#include "input/read_ifc.h"
 #include "input/read_obj.h"
+#include "input/read_off.h"
+#include "input/read_ply.h"
+#include "input/read_stl.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -81,12 +88,44 @@ std::vector<Material> changed(std::vector<Material> materials, const std::vector
   return materials;
 }
 
-// The extension in lower case, with its dot.
+// The extension in lower case, without its dot; the standard input is OBJ.
 std::string extension(const std::filesystem::path& file) {
+  if (file == "-") return "obj";
   std::string text = file.extension().string();
+  if (!text.empty()) text.erase(0, 1);
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   return text;
+}
+
+// ".obj, .ply, ..."
+std::string allowed_extensions() {
+  std::string list;
+  for (const std::string& format : readable_formats()) list += (list.empty() ? "." : ", .") + format;
+  return list;
+}
+
+// One file as it stands, before any setting or check.
+Scene read_model(const std::filesystem::path& file, const ReadOptions& options) {
+  std::error_code error;
+  const bool is_standard_input = file == "-";
+  if (!is_standard_input && !std::filesystem::exists(file, error)) {
+    throw InputError(file.string(), "the model file does not exist; check the name and the folder");
+  }
+  if (!is_standard_input && std::filesystem::is_directory(file, error)) {
+    throw InputError(file.string(), "this is a folder; expected a model file (" + allowed_extensions() + ")");
+  }
+  const std::string format = options.format.empty() ? extension(file) : options.format;
+  const double metres = options.metres_per_unit;
+  if (format == "obj") return read_obj(file, metres);
+  if (format == "ply") return read_ply(file, metres);
+  if (format == "stl") return read_stl(file, metres);
+  if (format == "off") return read_off(file, metres);
+  if (format == "dae") return read_collada(file, metres);
+  if (format == "ifc") return read_ifc(file, metres);
+  if (format == "gltf" || format == "glb") return read_gltf(file, metres);
+  throw InputError(file.string(),
+                   "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }
 
 }  // namespace
@@ -109,27 +148,24 @@ MaterialSetting parse_material_setting(const std::string& text) {
   return setting;
 }
 
+std::vector<std::string> readable_formats() { return {"obj", "ply", "stl", "off", "dae", "ifc", "gltf", "glb"}; }
+
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
-  assert(options.metres_per_unit > 0);
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    throw InputError(file.string(), "the model file does not exist; check the name and the folder");
-  }
-  if (std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string(), "this is a folder; expected a model file (.obj)");
-  }
-  if (extension(file) != ".obj") {
-    throw InputError(file.string(),
-                     "the extension '" + extension(file) + "' is not known; expected a model file (.obj)");
-  }
-  Scene scene = read_obj(file, options.metres_per_unit);
+  return read_scene(std::span(&file, 1), options);
+}
+
+Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  assert(options.metres_per_unit > 0 && !files.empty());
+  std::vector<Scene> scenes;
+  for (const std::filesystem::path& file : files) scenes.push_back(read_model(file, options));
+  Scene scene = merge_scenes(std::move(scenes));
   scene.materials = changed(std::move(scene.materials), options.settings);
   scene = repair(std::move(scene));
   if (scene.polygons.empty() && !scene.problems.empty()) {
     throw InputError(scene.file, "no face is left of which light could come: " + scene.problems[0].what);
   }
   check(scene);
-  scene.up = options.up ? *options.up : upright_axis(scene);
+  if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <system_error>
 
@@ -14,9 +15,17 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
+std::string read_standard_input(const std::string& where, const std::string& what) {
+  std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+  if (std::cin.bad()) throw InputError(where, what + " could not be read to its end");
+  if (text.empty()) throw InputError(where, what + " is empty");
+  return text;
+}
+
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file, const std::string& where, const std::string& what) {
+  if (file == "-") return read_standard_input(where, what);
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) {

@@ -16,7 +16,7 @@ struct TextLine {
   std::string text;          ///< without line end
 };
 
-/// The whole content of a regular file.
+/// The whole content of a regular file; of the standard input for "-".
 /// \throws InputError at `where` when it is missing, a folder, unreadable or empty; the message calls it `what`.
 std::string read_text(const std::filesystem::path& file, const std::string& where, const std::string& what);
 

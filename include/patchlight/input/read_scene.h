@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,14 +23,23 @@ struct MaterialSetting {
 MaterialSetting parse_material_setting(const std::string& text);
 
 struct ReadOptions {
-  double metres_per_unit = 1;     ///< length of one model unit
-  std::optional<Vector> up = {};  ///< if not given, upright_axis() of the scene
+  double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
+  std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
   std::vector<MaterialSetting> settings = {};
+  std::string format = {};  ///< an extension without its dot; if empty, that of the file
 };
 
-/// Reads a model; the format follows from the extension (.obj). Lengths are converted to metres, Ke (emitted radiance)
-/// to exitance = pi Ke. What is read but not simulated is named in Scene::notes. docs/formats.md has the details.
+/// The extensions of the formats that can be read, without dots.
+std::vector<std::string> readable_formats();
+
+/// Reads a model; the format follows from the extension, and "-" stands for the standard input, which is OBJ unless
+/// options.format says otherwise. Lengths are converted to metres, emitted radiance L to exitance = pi L. What is read
+/// but not simulated is named in Scene::notes. docs/formats.md has the details.
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// Reads several models as one scene. Materials with the same name and values become one; those that only share the
+/// name are kept apart, and a note says so. \throws InputError as for one file.
+Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options = {});
 
 }  // namespace patchlight

@@ -56,6 +56,7 @@ struct Scene {
   std::string sha256;               ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;       ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
+  bool up_stated = false;            ///< the model file says which way is up
   std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
   std::vector<Problem> problems;     ///< what is wrong with the model, worst first
   std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to

@@ -1,0 +1,170 @@
+#include "input/assimp_scene.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/materials.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/scene.h>
+#include <map>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+// Leaves only the importers of one extension: assimp would try others whose signature it finds in the file.
+void keep_importer(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
+    const std::string extensions = std::string(" ") + importer.GetImporterInfo(k)->mFileExtensions + " ";
+    if (extensions.find(" " + extension + " ") == std::string::npos) {
+      importer.UnregisterLoader(importer.GetImporter(k));
+    }
+  }
+}
+
+Spectrum color(const aiMaterial& material, const char* key, double otherwise) {
+  aiColor3D found;
+  if (material.Get(key, 0, 0, found) != aiReturn_SUCCESS) return rgb(otherwise, otherwise, otherwise);
+  return rgb(found.r, found.g, found.b);
+}
+
+bool has_texture(const aiMaterial& material) {
+  for (int type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    if (material.GetTextureCount(static_cast<aiTextureType>(type)) > 0) return true;
+  }
+  return false;
+}
+
+bool is_transparent(const aiMaterial& material) {
+  float opacity = 1;
+  return material.Get(AI_MATKEY_OPACITY, opacity) == aiReturn_SUCCESS && opacity < 1;
+}
+
+bool is_used(const aiScene& model, unsigned int material) {
+  for (unsigned int m = 0; m < model.mNumMeshes; ++m) {
+    if (model.mMeshes[m]->mMaterialIndex == material) return true;
+  }
+  return false;
+}
+
+// The scene with the materials of the model and notes on what they have that is not simulated.
+Scene with_materials(Scene scene, const aiScene& model) {
+  std::vector<std::string> textured;
+  std::vector<std::string> transparent;
+  for (unsigned int m = 0; m < model.mNumMaterials; ++m) {
+    const aiMaterial& read = *model.mMaterials[m];
+    aiString name;
+    read.Get(AI_MATKEY_NAME, name);
+    // Exitance = pi radiance for a Lambertian emitter.
+    scene.materials.push_back(
+        {name.C_Str(), color(read, "$clr.diffuse", 0.5), std::numbers::pi * color(read, "$clr.emissive", 0)});
+    if (!is_used(model, m)) continue;
+    if (has_texture(read)) textured.emplace_back(name.C_Str());
+    if (is_transparent(read)) transparent.emplace_back(name.C_Str());
+  }
+  for (const auto& notes : {note_on("textures are ignored, the diffuse colour is used instead", textured),
+                            note_on("transparency is ignored, the surface is opaque", transparent)}) {
+    scene.notes.insert(scene.notes.end(), notes.begin(), notes.end());
+  }
+  return scene;
+}
+
+Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
+  Eigen::Matrix4d result;
+  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return result;
+}
+
+// Names that assimp makes up for the IFC relations between two objects.
+bool is_made_up(const std::string& name) { return name.starts_with("$Rel") || name.starts_with("IfcMappedItem"); }
+
+// Collects the faces of all nodes.
+class Collector {
+ public:
+  Collector(Scene scene, const aiScene& model, bool has_materials)
+      : scene_(std::move(scene)), model_(model), has_materials_(has_materials) {}
+
+  void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above) {
+    const Eigen::Matrix4d to_scene = above * matrix(node.mTransformation);
+    const std::string name = node.mName.C_Str();
+    const std::string group = name.empty() || is_made_up(name) ? group_above : name;
+    for (unsigned int k = 0; k < node.mNumMeshes; ++k) add_mesh(*model_.mMeshes[node.mMeshes[k]], to_scene, group);
+    for (unsigned int k = 0; k < node.mNumChildren; ++k) add_node(*node.mChildren[k], to_scene, group);
+  }
+
+  Scene scene() && {
+    if (other_primitives_ > 0) {
+      scene_.notes.push_back("points and lines, ignored: " + std::to_string(other_primitives_));
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& group) {
+    const auto [entry, is_new] = groups_.emplace(group, static_cast<std::uint32_t>(scene_.groups.size()));
+    if (is_new) scene_.groups.push_back(group);
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    for (unsigned int v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& p = mesh.mVertices[v];
+      scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
+    }
+    // A mirrored copy keeps its front where it was: the corners run the other way.
+    const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
+    for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) {
+        ++other_primitives_;
+        continue;
+      }
+      Polygon polygon;
+      for (unsigned int k = 0; k < face.mNumIndices; ++k) {
+        const unsigned int corner = face.mIndices[mirrored ? face.mNumIndices - 1 - k : k];
+        if (corner >= mesh.mNumVertices) throw InputError(scene_.file, "a face names a vertex that is not there");
+        polygon.corners.push_back(first + corner);
+      }
+      polygon.material = has_materials_ ? mesh.mMaterialIndex : 0;
+      polygon.group = entry->second;
+      scene_.polygons.push_back(std::move(polygon));
+    }
+  }
+
+  Scene scene_;
+  const aiScene& model_;
+  bool has_materials_;
+  std::map<std::string, std::uint32_t> groups_;
+  std::size_t other_primitives_ = 0;
+};
+
+}  // namespace
+
+Scene assimp_scene(const std::string& bytes, const std::string& file, const AssimpFormat& format,
+                   double metres_per_unit) {
+  Assimp::Importer importer;
+  keep_importer(importer, format.extension);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* model = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.extension.c_str());
+  if (model == nullptr || model->mRootNode == nullptr) {
+    throw InputError(file, std::string("is not a good ") + format.extension + " file: " + importer.GetErrorString() +
+                               "; export it anew");
+  }
+  Scene scene;
+  scene.file = file;
+  if (format.has_materials) {
+    scene = with_materials(std::move(scene), *model);
+  } else {
+    scene.materials.push_back(default_material());
+    scene.notes.push_back(
+        "this format has no materials: all faces get the material 'default', reflectance 0.5; --set changes it");
+  }
+  Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
+  to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
+  Collector collector(std::move(scene), *model, format.has_materials);
+  collector.add_node(*model->mRootNode, to_scene, "");
+  scene = with_used_materials(std::move(collector).scene());
+  scene.metres_per_unit = metres_per_unit;
+  return scene;
+}
+
+}  // namespace patchlight

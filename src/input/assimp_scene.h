@@ -1,0 +1,23 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <string>
+
+namespace patchlight {
+
+/// What one of assimp's formats carries.
+struct AssimpFormat {
+  std::string extension;      ///< without its dot, lower case: the only importer that is asked
+  bool has_materials = true;  ///< otherwise all faces get the material "default", reflectance 0.5
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from assimp's axes to those of the file
+};
+
+/// Reads a model with assimp: all faces, in the order of the nodes, with the nodes' transformations. Coordinates pass
+/// through single precision. Diffuse colours become reflectances, emissive colours radiances in W/(m^2 sr). Fills
+/// vertices (metres), polygons, used materials, groups (names of the nodes), file, metres_per_unit and notes.
+/// May crash on damaged files: call it within read_isolated(). \throws InputError naming `file`.
+Scene assimp_scene(const std::string& bytes, const std::string& file, const AssimpFormat& format,
+                   double metres_per_unit);
+
+}  // namespace patchlight

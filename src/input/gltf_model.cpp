@@ -1,0 +1,189 @@
+#include "input/gltf_model.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace patchlight {
+namespace {
+
+constexpr std::string_view glb_signature = "glTF";
+
+// Extensions that a file may require: what they change is simulated, or named in the notes.
+bool is_known(const std::string& extension) {
+  static constexpr std::array<std::string_view, 6> known = {"KHR_mesh_quantization", "KHR_texture_transform",
+                                                            "KHR_lights_punctual",   "KHR_texture_basisu",
+                                                            "EXT_texture_webp",      "MSFT_texture_dds"};
+  return extension.starts_with("KHR_materials_") || std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+void require_known_extensions(const tinygltf::Model& model, const std::string& file) {
+  for (const std::string& extension : model.extensionsRequired) {
+    if (is_known(extension)) continue;
+    const bool compressed = extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression";
+    throw InputError(file, "requires the extension " + extension +
+                               ", which is not supported; export the model without " +
+                               (compressed ? "compression" : "it"));
+  }
+}
+
+// sRGB to linear, IEC 61966-2-1.
+double linear(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
+
+Spectrum mean_color(const tinygltf::Image& image) {
+  const std::size_t bytes_per_value = image.bits == 16 ? 2 : 1;
+  const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const auto channels = static_cast<std::size_t>(image.component);
+  Spectrum sum = rgb(0, 0, 0);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Of 16 bits the upper eight are enough for a mean.
+      const std::size_t value = (pixel * channels + std::min(k, channels - 1)) * bytes_per_value + bytes_per_value - 1;
+      sum[static_cast<Eigen::Index>(k)] += linear(image.image[value] / 255.0);
+    }
+  }
+  return sum / static_cast<double>(pixels);
+}
+
+// Decodes PNG and JPEG, the formats of glTF 2.0, keeps the mean colour and drops the pixels. A picture that cannot be
+// decoded is no reason to stop.
+bool take_image(tinygltf::Image* image, int index, std::string*, std::string*, int width, int height,
+                const unsigned char* bytes, int size, void* colors) {
+  const std::string_view start(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(std::min(size, 4)));
+  if (start != "\x89PNG" && !start.starts_with("\xFF\xD8\xFF")) return true;
+  std::string error;
+  std::string warning;
+  tinygltf::Image decoded = *image;
+  const bool good = tinygltf::LoadImageData(&decoded, index, &error, &warning, width, height, bytes, size, nullptr) &&
+                    decoded.width > 0 && decoded.height > 0 && decoded.component > 0 && !decoded.image.empty();
+  if (good) static_cast<std::map<int, Spectrum>*>(colors)->emplace(index, mean_color(decoded));
+  return true;
+}
+
+bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* parts) {
+  try {
+    auto& bytes = *static_cast<std::vector<std::string>*>(parts);
+    bytes.push_back(read_text(name, name, "the file"));
+    out->assign(bytes.back().begin(), bytes.back().end());
+    return true;
+  } catch (const InputError& refused) {
+    *error = refused.what();
+    return false;
+  }
+}
+
+// One line, without the line ends that tinygltf puts between its sentences.
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::size_t bytes_per_value(int component_type) {
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(component_type));
+  return size > 0 ? static_cast<std::size_t>(size) : 0;
+}
+
+template <typename Value>
+double value_at(const unsigned char* bytes, bool normalized) {
+  Value value;
+  std::memcpy(&value, bytes, sizeof value);
+  if (!normalized) return static_cast<double>(value);
+  return std::max(-1.0, static_cast<double>(value) / static_cast<double>(std::numeric_limits<Value>::max()));
+}
+
+double value_at(const unsigned char* bytes, int component_type, bool normalized) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return value_at<std::int8_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return value_at<std::uint8_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return value_at<std::int16_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return value_at<std::uint16_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return value_at<std::uint32_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+      return value_at<double>(bytes, false);
+    default:
+      return value_at<float>(bytes, false);
+  }
+}
+
+template <typename Item>
+const Item& item(const std::vector<Item>& items, int index, const char* what, const std::string& file) {
+  if (index < 0 || static_cast<std::size_t>(index) >= items.size()) {
+    throw InputError(file, std::string("names ") + what + " " + std::to_string(index) +
+                               ", which is not in the file; export it anew");
+  }
+  return items[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+GltfModel read_gltf_model(const std::filesystem::path& file) {
+  GltfModel result;
+  result.bytes.push_back(read_text(file, file.string(), "the model file"));
+  const std::string bytes = result.bytes[0];
+  if (bytes.size() > std::numeric_limits<unsigned int>::max()) throw InputError(file.string(), "is larger than 4 GB");
+  const auto size = static_cast<unsigned int>(bytes.size());
+
+  tinygltf::TinyGLTF reader;
+  reader.SetImageLoader(take_image, &result.mean_color);
+  reader.SetFsCallbacks(
+      {tinygltf::FileExists, tinygltf::ExpandFilePath, read_file, tinygltf::WriteWholeFile, &result.bytes});
+  std::string error;
+  std::string warning;
+  const std::string folder = file.parent_path().string();
+  const bool good =
+      bytes.starts_with(glb_signature)
+          ? reader.LoadBinaryFromMemory(&result.model, &error, &warning,
+                                        reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+          : reader.LoadASCIIFromString(&result.model, &error, &warning, bytes.data(), size, folder);
+  require_known_extensions(result.model, file.string());
+  if (!good) {
+    throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it anew");
+  }
+  return result;
+}
+
+std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, int components,
+                                    const std::string& file) {
+  const tinygltf::Accessor& list = item(model.accessors, accessor, "accessor", file);
+  const std::string name = "accessor " + std::to_string(accessor);
+  if (list.sparse.isSparse || list.bufferView < 0) {
+    throw InputError(file, name + " is sparse or empty, which is not supported; export the model without that");
+  }
+  const tinygltf::BufferView& view = item(model.bufferViews, list.bufferView, "buffer view", file);
+  const tinygltf::Buffer& buffer = item(model.buffers, view.buffer, "buffer", file);
+  const std::size_t value_size = bytes_per_value(list.componentType);
+  const std::size_t element = value_size * static_cast<std::size_t>(components);
+  const std::size_t stride = view.byteStride > 0 ? view.byteStride : element;
+  const int expected_type = components == 1 ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
+  // Each sum is compared in parts, so that none overflows.
+  const std::size_t end = buffer.data.size();
+  const bool fits = value_size > 0 && list.type == expected_type && view.byteOffset <= end &&
+                    list.byteOffset <= end - view.byteOffset && element <= end - view.byteOffset - list.byteOffset &&
+                    list.count > 0 && list.count - 1 <= (end - view.byteOffset - list.byteOffset - element) / stride;
+  if (!fits) throw InputError(file, name + " has a wrong type or leaves its buffer; export the model anew");
+
+  std::vector<double> values;
+  values.reserve(list.count * static_cast<std::size_t>(components));
+  const unsigned char* first = buffer.data.data() + view.byteOffset + list.byteOffset;
+  for (std::size_t k = 0; k < list.count; ++k) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
+      values.push_back(value_at(first + k * stride + c * value_size, list.componentType, list.normalized));
+    }
+  }
+  return values;
+}
+
+}  // namespace patchlight

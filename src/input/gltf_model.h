@@ -1,0 +1,29 @@
+#pragma once
+
+#include "patchlight/light/spectrum.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tiny_gltf.h>
+#include <vector>
+
+namespace patchlight {
+
+/// A glTF file as tinygltf reads it.
+struct GltfModel {
+  tinygltf::Model model;
+  std::map<int, Spectrum> mean_color;  ///< linear RGB of those images that could be decoded, by index
+  std::vector<std::string> bytes;      ///< of the file and its buffers, for the checksum
+};
+
+/// Reads a .gltf or .glb file and its buffers and pictures. \throws InputError naming the file: not glTF 2.0, a buffer
+/// is missing, or the file requires an extension that is not known, such as a compression.
+GltfModel read_gltf_model(const std::filesystem::path& file);
+
+/// The values of an accessor, `components` per element, normalised integers converted as glTF 2.0 section 3.11 says.
+/// \throws InputError naming `file` when there is no such accessor, it has another type or leaves its buffer.
+std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, int components,
+                                    const std::string& file);
+
+}  // namespace patchlight

@@ -1,0 +1,45 @@
+#include "input/materials.h"
+
+#include "input/text.h"
+
+#include <set>
+
+namespace patchlight {
+namespace {
+
+std::string unique_name(const std::string& name, std::size_t number, const std::set<std::string>& taken) {
+  const std::string base = name.empty() ? "material " + std::to_string(number) : name;
+  std::string unique = base;
+  for (int copy = 2; taken.count(unique) > 0; ++copy) unique = base + " (" + std::to_string(copy) + ")";
+  return unique;
+}
+
+}  // namespace
+
+Material default_material() { return {"default", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}; }
+
+Scene with_used_materials(Scene scene) {
+  constexpr MaterialIndex unused = ~MaterialIndex{0};
+  std::vector<MaterialIndex> number(scene.materials.size(), unused);
+  for (const Polygon& polygon : scene.polygons) number[polygon.material] = 0;
+  std::vector<Material> materials;
+  std::set<std::string> taken;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (number[m] == unused) continue;
+    number[m] = static_cast<MaterialIndex>(materials.size());
+    Material material = scene.materials[m];
+    material.name = unique_name(material.name, m, taken);
+    taken.insert(material.name);
+    materials.push_back(std::move(material));
+  }
+  for (Polygon& polygon : scene.polygons) polygon.material = number[polygon.material];
+  scene.materials = std::move(materials);
+  return scene;
+}
+
+std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  return {sentence + ": " + listed(names)};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// The material of faces for which the file gives none: "default", reflectance 0.5 in all bands.
+Material default_material();
+
+/// The scene with only those materials that polygons use, in their order, names that are empty or come twice made
+/// unique: "material 3", "wall (2)".
+Scene with_used_materials(Scene scene);
+
+/// "sentence: a, b", or nothing when there are no names.
+std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names);
+
+}  // namespace patchlight

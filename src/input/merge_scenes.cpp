@@ -1,0 +1,103 @@
+#include "input/merge_scenes.h"
+
+#include "input/sha256.h"
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+
+namespace patchlight {
+namespace {
+
+bool same_values(const Material& a, const Material& b) {
+  return a.reflectance.size() == b.reflectance.size() && (a.reflectance == b.reflectance).all() &&
+         (a.exitance == b.exitance).all();
+}
+
+std::vector<Material>::const_iterator find(const std::vector<Material>& materials, const std::string& name) {
+  return std::find_if(materials.begin(), materials.end(), [&](const Material& m) { return m.name == name; });
+}
+
+// "wall (b.obj)", or "wall (b.obj 2)" where that is taken.
+std::string free_name(const std::vector<Material>& taken, const std::string& name, const std::string& file) {
+  const std::string stem = name + " (" + std::filesystem::path(file).filename().string();
+  std::string candidate = stem + ")";
+  for (int copy = 2; find(taken, candidate) != taken.end(); ++copy) {
+    candidate = stem + " " + std::to_string(copy) + ")";
+  }
+  return candidate;
+}
+
+// The scene with another one's materials added; what becomes of those is their index in the scene.
+struct Palette {
+  std::vector<Material> materials;
+  std::vector<std::string> notes;
+  std::vector<MaterialIndex> index;
+};
+
+Palette with_materials(std::vector<Material> materials, const Scene& added) {
+  Palette palette;
+  for (Material material : added.materials) {
+    auto found = find(materials, material.name);
+    if (found != materials.end() && !same_values(*found, material)) {
+      const std::string name = free_name(materials, material.name, added.file);
+      palette.notes.push_back("material '" + material.name + "' of " + added.file +
+                              " differs from that of an earlier file and is called '" + name + "'");
+      material.name = name;
+      found = materials.cend();
+    }
+    palette.index.push_back(static_cast<MaterialIndex>(found - materials.cbegin()));
+    if (found == materials.cend()) materials.push_back(std::move(material));
+  }
+  palette.materials = std::move(materials);
+  return palette;
+}
+
+// The first scene with the second added; its polygons come from file number `file`.
+Scene joined(Scene scene, Scene added, std::uint32_t file) {
+  const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto groups = static_cast<std::uint32_t>(scene.groups.size());
+  Palette palette = with_materials(std::move(scene.materials), added);
+  scene.materials = std::move(palette.materials);
+  scene.vertices.insert(scene.vertices.end(), added.vertices.begin(), added.vertices.end());
+  for (Polygon& polygon : added.polygons) {
+    for (std::uint32_t& corner : polygon.corners) corner += vertices;
+    polygon.material = palette.index[polygon.material];
+    polygon.group += groups;
+    polygon.file = file;
+    scene.polygons.push_back(std::move(polygon));
+  }
+  scene.groups.insert(scene.groups.end(), added.groups.begin(), added.groups.end());
+  for (const std::string& note : added.notes) scene.notes.push_back(added.file + ": " + note);
+  scene.notes.insert(scene.notes.end(), palette.notes.begin(), palette.notes.end());
+  for (Problem& problem : added.problems) {
+    for (ProblemFace& face : problem.faces) face.file = file;
+    scene.problems.push_back(std::move(problem));
+  }
+  scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
+  scene.files.push_back(added.file);
+  return scene;
+}
+
+}  // namespace
+
+Scene merge_scenes(std::vector<Scene> scenes) {
+  assert(!scenes.empty());
+  if (scenes.size() == 1) return std::move(scenes[0]);
+  Scene merged;
+  std::vector<std::string> checksums;
+  std::string names;
+  merged.metres_per_unit = scenes[0].metres_per_unit;
+  merged.up = scenes[0].up;
+  merged.up_stated = scenes[0].up_stated;
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    checksums.push_back(scenes[k].sha256);
+    names += (k == 0 ? "" : " + ") + scenes[k].file;
+    merged = joined(std::move(merged), std::move(scenes[k]), static_cast<std::uint32_t>(k));
+  }
+  merged.file = names;
+  merged.sha256 = sha256(checksums);
+  return merged;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,35 @@
+#include "input/read_collada.h"
+
+#include "input/assimp_scene.h"
+#include "input/isolated.h"
+#include "input/sha256.h"
+#include "input/text.h"
+
+namespace patchlight {
+namespace {
+
+// The file's <up_axis>: X_UP, Y_UP (also when there is none) or Z_UP. assimp does not tell it.
+Vector up_axis(const std::string& text) {
+  constexpr std::string_view element = "<up_axis>";
+  const std::size_t found = text.find(element);
+  if (found == std::string::npos) return Vector::UnitY();
+  const std::size_t value = text.find_first_not_of(" \t\r\n", found + element.size());
+  if (value == std::string::npos) return Vector::UnitY();
+  return text[value] == 'X' ? Vector::UnitX() : text[value] == 'Z' ? Vector::UnitZ() : Vector::UnitY();
+}
+
+}  // namespace
+
+Scene read_collada(const std::filesystem::path& file, double metres_per_unit) {
+  const std::string bytes = read_text(file, file.string(), "the model file");
+  AssimpFormat format;
+  format.extension = "dae";
+  Scene scene =
+      read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
+  scene.up = up_axis(bytes);
+  scene.up_stated = true;
+  scene.sha256 = sha256({&bytes, 1});
+  return scene;
+}
+
+}  // namespace patchlight

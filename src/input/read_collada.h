@@ -1,0 +1,13 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <filesystem>
+
+namespace patchlight {
+
+/// Reads a COLLADA file: faces, transformations, diffuse and emissive colours, its unit and upright axis.
+/// \throws InputError naming the file.
+Scene read_collada(const std::filesystem::path& file, double metres_per_unit);
+
+}  // namespace patchlight

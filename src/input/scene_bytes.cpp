@@ -1,0 +1,139 @@
+#include "input/scene_bytes.h"
+
+#include <cassert>
+#include <cstring>
+#include <type_traits>
+
+namespace patchlight {
+namespace {
+
+class Writer {
+ public:
+  template <typename Value>
+  void plain(const Value& value) {
+    static_assert(std::is_arithmetic_v<Value>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void text(const std::string& text) {
+    plain(text.size());
+    bytes_ += text;
+  }
+  template <typename Vector>
+  void numbers(const Vector& values) {
+    plain(static_cast<std::size_t>(values.size()));
+    for (const auto value : values) plain(value);
+  }
+  std::string bytes() && { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  template <typename Value>
+  Value plain() {
+    assert(bytes_.size() >= sizeof(Value));
+    Value value;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+  std::string text() {
+    const auto size = plain<std::size_t>();
+    std::string text(bytes_.substr(0, size));
+    bytes_.remove_prefix(size);
+    return text;
+  }
+  Spectrum spectrum() {
+    Spectrum values(static_cast<Eigen::Index>(plain<std::size_t>()));
+    for (double& value : values) value = plain<double>();
+    return values;
+  }
+  Point point() {
+    Point values;
+    plain<std::size_t>();
+    for (double& value : values) value = plain<double>();
+    return values;
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+void write_polygon(Writer& out, const Polygon& polygon) {
+  out.numbers(polygon.corners);
+  out.plain(polygon.material);
+  out.plain(polygon.group);
+  out.plain(polygon.line);
+}
+
+Polygon read_polygon(Reader& in) {
+  Polygon polygon;
+  polygon.corners.resize(in.plain<std::size_t>());
+  for (std::uint32_t& corner : polygon.corners) corner = in.plain<std::uint32_t>();
+  polygon.material = in.plain<MaterialIndex>();
+  polygon.group = in.plain<std::uint32_t>();
+  polygon.line = in.plain<std::uint32_t>();
+  return polygon;
+}
+
+void write_material(Writer& out, const Material& material) {
+  out.text(material.name);
+  out.numbers(material.reflectance);
+  out.numbers(material.exitance);
+}
+
+Material read_material(Reader& in) {
+  Material material;
+  material.name = in.text();
+  material.reflectance = in.spectrum();
+  material.exitance = in.spectrum();
+  return material;
+}
+
+}  // namespace
+
+std::string scene_bytes(const Scene& scene) {
+  Writer out;
+  out.plain(scene.vertices.size());
+  for (const Point& vertex : scene.vertices) out.numbers(vertex);
+  out.plain(scene.polygons.size());
+  for (const Polygon& polygon : scene.polygons) write_polygon(out, polygon);
+  out.plain(scene.materials.size());
+  for (const Material& material : scene.materials) write_material(out, material);
+  for (const auto* texts : {&scene.groups, &scene.notes}) {
+    out.plain(texts->size());
+    for (const std::string& text : *texts) out.text(text);
+  }
+  out.text(scene.file);
+  out.text(scene.sha256);
+  out.plain(scene.metres_per_unit);
+  out.numbers(scene.up);
+  out.plain(scene.up_stated);
+  return std::move(out).bytes();
+}
+
+Scene scene_from_bytes(std::string_view bytes) {
+  Reader in(bytes);
+  Scene scene;
+  scene.vertices.resize(in.plain<std::size_t>());
+  for (Point& vertex : scene.vertices) vertex = in.point();
+  scene.polygons.resize(in.plain<std::size_t>());
+  for (Polygon& polygon : scene.polygons) polygon = read_polygon(in);
+  scene.materials.resize(in.plain<std::size_t>());
+  for (Material& material : scene.materials) material = read_material(in);
+  for (auto* texts : {&scene.groups, &scene.notes}) {
+    texts->resize(in.plain<std::size_t>());
+    for (std::string& text : *texts) text = in.text();
+  }
+  scene.file = in.text();
+  scene.sha256 = in.text();
+  scene.metres_per_unit = in.plain<double>();
+  scene.up = in.point();
+  scene.up_stated = in.plain<bool>();
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <string>
+#include <string_view>
+
+namespace patchlight {
+
+/// A scene as bytes, for another process of this program on this machine: vertices, polygons, materials, groups, notes,
+/// checksum, unit and upright direction.
+std::string scene_bytes(const Scene& scene);
+
+/// The scene that scene_bytes() turned into these bytes.
+Scene scene_from_bytes(std::string_view bytes);
+
+}  // namespace patchlight
