@@ -87,45 +87,51 @@ Scene weld_vertices(Scene scene) {
   return scene;
 }
 
-// A loop without corners that repeat the one before, and without spikes: a b a becomes a.
-std::vector<std::uint32_t> without_repetition(const std::vector<std::uint32_t>& corners) {
-  std::vector<std::uint32_t> kept;
-  for (const std::uint32_t corner : corners) {
-    if (!kept.empty() && kept.back() == corner) continue;
-    if (kept.size() > 1 && kept[kept.size() - 2] == corner) {
-      kept.pop_back();
+// Does the outline turn back at b, so that from a to c it is a spike narrower than `width`?
+bool is_spike(const Point& a, const Point& b, const Point& c, double width) {
+  const Vector back = a - b;
+  const Vector on = c - b;
+  if (back.dot(on) <= 0) return false;
+  const Vector& longer = back.squaredNorm() > on.squaredNorm() ? back : on;
+  const Vector& shorter = back.squaredNorm() > on.squaredNorm() ? on : back;
+  return shorter.cross(longer.normalized()).norm() <= width;
+}
+
+// The corners without those that repeat the one before, and without the tips of spikes.
+std::vector<std::uint32_t> without_spikes(std::vector<std::uint32_t> corners, const std::vector<Point>& vertices,
+                                          double width) {
+  const auto signed_place = [](std::size_t place) { return static_cast<std::ptrdiff_t>(place); };
+  for (std::size_t k = 0, sound = 0; corners.size() > 1 && sound < corners.size();) {
+    const std::size_t n = corners.size();
+    const std::uint32_t before = corners[(k + n - 1) % n];
+    const std::uint32_t after = corners[(k + 1) % n];
+    const bool leave_out = before == corners[k] || before == after ||
+                           is_spike(vertices[before], vertices[corners[k]], vertices[after], width);
+    if (!leave_out) {
+      k = (k + 1) % n;
+      ++sound;
       continue;
     }
-    kept.push_back(corner);
+    // Look again at the corner before, whose neighbour is another one now.
+    corners.erase(corners.begin() + signed_place(k));
+    k = (k + n - 2) % (n - 1);
+    sound = 0;
   }
-  // The same across the loop's end.
-  for (bool changed = true; changed && kept.size() > 1;) {
-    const std::size_t n = kept.size();
-    changed = true;
-    if (kept[n - 1] == kept[0]) {
-      kept.pop_back();
-    } else if (n > 2 && kept[n - 2] == kept[0]) {
-      kept.resize(n - 2);
-    } else if (n > 2 && kept[n - 1] == kept[1]) {
-      kept.erase(kept.begin(), kept.begin() + 2);
-    } else {
-      changed = false;
-    }
-  }
-  return kept;
+  return corners;
 }
 
 Scene clean_corners(Scene scene) {
+  const double width = weld_distance(bounds(scene));
   Faces repeated;
   for (Polygon& polygon : scene.polygons) {
-    std::vector<std::uint32_t> kept = without_repetition(polygon.corners);
+    std::vector<std::uint32_t> kept = without_spikes(polygon.corners, scene.vertices, width);
     if (kept.size() == polygon.corners.size()) continue;
     // Those of which fewer than three corners are left have no area and are left out as such.
     if (kept.size() >= 3) repeated.push_back(face_of(scene, polygon));
     polygon.corners = std::move(kept);
   }
   return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
-                      "repeat a corner or go out and back along one edge; the repetition is left out");
+                      "with corners that repeat the one before, or are the tips of spikes without width; left out");
 }
 
 // The polygon with other corners.

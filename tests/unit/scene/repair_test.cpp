@@ -53,7 +53,7 @@ void expect_meshable(const Scene& scene) {
   const PatchMesh mesh = tessellate(scene, sides, size / 7);
   double sum = 0;
   for (const double patch_area : mesh.area) {
-    EXPECT_GE(patch_area, -1e-15 * size * size);
+    EXPECT_GT(patch_area, 0);
     sum += patch_area;
   }
   EXPECT_NEAR(sum, area(scene) + backs, 1e-9 * size * size);
@@ -115,6 +115,13 @@ TEST(Repair, LeavesOutRepeatedCornersAndSpikes) {
     EXPECT_EQ(repaired.polygons[0].corners.size(), 4U);
     EXPECT_EQ(area(repaired), 1);
     EXPECT_EQ(kinds(repaired), Kinds{ProblemKind::repeated_corners});
+    expect_meshable(repaired);
+  }
+  // A spike that ends in the middle of an edge, or goes on along the next one.
+  for (const Point& tip : {Point(0, 5, 0), Point(0, -2, 0)}) {
+    const Scene repaired = repair(one_polygon({a, b, c, d, tip}));
+    ASSERT_EQ(repaired.polygons.size(), 1U);
+    EXPECT_EQ(area(repaired), 1);
     expect_meshable(repaired);
   }
 }
