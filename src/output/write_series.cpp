@@ -9,6 +9,7 @@
 
 #include <cassert>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <regex>
 #include <set>
@@ -89,6 +90,14 @@ void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field
   cells.AddArray(colours("rgb", tone_map(radiance, exposure)));
 }
 
+bool is_utf8(const std::string& text) {
+  try {
+    return !nlohmann::json(text).dump().empty();
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 // XML's five entities.
 std::string escaped(const std::string& text) {
   std::string result;
@@ -147,6 +156,9 @@ fs::path series_folder(const fs::path& pvd) { return pvd.parent_path() / (pvd.st
 
 void check_series_writable(const fs::path& pvd) {
   check_writable(pvd);
+  if (!is_utf8(pvd.stem().string())) {
+    throw OutputError(pvd.string(), "the name is not UTF-8, and a .pvd file can hold no other; expected another name");
+  }
   const fs::path folder = series_folder(pvd);
   std::error_code error;
   if (!fs::exists(fs::symlink_status(folder, error))) return;
