@@ -11,7 +11,4 @@ namespace patchlight {
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back);
 
-/// \throws MemoryError when the exchange areas of so many patches do not fit this machine's memory.
-void require_memory(PatchIndex patches);
-
 }  // namespace patchlight

@@ -30,9 +30,10 @@ struct SolveArguments {
   ReadOptions read;
   Request request;
 
-  std::filesystem::path result;   ///< .vtp
-  std::filesystem::path report;   ///< .json
-  std::filesystem::path picture;  ///< .png
+  std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
+  std::filesystem::path series;                ///< .pvd
+  std::filesystem::path report;                ///< .json
+  std::filesystem::path picture;               ///< .png
   PictureColors colors = PictureColors::natural;
   std::optional<Camera> camera;
 

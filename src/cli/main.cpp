@@ -7,6 +7,7 @@
 #include "cli/messages.h"
 #include "cli/solve.h"
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -36,6 +37,8 @@ ExitCode failed(ExitCode code, const char* what) {
 
 int main(int count, char** values) {
   watch_interrupts();
+  // A file that may not grow any further is an error of writing, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(count, values);
   } catch (const UsageError& error) {

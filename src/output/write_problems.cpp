@@ -1,6 +1,6 @@
 #include "patchlight/output/write_problems.h"
 
-#include "output/write_polydata.h"
+#include "output/vtk_polygons.h"
 
 #include <algorithm>
 #include <map>
@@ -103,7 +103,7 @@ void write_problems(const std::filesystem::path& file, const Scene& scene, const
   add_strings(*polygons, "problem_names", names);
   add_strings(*polygons, "problem_sentences", sentences);
   add_strings(*polygons, "source_files", scene.files.empty() ? std::vector{scene.file} : scene.files);
-  write_polydata(file, *polygons);
+  write_polygons(file, *polygons);
 }
 
 }  // namespace patchlight

@@ -57,6 +57,7 @@ Json request_part(const Request& request) {
   part["samples"] = request.samples;
   part["seed"] = request.seed;
   part["threads"] = request.threads;
+  part["memory_bytes"] = json_of(request.memory);
   return part;
 }
 

@@ -5,33 +5,23 @@
 #include "patchlight/render/tone_map.h"
 #include "patchlight/visibility/occluder.h"
 
-#include "output/write_polydata.h"
+#include "output/vtk_polygons.h"
 
+#include <array>
 #include <numbers>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
-#include <vtkFloatArray.h>
-#include <vtkIntArray.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
-#include <vtkUnsignedCharArray.h>
 
 namespace patchlight {
 namespace {
 
-template <class Array>
-using Pointer = vtkSmartPointer<Array>;
-
-// The unit of every array of values; docs/formats.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 13> units = {{{"radiance", "W/(m^2 sr)"},
+// The unit of every array of values; docs/output.md says what they mean.
+constexpr std::array<std::array<const char*, 2>, 15> units = {{{"radiance", "W/(m^2 sr)"},
                                                                {"radiosity", "W/m^2"},
                                                                {"irradiance", "W/m^2"},
+                                                               {"direct_irradiance", "W/m^2"},
+                                                               {"indirect_irradiance", "W/m^2"},
                                                                {"exitance", "W/m^2"},
                                                                {"reflectance", "1"},
                                                                {"luminance", "cd/m^2"},
@@ -43,63 +33,6 @@ constexpr std::array<std::array<const char*, 2>, 13> units = {{{"radiance", "W/(
                                                                {"rgb", "sRGB, 8 bits, at the recorded exposure"},
                                                                {"radiance_smooth", "W/(m^2 sr)"}}};
 
-Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
-  auto array = Pointer<vtkFloatArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(static_cast<int>(values.cols()));
-  array->SetNumberOfTuples(values.rows());
-  float* out = array->GetPointer(0);
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
-  }
-  return array;
-}
-
-// An array of numbers of any kind, one component, as vtkIntArray or vtkDoubleArray.
-template <class Array, class Values>
-Pointer<Array> numbers(const char* name, const Values& values) {
-  auto array = Pointer<Array>::New();
-  array->SetName(name);
-  for (const auto value : values) array->InsertNextValue(static_cast<typename Array::ValueType>(value));
-  return array;
-}
-
-Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values) {
-  auto array = Pointer<vtkStringArray>::New();
-  array->SetName(name.c_str());
-  for (const std::string& value : values) array->InsertNextValue(value);
-  return array;
-}
-
-Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {
-  auto array = Pointer<vtkUnsignedCharArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::uint8_t* out = array->GetPointer(0);
-  for (const auto& value : values) out = std::copy(value.begin(), value.end(), out);
-  return array;
-}
-
-Pointer<vtkPolyData> geometry(const PatchMesh& mesh) {
-  const vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
-  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-    points->SetPoint(static_cast<vtkIdType>(k), mesh.vertices[k].data());
-  }
-  const vtkNew<vtkCellArray> cells;
-  for (const auto& corners : mesh.corners) {
-    const bool triangle = corners[2] == corners[3];
-    cells->InsertNextCell(triangle ? 3 : 4);
-    for (std::size_t k = 0; k < (triangle ? 3U : 4U); ++k) cells->InsertCellPoint(corners[k]);
-  }
-  auto polygons = Pointer<vtkPolyData>::New();
-  polygons->SetPoints(points);
-  polygons->SetPolys(cells);
-  return polygons;
-}
-
 void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
   const PatchMesh& mesh = simulation.mesh;
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
@@ -109,7 +42,12 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   vtkCellData& cell_data = *polygons.GetCellData();
   cell_data.AddArray(floats("radiance", radiance));
   cell_data.AddArray(floats("radiosity", simulation.solution.radiosity));
-  cell_data.AddArray(floats("irradiance", simulation.solution.irradiance));
+  const Field& H = simulation.solution.irradiance;
+  const Field& H_direct = simulation.solution.direct_irradiance;
+  cell_data.AddArray(floats("irradiance", H));
+  cell_data.AddArray(floats("direct_irradiance", H_direct));
+  // Rounding may make the difference slightly negative.
+  cell_data.AddArray(floats("indirect_irradiance", (H - H_direct).max(0.0)));
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
   cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
   cell_data.AddArray(floats("luminance", luminances));
@@ -175,12 +113,12 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
 
 void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                const Provenance& provenance) {
-  const Pointer<vtkPolyData> polygons = geometry(simulation.mesh);
+  const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
   add_values(*polygons, scene, simulation, provenance.exposure);
   add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
   add_history(*polygons->GetFieldData(), simulation);
 
-  write_polydata(file, *polygons);
+  write_polygons(file, *polygons);
 }
 
 }  // namespace patchlight

@@ -22,7 +22,8 @@ struct Request {
   int max_iterations = 1000;  ///< after which the solver gives up
   int samples = 16;           ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all processors
+  int threads = 0;               ///< 0: all processors
+  std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
 };
 
 /// A physical effect that can be simulated or left out.

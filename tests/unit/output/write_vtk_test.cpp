@@ -90,6 +90,8 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("radiance"), radiance);
   expect_floats(cells->GetArray("radiosity"), simulation.solution.radiosity);
   expect_floats(cells->GetArray("irradiance"), simulation.solution.irradiance);
+  expect_floats(cells->GetArray("direct_irradiance"), simulation.solution.direct_irradiance);
+  expect_floats(cells->GetArray("indirect_irradiance"), 0.75 * simulation.solution.irradiance);
   expect_floats(cells->GetArray("exitance"), simulation.problem.exitance);
   expect_floats(cells->GetArray("reflectance"), simulation.problem.reflectance);
   expect_floats(cells->GetArray("luminance"), luminances);
@@ -152,7 +154,7 @@ TEST(WriteVtk, TakesAnyNumberOfBands) {
     material.exitance = material.exitance.head(2).eval();
   }
   for (Field* field : {&simulation.problem.reflectance, &simulation.problem.exitance, &simulation.solution.irradiance,
-                       &simulation.solution.radiosity}) {
+                       &simulation.solution.direct_irradiance, &simulation.solution.radiosity}) {
     *field = field->leftCols(2).eval();
   }
   const auto polygons = written_and_read(scene, simulation);
