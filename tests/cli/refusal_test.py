@@ -116,8 +116,8 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["sovle", "solve"], "sovle", "room.obj")
         self.assert_refused(USAGE, ["solve"])
 
-    def test_two_models(self):
-        self.assert_refused(USAGE, ["other.obj"], "solve", "room.obj", "other.obj", "-o", "room.vtp")
+    def test_second_model_missing(self):
+        self.assert_refused(INPUT, ["other.obj", "does not exist"], "solve", "room.obj", "other.obj", "-o", "room.vtp")
 
     def test_number_out_of_range(self):
         for option, values in {
