@@ -2,6 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <sstream>
@@ -69,6 +70,41 @@ inline std::string as_ply(const Triangles& shape) {
   for (const Point& p : shape.vertices) out << text(p) << '\n';
   for (const auto& [a, b, c] : shape.corners) out << "3 " << a << ' ' << b << ' ' << c << '\n';
   return out.str();
+}
+
+/// The bytes of a number, in either order.
+template <typename Value>
+std::string bytes_of(Value value, bool big_endian = false) {
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+inline std::string as_binary_ply(const Triangles& shape, bool big_endian) {
+  std::string bytes = as_ply(shape);
+  bytes.resize(bytes.find("end_header\n") + 11);
+  bytes.replace(bytes.find("ascii"), 5, big_endian ? "binary_big_endian" : "binary_little_endian");
+  for (const Point& p : shape.vertices) {
+    for (int axis = 0; axis < 3; ++axis) bytes += bytes_of(p[axis], big_endian);
+  }
+  for (const auto& triangle : shape.corners) {
+    bytes += bytes_of(std::uint8_t{3});
+    for (const std::uint32_t corner : triangle) bytes += bytes_of(static_cast<std::int32_t>(corner), big_endian);
+  }
+  return bytes;
+}
+
+inline std::string as_binary_stl(const Triangles& shape) {
+  std::string bytes(80, ' ');
+  bytes += bytes_of(static_cast<std::uint32_t>(shape.corners.size()));
+  for (const auto& triangle : shape.corners) {
+    bytes += std::string(12, '\0');
+    for (const std::uint32_t corner : triangle) {
+      for (int axis = 0; axis < 3; ++axis) bytes += bytes_of(static_cast<float>(shape.vertices[corner][axis]));
+    }
+    bytes += std::string(2, '\0');
+  }
+  return bytes;
 }
 
 inline std::string as_off(const Triangles& shape) {
@@ -158,7 +194,7 @@ inline std::string as_ifc(const Triangles& shape) {
 /// Positions as floats, then indices as 16-bit numbers.
 inline std::string gltf_buffer(const Triangles& shape) {
   std::string bytes;
-  const auto append = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const auto append = [&](const auto& value) { bytes += bytes_of(value); };
   for (const Point& p : shape.vertices) {
     for (int axis = 0; axis < 3; ++axis) append(static_cast<float>(p[axis]));
   }
@@ -193,10 +229,7 @@ inline std::string as_glb(const Triangles& shape, const std::string& node, const
   json.resize((json.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
   std::string bytes = "glTF";
-  const auto append = [&](std::size_t value) {
-    const auto number = static_cast<std::uint32_t>(value);
-    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-  };
+  const auto append = [&](std::size_t value) { bytes += bytes_of(static_cast<std::uint32_t>(value)); };
   append(2);
   append(28 + json.size() + binary.size());
   append(json.size());
