@@ -182,7 +182,7 @@ TEST_F(Formats, PlyPassesOverWhatIsNotGeometry) {
             "property uchar red\r\nelement face 1\r\nproperty uchar flag\r\nproperty list uchar int vertex_index\r\n"
             "end_header\r\n2 7 8\r\n9 0 0 0 255\r\n9 0 0 1 255\r\n9 0 1 1 255\r\n9 0 1 0 255\r\n1 4 0 1 2 3\r\n"));
   EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 1));
-  EXPECT_EQ(scene.polygons[0].line, 20U);
+  EXPECT_EQ(scene.polygons[0].line, 21U);
   EXPECT_TRUE(any_contains(scene.notes, "'light', ignored: 1"));
   EXPECT_TRUE(any_contains(scene.notes, "colours of the vertices"));
 }
