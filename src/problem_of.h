@@ -6,11 +6,9 @@
 
 namespace patchlight {
 
-/// The materials of the scene on the patches: lamps emit from their front sides, and from their back sides if asked.
+/// The materials of the scene on the patches: lamps emit from their front sides, and from their back sides if asked. A
+/// back side with a material of its own is a front side in this.
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back);
-
-/// \throws MemoryError when the exchange areas of so many patches do not fit this machine's memory.
-void require_memory(PatchIndex patches);
 
 }  // namespace patchlight

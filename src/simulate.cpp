@@ -7,6 +7,7 @@
 #include "patchlight/transport/dense.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "memory.h"
 #include "problem_of.h"
 #include "stage_clock.h"
 
@@ -18,13 +19,14 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   Simulation result;
 
   // 1. Decide which sides take part, how finely they are subdivided, and how form factors and radiosities are found.
+  require_memory(scene, request);
   result.plan = make_plan(scene, request);
   const Plan& plan = result.plan;
 
   // 2. Subdivide the kept sides of the polygons into patches.
   result.mesh = tessellate(scene, plan.sides, plan.max_edge);
   const PatchMesh& mesh = result.mesh;
-  require_memory(mesh.size());
+  require_memory(mesh.size(), request);
   clock.finish(Stage::mesh);
 
   // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays; and the share of each patch's

@@ -96,16 +96,4 @@ double square_to_cosine_hemisphere_pdf(const Vector& direction) {
   return direction.z() > 0 ? direction.z() / std::numbers::pi : 0;
 }
 
-Eigen::Matrix3d frame_around(const Vector& normal) {
-  // Duff et al. 2017, Building an Orthonormal Basis, Revisited, listing 3.
-  const double sign = std::copysign(1.0, normal.z());
-  const double a = -1 / (sign + normal.z());
-  const double b = normal.x() * normal.y() * a;
-  Eigen::Matrix3d frame;
-  frame.col(0) << 1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x();
-  frame.col(1) << b, sign + normal.y() * normal.y() * a, -normal.y();
-  frame.col(2) = normal;
-  return frame;
-}
-
 }  // namespace patchlight

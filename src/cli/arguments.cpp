@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
 
+#include "cli/check_options.h"
 #include "cli/solve_options.h"
 
 #include <CLI/Config.hpp>
@@ -61,6 +62,16 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
+void require_one_command(const CLI::App& tool) {
+  if (tool.get_subcommands().size() == 1) return;
+  const std::vector<std::string> left = tool.remaining();
+  if (!left.empty() && left.front()[0] == '-') {
+    throw UsageError("unknown option " + left.front() + "; expected a command: solve or check");
+  }
+  if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected: solve or check");
+  throw UsageError("found no command; expected: solve or check. patchlight --help tells more");
+}
+
 // The command line as one would type it again.
 std::string joined(int count, const char* const* values) {
   std::string line = "patchlight";
@@ -87,25 +98,22 @@ Arguments parse_arguments(int count, const char* const* values) {
   tool.set_version_flag("--version", std::string("patchlight ") + version(), "prints the version");
   tool.set_help_flag("-h,--help", "prints this help");
   tool.footer(std::string("patchlight COMMAND --help lists the options of a command.\n\n") + exit_codes);
-  const std::shared_ptr<SolveOptions> options = add_solve(tool);
-  CLI::App& solve = *tool.get_subcommand("solve");
-  solve.footer(exit_codes);
+  const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
+  const std::shared_ptr<CheckOptions> check_options = add_check(tool);
   tool.allow_extras();
-  solve.allow_extras();
+  for (CLI::App* command : tool.get_subcommands({})) {
+    command->footer(exit_codes);
+    command->allow_extras();
+  }
 
   // The parsing library speaks through its own exceptions; they end here.
   try {
     tool.parse(count, values);
-    if (!solve.parsed()) {
-      const std::vector<std::string> left = tool.remaining();
-      if (!left.empty() && left.front()[0] == '-') {
-        throw UsageError("unknown option " + left.front() + "; expected a command: solve");
-      }
-      if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected: solve");
-      throw UsageError("found no command; expected: solve. patchlight --help tells more");
-    }
-    require_nothing_left(solve, "solve", tool.remaining(true));
-    SolveArguments arguments = finish_solve(*options);
+    require_one_command(tool);
+    const CLI::App& command = *tool.get_subcommands().front();
+    require_nothing_left(command, command.get_name(), tool.remaining(true));
+    if (command.get_name() == "check") return finish_check(*check_options);
+    SolveArguments arguments = finish_solve(*solve_options);
     arguments.command_line = joined(count, values);
     return arguments;
   } catch (const CLI::CallForHelp&) {

@@ -30,9 +30,10 @@ struct SolveArguments {
   ReadOptions read;
   Request request;
 
-  std::filesystem::path result;   ///< .vtp
-  std::filesystem::path report;   ///< .json
-  std::filesystem::path picture;  ///< .png
+  std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
+  std::filesystem::path series;                ///< .pvd
+  std::filesystem::path report;                ///< .json
+  std::filesystem::path picture;               ///< .png
   PictureColors colors = PictureColors::natural;
   std::optional<Camera> camera;
 
@@ -43,12 +44,21 @@ struct SolveArguments {
   std::string command_line;  ///< for the record
 };
 
+/// What `patchlight check` is asked to do. A path that is empty stands for an output that is not wanted.
+struct CheckArguments {
+  std::filesystem::path model;
+  ReadOptions read;
+  std::filesystem::path problems;  ///< .vtp
+  std::filesystem::path json;      ///< .json
+  bool json_on_stdout = false;     ///< instead of the text
+};
+
 /// A text that the user asked for: --help or --version.
 struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -1,11 +1,13 @@
 #include "patchlight/base/error.h"
 
 #include "cli/arguments.h"
+#include "cli/check.h"
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/solve.h"
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -22,6 +24,7 @@ ExitCode run(int count, const char* const* values) {
     std::cout << information->text;
     return good;
   }
+  if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
   return solve(std::get<SolveArguments>(arguments));
 }
 
@@ -34,6 +37,8 @@ ExitCode failed(ExitCode code, const char* what) {
 
 int main(int count, char** values) {
   watch_interrupts();
+  // A file that may not grow any further is an error of writing, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(count, values);
   } catch (const UsageError& error) {

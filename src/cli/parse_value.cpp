@@ -1,5 +1,7 @@
 #include "cli/parse_value.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -47,6 +49,24 @@ std::uint64_t whole_number(const std::string& option, const std::string& text, s
   return value;
 }
 
+double bytes(const std::string& option, const std::string& text) {
+  constexpr std::array<std::pair<const char*, double>, 8> units = {{{"", 1},
+                                                                    {"B", 1},
+                                                                    {"kB", 1e3},
+                                                                    {"MB", 1e6},
+                                                                    {"GB", 1e9},
+                                                                    {"TB", 1e12},
+                                                                    {"MiB", 1024.0 * 1024},
+                                                                    {"GiB", 1024.0 * 1024 * 1024}}};
+  const std::size_t end = text.find_last_of("0123456789.") + 1;
+  const std::size_t begin = std::min(text.find_first_not_of(' ', end), text.size());
+  const std::optional<double> value = to_number(text.substr(0, end));
+  for (const auto& [unit, size] : units) {
+    if (value && *value > 0 && text.substr(begin) == unit) return *value * size;
+  }
+  throw refusal(option, text, "a size above 0 such as 2GB, 512MiB or '2 GB'; units: B, kB, MB, GB, TB, MiB, GiB");
+}
+
 Point point(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text);
   Point result = Point::Zero();
@@ -57,6 +77,10 @@ Point point(const std::string& option, const std::string& text) {
     result[axis] = *value;
   }
   return result;
+}
+
+double unit_length(const std::string& text) {
+  return choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
 }
 
 }  // namespace patchlight::cli

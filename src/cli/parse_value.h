@@ -27,8 +27,14 @@ double number(const std::string& option, const std::string& text, const std::str
 std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lower,
                            std::uint64_t upper);
 
+/// The value of an option as a number of bytes, as in 2GB, 512 MiB or 2e9. \throws UsageError.
+double bytes(const std::string& option, const std::string& text);
+
 /// The value of an option as a point X,Y,Z. \throws UsageError.
 Point point(const std::string& option, const std::string& text);
+
+/// The value of --unit, m, cm, mm, in or ft, in metres. \throws UsageError.
+double unit_length(const std::string& text);
 
 /// The sentence that refuses a value.
 UsageError refusal(const std::string& option, const std::string& found, const std::string& expected);

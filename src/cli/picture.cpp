@@ -1,7 +1,6 @@
 #include "cli/picture.h"
 
 #include "patchlight/light/photometry.h"
-#include "patchlight/mesh/interpolate.h"
 #include "patchlight/output/write_image.h"
 #include "patchlight/render/render.h"
 #include "patchlight/render/tone_map.h"
@@ -55,8 +54,8 @@ Field display_radiance(const Simulation& simulation) {
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
                           const Occluder& occluder, double exposure, const Observer& observer) {
   const Camera camera = arguments.camera ? *arguments.camera : default_camera(scene, simulation.plan.sides, occluder);
-  const Field at_vertices = vertex_means(simulation.mesh, display_radiance(simulation), simulation.problem.area);
-  const Image image = render(simulation.mesh, at_vertices, occluder, camera, scene.up, {}, observer);
+  const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
+  const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
   if (arguments.colors == PictureColors::natural) {
     return {.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure)};
   }

@@ -6,7 +6,8 @@
 #include "patchlight/output/write_image.h"
 #include "patchlight/output/write_points.h"
 #include "patchlight/output/write_report.h"
-#include "patchlight/output/write_vtk.h"
+#include "patchlight/output/write_result.h"
+#include "patchlight/output/write_series.h"
 #include "patchlight/render/tone_map.h"
 #include "patchlight/simulate.h"
 
@@ -33,11 +34,14 @@ struct Results {
   SensorList points;
   Field irradiance;  // at the points, W/m^2
   DisplayImage picture;
+  std::vector<IterateIrradiance> iterates;
   Provenance provenance;
 };
 
 void check_outputs(const SolveArguments& arguments) {
-  for (const auto* file : {&arguments.result, &arguments.report, &arguments.picture, &arguments.points_output}) {
+  for (const std::filesystem::path& file : arguments.results) check_writable(file);
+  if (!arguments.series.empty()) check_series_writable(arguments.series);
+  for (const auto* file : {&arguments.report, &arguments.picture, &arguments.points_output}) {
     if (!file->empty()) check_writable(*file);
   }
 }
@@ -54,7 +58,12 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   reading.finish(Stage::read);
 
   // 2. Solve
-  simulation = simulate(results.scene, arguments.request, observer);
+  simulation = simulate(results.scene, arguments.request, [&](const Progress& progress) {
+    if (progress.irradiance != nullptr && !arguments.series.empty()) {
+      results.iterates.emplace_back(progress.irradiance->cast<float>());
+    }
+    return observer(progress);
+  });
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);
@@ -63,7 +72,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 3. Look at the solution: irradiance at points, picture
   StageClock looking;
-  const Occluder occluder(results.scene);
+  const Occluder occluder(results.scene, Occluder::Blockers::all);
   if (!arguments.points.empty()) {
     results.irradiance =
         gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,
@@ -88,8 +97,13 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
     written.push_back(file);
   };
   const WritingGuard guard;
-  write_to(arguments.result,
-           [&] { write_vtk(arguments.result, results.scene, results.simulation, results.provenance); });
+  for (const std::filesystem::path& file : arguments.results) {
+    write_to(file, [&] { write_result(file, results.scene, results.simulation, results.provenance); });
+  }
+  write_to(arguments.series, [&] {
+    write_series(arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
+                 [](const Progress&) { return !interrupted(); });
+  });
   write_to(arguments.picture, [&] { write_png(arguments.picture, results.picture); });
   write_to(arguments.points_output,
            [&] { write_points(arguments.points_output, results.points.lines, results.irradiance); });

@@ -1,6 +1,7 @@
 #include "cli/solve_options.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/output/write_result.h"
 
 #include "cli/parse_value.h"
 
@@ -22,8 +23,9 @@ struct CameraOption {
 }  // namespace
 
 struct SolveOptions {
-  std::vector<std::string> models;
-  std::string format, result, report, picture, points, points_output;
+  std::vector<std::string> models, results;
+  std::string format, series, report, picture, points, points_output;
+  bool solver_given = false;
   std::vector<std::string> settings;
   double metres_per_unit = 1;
   std::optional<Vector> up;
@@ -54,7 +56,15 @@ void add_file(CLI::App& command, const std::string& name, std::string& file, con
 }
 
 void add_outputs(CLI::App& command, SolveOptions& options) {
-  add_file(command, "-o,--output", options.result, "solved patches for ParaView (.vtp)");
+  command
+      .add_option("-o,--output", options.results,
+                  "solved patches: for ParaView (.vtp), or with vertex colors for\nviewers and the web (.ply, .glb); "
+                  "may be repeated")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
+  add_file(command, "--series", options.series,
+           "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
+           "bounce k");
   add_file(command, "--report", options.report, "what was asked, decided and found, with energy balance (JSON)");
   add_file(command, "--picture", options.picture, "a picture of the solution (.png), 800 x 800 pixels");
   add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
@@ -103,12 +113,11 @@ void add_model(CLI::App& command, SolveOptions& options) {
         for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
         options.format = choice<std::string>("--format", text, allowed);
       });
-  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m", [&options](const std::string& text) {
-    options.metres_per_unit =
-        choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
-  });
+  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m",
+      [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
   add(command, "--up", "y|z",
-      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else z",
+      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else against the "
+      "lamps' light",
       [&options](const std::string& text) {
         options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });
@@ -134,8 +143,10 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       });
   add(command, "--patches", "N", "number of patches, met within 10 %; default " + std::to_string(default_patches),
       [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
-  add(command, "--solver", "jacobi|gauss-seidel|progressive", "how the equations are solved; default gauss-seidel",
-      [&request](const std::string& text) {
+  add(command, "--solver", "jacobi|gauss-seidel|progressive",
+      "how the equations are solved; default gauss-seidel, with\n--series jacobi",
+      [&request, &options](const std::string& text) {
+        options.solver_given = true;
         request.solver = choice<Solver>(
             "--solver", text,
             {{"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}, {"progressive", Solver::progressive}});
@@ -144,6 +155,10 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       [&request](const std::string& text) {
         const auto inside = [](double x) { return x > 0 && x < 1; };
         request.tolerance = number("--tolerance", text, "a number above 0 and below 1", inside);
+      });
+  add(command, "--max-iterations", "N", "the solver gives up after so many iterations; default 1000",
+      [&request](const std::string& text) {
+        request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
       });
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
       [&request](const std::string& text) {
@@ -155,18 +170,28 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       [&request](const std::string& text) {
         request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
       });
+  add(command, "--memory", "SIZE",
+      "memory that may be taken, e.g. 2GB or 500MiB; what needs more is\nrefused before it begins; default: 80 % of "
+      "the "
+      "machine's",
+      [&request](const std::string& text) { request.memory = bytes("--memory", text); });
 }
 
-void require_extension(const std::string& option, const std::string& file, const std::string& extension) {
-  if (!file.empty() && path(file).extension() != extension) {
-    throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + extension);
+void require_extension(const std::string& option, const std::string& file, const std::vector<std::string>& allowed) {
+  std::string words;
+  for (const std::string& extension : allowed) {
+    if (path(file).extension() == extension) return;
+    words += (words.empty() ? "" : " or ") + extension;
   }
+  throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + words);
 }
 
 void require_consistent(const SolveOptions& options) {
   if (options.models.empty()) throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
-  if (options.result.empty() && options.picture.empty() && options.report.empty() && options.points.empty()) {
-    throw UsageError("solve: nothing would be written; give at least one of -o, --picture, --report, --points");
+  if (options.results.empty() && options.series.empty() && options.picture.empty() && options.report.empty() &&
+      options.points.empty()) {
+    throw UsageError(
+        "solve: nothing would be written; give at least one of -o, --series, --picture, --report, --points");
   }
   if (options.max_edge && options.request.patches) {
     throw UsageError("--max-edge and --patches both set the size of the patches; give one of them");
@@ -181,19 +206,20 @@ void require_consistent(const SolveOptions& options) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
-  require_extension("-o", options.result, ".vtp");
-  require_extension("--picture", options.picture, ".png");
+  for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
+  if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
+  if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
 }
 
 // Every output must be a file of its own, and no output may replace an input.
 void require_distinct_files(const SolveArguments& arguments) {
-  std::vector<std::pair<const char*, const path*>> files;
-  for (const path& model : arguments.models) files.emplace_back("a model", &model);
-  files.insert(files.end(), {{"--points", &arguments.points},
-                             {"-o", &arguments.result},
-                             {"--report", &arguments.report},
-                             {"--picture", &arguments.picture},
-                             {"--points-output", &arguments.points_output}});
+  std::vector<std::pair<const char*, const path*>> files = {{"--points", &arguments.points},
+                                                            {"--series", &arguments.series},
+                                                            {"--report", &arguments.report},
+                                                            {"--picture", &arguments.picture},
+                                                            {"--points-output", &arguments.points_output}};
+  for (const path& model : arguments.models) files.insert(files.begin(), {"a model", &model});
+  for (const path& result : arguments.results) files.emplace_back("-o", &result);
   for (std::size_t b = 1; b < files.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       if (files[a].second->empty() || files[b].second->empty()) continue;
@@ -207,7 +233,8 @@ void require_distinct_files(const SolveArguments& arguments) {
 
 path points_output(const SolveOptions& options) {
   if (options.points.empty() || !options.points_output.empty()) return options.points_output;
-  return path(options.result).parent_path() / (path(options.points).stem().string() + ".irradiance.csv");
+  const path beside = options.results.empty() ? path() : path(options.results.front());
+  return beside.parent_path() / (path(options.points).stem().string() + ".irradiance.csv");
 }
 
 }  // namespace
@@ -235,7 +262,9 @@ SolveArguments finish_solve(const SolveOptions& options) {
   }
   arguments.request = options.request;
   if (options.max_edge) arguments.request.max_edge = *options.max_edge * metres;
-  arguments.result = options.result;
+  if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
+  arguments.results.assign(options.results.begin(), options.results.end());
+  arguments.series = options.series;
   arguments.report = options.report;
   arguments.picture = options.picture;
   arguments.colors = options.colors.value_or(PictureColors::natural);

@@ -21,9 +21,11 @@ SamplePairs::SamplePairs(std::uint32_t samples, std::uint64_t seed) : samples_(s
   }
 }
 
-const std::array<double, 4>& SamplePairs::at(PatchIndex first, PatchIndex second, std::uint32_t sample) const {
+const std::array<double, 4>& SamplePairs::at(std::uint32_t first_key, std::uint32_t second_key,
+                                             std::uint32_t sample) const {
   assert(sample < samples_);
-  const std::uint32_t scramble = hash(first ^ hash(second ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles;
+  const std::uint32_t scramble =
+      hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles;
   return table_[static_cast<std::size_t>(scramble) * samples_ + sample];
 }
 

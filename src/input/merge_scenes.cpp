@@ -70,6 +70,11 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   scene.groups.insert(scene.groups.end(), added.groups.begin(), added.groups.end());
   for (const std::string& note : added.notes) scene.notes.push_back(added.file + ": " + note);
   scene.notes.insert(scene.notes.end(), palette.notes.begin(), palette.notes.end());
+  for (Problem& problem : added.problems) {
+    for (ProblemFace& face : problem.faces) face.file = file;
+    scene.problems.push_back(std::move(problem));
+  }
+  scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
   scene.files.push_back(added.file);
   return scene;
 }
@@ -84,6 +89,7 @@ Scene merge_scenes(std::vector<Scene> scenes) {
   std::string names;
   merged.metres_per_unit = scenes[0].metres_per_unit;
   merged.up = scenes[0].up;
+  merged.up_stated = scenes[0].up_stated;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     checksums.push_back(scenes[k].sha256);
     names += (k == 0 ? "" : " + ") + scenes[k].file;

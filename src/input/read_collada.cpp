@@ -27,6 +27,7 @@ Scene read_collada(const std::filesystem::path& file, double metres_per_unit) {
   Scene scene =
       read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
   scene.up = up_axis(bytes);
+  scene.up_stated = true;
   scene.sha256 = sha256({&bytes, 1});
   return scene;
 }

@@ -193,6 +193,7 @@ Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;
   scene.up = Vector::UnitY();
+  scene.up_stated = true;
 
   // 3. What is not simulated.
   for (std::string& note : notes_on_materials(gltf)) scene.notes.push_back(std::move(note));

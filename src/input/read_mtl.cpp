@@ -70,11 +70,11 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.has_reflectance = colors.reflectance.has_value();
   material.reflectance = colors.reflectance.value_or(rgb(read.diffuse[0], read.diffuse[1], read.diffuse[2]));
   material.radiance = colors.radiance.value_or(rgb(0, 0, 0));
+  material.ambient = rgb(read.ambient[0], read.ambient[1], read.ambient[2]);
   material.is_specular = any(read.specular);
   material.has_texture = has_texture(read);
   material.is_transparent = read.dissolve < 1;
   material.is_mirror_or_glass = read.illum >= 3 && read.illum <= 9;
-  material.has_ambient = any(read.ambient);
   return material;
 }
 
@@ -120,10 +120,6 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
        [](const MtlMaterial& m) { return m.is_transparent; });
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",
        [](const MtlMaterial& m) { return m.is_mirror_or_glass; });
-  if (names_with(materials, [](const MtlMaterial& m) { return (m.radiance > 0).any(); }).empty()) {
-    note("no material has a Ke, so nothing emits; Ka is ignored, but may be meant as a lamp's Ke",
-         [](const MtlMaterial& m) { return m.has_ambient; });
-  }
   return notes;
 }
 

@@ -8,8 +8,11 @@
 #include "input/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <tiny_obj_loader.h>
 
@@ -23,30 +26,94 @@ constexpr const char* default_name = "default";
 struct Libraries {
   std::vector<MtlMaterial> materials;  // of those with the same name only the first counts
   std::vector<std::string> texts;      // the files' bytes, for the checksum
+  std::vector<Problem> problems;
 };
 
 std::string at(const std::filesystem::path& file, std::uint32_t line) {
   return file.string() + ":" + std::to_string(line);
 }
 
-// The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
-std::vector<std::filesystem::path> library_files(const std::filesystem::path& obj, const std::string& names) {
+// A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
+struct LibraryFile {
+  std::string name;
+  std::filesystem::path place;
+  bool moved = false;  // it is beside the model instead of where the statement says
+};
+
+bool is_file(const std::filesystem::path& file) {
   std::error_code error;
-  if (std::filesystem::exists(obj.parent_path() / names, error)) return {obj.parent_path() / names};
-  std::vector<std::filesystem::path> files;
-  for (const std::string_view name : words(names)) files.push_back(obj.parent_path() / name);
-  return files;
+  return std::filesystem::is_regular_file(file, error);
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+// Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
+// written under Windows.
+LibraryFile find_library(const std::filesystem::path& obj, const std::string& name) {
+  const std::filesystem::path folder = obj.parent_path();
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  for (const std::string& path : {name, slashes}) {
+    if (is_file(folder / path)) return {name, folder / path};
+  }
+  const std::filesystem::path last = std::filesystem::path(slashes).filename();
+  if (last.empty()) return {name, {}};
+  if (is_file(folder / last)) return {name, folder / last, true};
+  std::vector<std::filesystem::path> similar;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::filesystem::path& file = entry.path();
+    if (in_lower_case(file.filename().string()) == in_lower_case(last.string())) similar.push_back(file.filename());
+  }
+  std::sort(similar.begin(), similar.end());
+  if (!similar.empty() && is_file(folder / similar[0])) return {name, folder / similar[0], true};
+  return {name, {}};
+}
+
+// The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
+std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const std::string& statement) {
+  const LibraryFile whole = find_library(obj, statement);
+  if (!whole.place.empty() && !whole.moved) return {whole};
+  std::vector<LibraryFile> files;
+  for (const std::string_view name : words(statement)) files.push_back(find_library(obj, std::string(name)));
+  const bool all_there = std::all_of(files.begin(), files.end(), [](const auto& file) { return !file.place.empty(); });
+  return all_there || whole.place.empty() ? files : std::vector{whole};
+}
+
+std::optional<Problem> problem_with(const LibraryFile& file, const std::string& where) {
+  const std::string found = "mtllib (" + where + ") names '" + file.name + "', ";
+  if (file.place.empty()) {
+    return Problem{ProblemKind::missing_material_file,
+                   1,
+                   found +
+                       "which is neither there nor beside the model; the materials that no other file defines "
+                       "are grey, reflectance 0.5",
+                   {}};
+  }
+  if (!file.moved) return std::nullopt;
+  return Problem{ProblemKind::moved_material_file,
+                 1,
+                 found + "which is not there; " + file.place.string() + " is taken instead",
+                 {}};
 }
 
 Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements) {
   Libraries libraries;
-  std::vector<std::filesystem::path> seen;
+  std::set<std::string> names;
+  std::set<std::filesystem::path> places;
   for (const ObjName& statement : statements) {
-    for (const std::filesystem::path& file : library_files(obj, statement.name)) {
-      if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
-      seen.push_back(file);
-      libraries.texts.push_back(read_text(file, at(obj, statement.line), "the material file " + file.string()));
-      const std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.string());
+    const std::string where = at(obj, statement.line);
+    for (const LibraryFile& file : library_files(obj, statement.name)) {
+      if (!names.insert(file.name).second) continue;
+      const std::optional<Problem> problem = problem_with(file, where);
+      if (problem) libraries.problems.push_back(*problem);
+      if (file.place.empty() || !places.insert(file.place).second) continue;
+      libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
+      const std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
       libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
     }
   }
@@ -59,30 +126,33 @@ std::size_t find_material(std::span<const MtlMaterial> defined, const std::strin
   return static_cast<std::size_t>(found - defined.begin());
 }
 
-// The defined materials and, unless the file defines it, the one for faces without a material.
-std::vector<MtlMaterial> with_default(std::vector<MtlMaterial> defined) {
-  if (find_material(defined, default_name) == defined.size()) {
-    MtlMaterial material;
-    material.name = default_name;
-    material.reflectance = rgb(default_reflectance, default_reflectance, default_reflectance);
-    material.radiance = rgb(0, 0, 0);
-    material.has_reflectance = true;
-    defined.push_back(material);
+MtlMaterial grey_material(const std::string& name) {
+  MtlMaterial material;
+  material.name = name;
+  material.reflectance = rgb(default_reflectance, default_reflectance, default_reflectance);
+  material.radiance = rgb(0, 0, 0);
+  material.ambient = rgb(0, 0, 0);
+  material.has_reflectance = true;
+  return material;
+}
+
+// The materials of the names that usemtl statements use and no file defines, and the one for faces before any usemtl.
+std::vector<MtlMaterial> undefined_materials(const ObjScan& scan, std::span<const MtlMaterial> defined) {
+  std::vector<MtlMaterial> undefined;
+  for (const ObjName& used : scan.materials) {
+    if (find_material(defined, used.name) == defined.size()) undefined.push_back(grey_material(used.name));
   }
-  return defined;
+  if (find_material(defined, default_name) == defined.size() &&
+      find_material(undefined, default_name) == undefined.size()) {
+    undefined.push_back(grey_material(default_name));
+  }
+  return undefined;
 }
 
 // The defined material of every face.
-std::vector<std::size_t> face_materials(const std::filesystem::path& obj, const ObjScan& scan,
-                                        std::span<const MtlMaterial> defined) {
+std::vector<std::size_t> face_materials(const ObjScan& scan, std::span<const MtlMaterial> defined) {
   std::vector<std::size_t> by_name;
-  for (const ObjName& used : scan.materials) {
-    by_name.push_back(find_material(defined, used.name));
-    if (by_name.back() == defined.size()) {
-      throw InputError(at(obj, used.line), "usemtl names material '" + used.name +
-                                               "', which no mtllib file defines; define it there, or mend the name");
-    }
-  }
+  for (const ObjName& used : scan.materials) by_name.push_back(find_material(defined, used.name));
   const std::size_t without = find_material(defined, default_name);
   std::vector<std::size_t> materials;
   for (const ObjFace& face : scan.faces) {
@@ -156,15 +226,67 @@ std::vector<std::string> notes_on(const ObjScan& scan, const Palette& palette) {
   const auto note = [&](const std::string& what, std::size_t count) {
     if (count > 0) notes.push_back(what + ": " + std::to_string(count));
   };
-  const auto without = std::count_if(scan.faces.begin(), scan.faces.end(),
-                                     [](const ObjFace& face) { return face.material == no_material; });
-  note("faces without a material, which get the material 'default' (reflectance 0.5 unless the file defines it)",
-       static_cast<std::size_t>(without));
   note("lines (l), ignored", scan.polylines);
   note("points (p), ignored", scan.points);
   note("free-form surfaces (surf), ignored", scan.free_form_surfaces);
   for (std::string& sentence : notes_on_ignored(palette.materials)) notes.push_back(std::move(sentence));
   return notes;
+}
+
+// "a (room.obj:3), b (room.obj:9) and 12 more".
+std::string first_few(const std::vector<std::string>& texts) {
+  constexpr std::size_t few = 5;
+  const std::size_t count = std::min(few, texts.size());
+  const std::string rest = texts.size() > few ? " and " + std::to_string(texts.size() - few) + " more" : "";
+  return listed(std::span(texts).first(count)) + rest;
+}
+
+std::vector<Problem> problems_with_names(const std::string& file, const ObjScan& scan,
+                                         std::span<const MtlMaterial> defined) {
+  std::vector<std::string> unknown;
+  for (const ObjName& used : scan.materials) {
+    if (find_material(defined, used.name) == defined.size() && used.name != default_name) {
+      unknown.push_back("'" + used.name + "' (" + at(file, used.line) + ")");
+    }
+  }
+  std::vector<Problem> problems;
+  if (!unknown.empty()) {
+    problems.push_back({ProblemKind::unknown_material,
+                        unknown.size(),
+                        "usemtl names " + first_few(unknown) +
+                            ", which no material file defines; such materials are grey, reflectance 0.5",
+                        {}});
+  }
+  Problem without{ProblemKind::no_material, 0, {}, {}};
+  for (std::size_t k = 0; k < scan.faces.size(); ++k) {
+    if (scan.faces[k].material != no_material) continue;
+    without.faces.push_back({{}, 0, scan.faces[k].line, static_cast<std::uint32_t>(k)});
+  }
+  without.count = without.faces.size();
+  without.what = "faces without a material, as there is no usemtl above them: " + std::to_string(without.count) +
+                 "; they get the material 'default', reflectance 0.5 unless a material file defines it";
+  if (without.count > 0) problems.push_back(std::move(without));
+
+  Problem narrow{ProblemKind::zero_area, scan.short_faces.size(), {}, {}};
+  for (const std::uint32_t line : scan.short_faces) narrow.faces.push_back({{}, 0, line, 0});
+  if (narrow.count > 0) {
+    narrow.what = std::to_string(narrow.count) + (narrow.count == 1 ? " face" : " faces") +
+                  " with fewer than three corners (first at " + at(file, scan.short_faces[0]) + "); left out";
+    problems.push_back(std::move(narrow));
+  }
+  return problems;
+}
+
+// Materials that do not emit, but have a Ka above 1: some programs mean a lamp by that.
+std::vector<LampHint> lamp_hints(std::span<const MtlMaterial> materials) {
+  std::vector<LampHint> hints;
+  for (const MtlMaterial& material : materials) {
+    if ((material.radiance > 0).any() || !(material.ambient > 1).any()) continue;
+    std::ostringstream reason;
+    reason << "its Ka is " << material.ambient.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ", "));
+    hints.push_back({material.name, material.ambient, reason.str()});
+  }
+  return hints;
 }
 
 }  // namespace
@@ -176,8 +298,10 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit) {
 
   // 2. The materials its mtllib files define and its faces use.
   const Libraries libraries = read_libraries(file, scan.libraries);
-  const std::vector<MtlMaterial> defined = with_default(libraries.materials);
-  const Palette palette = used_materials(defined, face_materials(file, scan, defined));
+  std::vector<MtlMaterial> defined = libraries.materials;
+  const std::vector<MtlMaterial> undefined = undefined_materials(scan, defined);
+  defined.insert(defined.end(), undefined.begin(), undefined.end());
+  const Palette palette = used_materials(defined, face_materials(scan, defined));
 
   // 3. The scene, in metres.
   Scene scene;
@@ -190,6 +314,11 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit) {
   scene.file = file.string();
   scene.metres_per_unit = metres_per_unit;
   scene.notes = notes_on(scan, palette);
+  scene.lamp_hints = lamp_hints(palette.materials);
+  scene.problems = libraries.problems;
+  for (Problem& problem : problems_with_names(file.string(), scan, libraries.materials)) {
+    scene.problems.push_back(std::move(problem));
+  }
 
   // 4. The checksum of everything read.
   bytes.insert(bytes.end(), libraries.texts.begin(), libraries.texts.end());

@@ -1,6 +1,7 @@
 #include "patchlight/input/read_scene.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/repair.h"
 
 #include "input/merge_scenes.h"
 #include "input/read_collada.h"
@@ -158,9 +159,16 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   std::vector<Scene> scenes;
   for (const std::filesystem::path& file : files) scenes.push_back(read_model(file, options));
   Scene scene = merge_scenes(std::move(scenes));
-  if (options.up) scene.up = *options.up;
   scene.materials = changed(std::move(scene.materials), options.settings);
+  scene = repair(std::move(scene));
+  if (scene.polygons.empty() && !scene.problems.empty()) {
+    throw InputError(scene.file, "no face is left of which light could come: " + scene.problems[0].what);
+  }
   check(scene);
+  if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
+  std::vector<std::string> notes;
+  for (const Problem& problem : scene.problems) notes.push_back(problem.what);
+  scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
 }
 

@@ -64,10 +64,6 @@ std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, 
 std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& statement, std::size_t vertices_above,
                                        const std::string& where) {
   const std::size_t count = statement.size() - 1;
-  if (count < 3) {
-    throw InputError(where,
-                     "this face has " + std::to_string(count) + " corners; expected at least three. Remove the face");
-  }
   if (count > most_corners) {
     throw InputError(where, "this face has " + std::to_string(count) + " corners; expected at most " +
                                 std::to_string(most_corners) + ". Cut it into smaller faces");
@@ -109,12 +105,18 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
       for (const std::int64_t corner : corners) {
         if (corner > highest.number) highest = {corner, line.number};
       }
+      if (corners.size() < 3) {
+        scan.short_faces.push_back(line.number);
+        continue;
+      }
       scan.faces.push_back({line.number, material});
       scan.geometry += face_statement(corners) + "\n";
     } else if (keyword == "g" || keyword == "o") {
       scan.geometry += line.text + "\n";
     } else if (keyword == "usemtl") {
       const auto name = std::string(after_first_word(line.text));
+      material = no_material;
+      if (name.empty()) continue;
       const auto [entry, is_new] = known.emplace(name, static_cast<std::uint32_t>(scan.materials.size()));
       if (is_new) scan.materials.push_back({name, line.number});
       material = entry->second;

@@ -111,6 +111,7 @@ std::string scene_bytes(const Scene& scene) {
   out.text(scene.sha256);
   out.plain(scene.metres_per_unit);
   out.numbers(scene.up);
+  out.plain(scene.up_stated);
   return std::move(out).bytes();
 }
 
@@ -131,6 +132,7 @@ Scene scene_from_bytes(std::string_view bytes) {
   scene.sha256 = in.text();
   scene.metres_per_unit = in.plain<double>();
   scene.up = in.point();
+  scene.up_stated = in.plain<bool>();
   return scene;
 }
 

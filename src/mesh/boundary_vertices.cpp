@@ -52,15 +52,16 @@ std::vector<std::uint32_t> weld(std::span<const Outline> outlines) {
   return place;
 }
 
-std::vector<Edge> sorted_edges(const Scene& scene, const Corners& corners, std::span<const std::uint8_t> kept,
-                               std::span<const std::uint32_t> place) {
+std::vector<Edge> sorted_edges(const Scene& scene, const Corners& corners, Side side,
+                               std::span<const std::uint8_t> kept, std::span<const std::uint32_t> place) {
   std::vector<Edge> edges;
   for (std::uint32_t p = 0; p < kept.size(); ++p) {
     if (!kept[p]) continue;
+    const MaterialIndex material = material_on(scene.polygons[p], side);
     for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
       const std::uint32_t from = place[c];
       const std::uint32_t to = place[corners.next(p, c)];
-      edges.push_back({std::min(from, to), std::max(from, to), scene.polygons[p].material, p, c, from < to});
+      edges.push_back({std::min(from, to), std::max(from, to), material, p, c, from < to});
     }
   }
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
@@ -114,12 +115,12 @@ std::vector<std::uint32_t> unite(const Corners& corners, std::span<const std::ui
 
 }  // namespace
 
-BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines,
+BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
                                  std::span<const std::uint8_t> kept) {
   // 1. Which edges and corners are shared.
   const Corners corners = count_corners(outlines);
   const std::vector<std::uint32_t> place = weld(outlines);
-  const std::vector<Edge> edges = sorted_edges(scene, corners, kept, place);
+  const std::vector<Edge> edges = sorted_edges(scene, corners, side, kept, place);
   const std::vector<std::uint32_t> neighbour = smooth_neighbours(outlines, edges, place.size());
   const std::vector<std::uint32_t> shared = unite(corners, neighbour);
 

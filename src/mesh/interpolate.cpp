@@ -39,33 +39,34 @@ Weights inverse_bilinear(const PatchCorners& patch, const Vector& normal, const 
 
 }  // namespace
 
-Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const Eigen::VectorXd& area) {
+Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const CornerWeights& weights) {
   Field sum = Field::Zero(static_cast<Eigen::Index>(mesh.vertices.size()), patch_values.cols());
-  std::vector<double> weight(mesh.vertices.size(), 0);
+  std::vector<double> total(mesh.vertices.size(), 0);
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
     const int count = mesh.corner_points(patch).count;
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const std::uint32_t vertex = mesh.corners[patch][k];
-      sum.row(vertex) += area[patch] * patch_values.row(patch);
-      weight[vertex] += area[patch];
+      const double weight = weights(patch, static_cast<Eigen::Index>(k));
+      sum.row(vertex) += weight * patch_values.row(patch);
+      total[vertex] += weight;
     }
   }
-  for (std::size_t vertex = 0; vertex < weight.size(); ++vertex) {
-    if (weight[vertex] > 0) sum.row(static_cast<Eigen::Index>(vertex)) /= weight[vertex];
+  for (std::size_t vertex = 0; vertex < total.size(); ++vertex) {
+    if (total[vertex] > 0) sum.row(static_cast<Eigen::Index>(vertex)) /= total[vertex];
   }
   return sum;
 }
 
-Eigen::Array<double, 1, Eigen::Dynamic> interpolate(const PatchMesh& mesh, const FieldView& vertex_values,
-                                                    PatchIndex patch, const Point& point) {
+std::array<double, 4> interpolation_weights(const PatchMesh& mesh, PatchIndex patch, const Point& point) {
   const PatchCorners corners = mesh.corner_points(patch);
   const Vector& normal = mesh.normal[patch];
-  const Weights weights =
-      corners.count == 3 ? barycentric(corners, normal, point) : inverse_bilinear(corners, normal, point);
+  return corners.count == 3 ? barycentric(corners, normal, point) : inverse_bilinear(corners, normal, point);
+}
+
+Eigen::Array<double, 1, Eigen::Dynamic> interpolate(const PatchMesh& mesh, const FieldView& vertex_values,
+                                                    PatchIndex patch, const std::array<double, 4>& weights) {
   Eigen::Array<double, 1, Eigen::Dynamic> value = Eigen::Array<double, 1, Eigen::Dynamic>::Zero(vertex_values.cols());
-  for (std::size_t k = 0; k < static_cast<std::size_t>(corners.count); ++k) {
-    value += weights[k] * vertex_values.row(mesh.corners[patch][k]);
-  }
+  for (std::size_t k = 0; k < 4; ++k) value += weights[k] * vertex_values.row(mesh.corners[patch][k]);
   return value;
 }
 

@@ -143,8 +143,8 @@ Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge) 
     pieces.outlines[p] = make_outline(scene, static_cast<PolygonIndex>(p), max_edge);
     if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], max_edge);
   });
-  pieces.boundary = {number_boundary(scene, pieces.outlines, sides.front),
-                     number_boundary(scene, pieces.outlines, sides.back)};
+  pieces.boundary = {number_boundary(scene, pieces.outlines, Side::front, sides.front),
+                     number_boundary(scene, pieces.outlines, Side::back, sides.back)};
   return pieces;
 }
 
@@ -180,6 +180,7 @@ std::array<std::uint32_t, 4> reversed(const std::array<std::uint32_t, 4>& corner
 void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::size_t slot) {
   const std::size_t p = slot / 2;
   const bool back = slot % 2 == 1;
+  const Side side = back ? Side::back : Side::front;
   const PolygonMesh& piece = pieces.meshes[p];
   const Vector normal = back ? Vector(-pieces.outlines[p].normal) : pieces.outlines[p].normal;
   const std::vector<std::uint32_t>& boundary = pieces.boundary[back ? 1 : 0].of_polygon[p];
@@ -198,9 +199,9 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::s
     mesh.centroid[patch] = area_centroid(points);
     mesh.normal[patch] = normal;
     mesh.area[patch] = normal.dot(area_vector(points));
-    mesh.material[patch] = scene.polygons[p].material;
+    mesh.material[patch] = material_on(scene.polygons[p], side);
     mesh.polygon[patch] = static_cast<PolygonIndex>(p);
-    mesh.side[patch] = back ? Side::back : Side::front;
+    mesh.side[patch] = side;
     ++patch;
   }
 }

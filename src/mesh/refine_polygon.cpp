@@ -82,6 +82,7 @@ class Refinement {
   void flip_suspects();
   void split(EdgeHandle edge, VertexHandle at);
   bool is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const;
+  bool is_flat(FaceHandle face) const;
   FaceHandle find_face(FaceHandle start, const Workbench::Point& point) const;
 
   Workbench mesh_;
@@ -263,6 +264,16 @@ void Refinement::split_long_edges() {
   }
 }
 
+// Is the triangle no more than a line? It then covers nothing: a corner of the polygon that lies on an edge.
+bool Refinement::is_flat(FaceHandle face) const {
+  constexpr double rounding = 1e-12;
+  std::array<Workbench::Point, 3> corners;
+  std::size_t k = 0;
+  for (const auto vertex : mesh_.fv_range(face)) corners[k++] = mesh_.point(vertex);
+  const auto& [a, b, c] = corners;
+  return std::abs(turn(a, b, c)) <= rounding * (dot(a, b, b) + dot(b, c, c) + dot(c, a, a));
+}
+
 PolygonMesh Refinement::result(const Plane& plane) const {
   PolygonMesh result;
   for (std::size_t v = boundary_count_; v < mesh_.n_vertices(); ++v) {
@@ -271,6 +282,7 @@ PolygonMesh Refinement::result(const Plane& plane) const {
   }
   result.patches.reserve(mesh_.n_faces());
   for (const auto face : mesh_.faces()) {
+    if (is_flat(face)) continue;
     std::array<std::uint32_t, 4> patch{};
     std::size_t k = 0;
     for (const auto vertex : mesh_.fv_range(face)) patch[k++] = static_cast<std::uint32_t>(vertex.idx());

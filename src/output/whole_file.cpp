@@ -7,6 +7,9 @@
 #include <cstring>
 #include <fcntl.h>
 #include <string>
+#include <string_view>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -15,27 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view temporary_prefix = ".patchlight-";
+
 // A name beside `file` that no other process and no other call uses. The extension stays, as writers look at it.
 fs::path temporary_beside(const fs::path& file) {
   static std::atomic<unsigned> calls{0};
-  const std::string name = ".patchlight-" + std::to_string(getpid()) + "-" + std::to_string(calls++);
+  const std::string name = std::string(temporary_prefix) + std::to_string(getpid()) + "-" + std::to_string(calls++);
   return file.parent_path() / (name + file.extension().string());
 }
 
-// A path whose file is gone when the path goes out of scope, unless it was renamed.
-struct TemporaryFile {
-  fs::path path;
-  explicit TemporaryFile(fs::path name) : path(std::move(name)) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-};
-
 // The file itself, absolute, where `file` is a symbolic link to it: renaming would replace the link.
 fs::path followed(const fs::path& file) {
+  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
   std::error_code ignored;
   return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file) : fs::absolute(file);
 }
@@ -44,10 +38,53 @@ fs::path followed(const fs::path& file) {
   throw OutputError(file.string(), message + ": " + std::strerror(error_number));
 }
 
-void create_empty(const fs::path& path, const fs::path& file) {
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail(file, "cannot write into this folder", errno);
-  close(descriptor);
+// An empty file, locked as long as this lives: an unlocked one was left by a run that was killed. Gone at the end,
+// unless it was renamed.
+class TemporaryFile {
+ public:
+  /// `file` is the name that the user knows, for the message.
+  TemporaryFile(fs::path path, const fs::path& file) : path_(std::move(path)) {
+    while (!is_locked()) {
+      descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0) fail(file, "cannot write into this folder", errno);
+    }
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    close(descriptor_);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  // False when another run took the file for a left one before it was locked.
+  bool is_locked() {
+    if (descriptor_ < 0) return false;
+    // Some file systems know no locks; then nobody can take the file for a left one either.
+    flock(descriptor_, LOCK_EX);
+    struct stat status {};
+    if (fstat(descriptor_, &status) != 0 || status.st_nlink > 0) return true;
+    close(descriptor_);
+    return false;
+  }
+
+  fs::path path_;
+  int descriptor_ = -1;
+};
+
+// Removes temporary files of runs that were killed. A file whose lock can be had belongs to nobody.
+void remove_left_files(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (!entry.path().filename().string().starts_with(temporary_prefix)) continue;
+    const int descriptor = open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (entry.is_regular_file(ignored) && flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove(entry.path(), ignored);
+    close(descriptor);
+  }
 }
 
 void flush_to_disk(const fs::path& path, const fs::path& file) {
@@ -77,27 +114,27 @@ void check_target(const fs::path& file, const fs::path& target) {
 }  // namespace
 
 void check_writable(const fs::path& file) {
-  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
   try {
     const fs::path target = followed(file);
     check_target(file, target);
     // Only trying tells: permissions, read-only and full file systems.
-    const TemporaryFile trial(temporary_beside(target));
-    create_empty(trial.path, file);
+    const TemporaryFile trial(temporary_beside(target), file);
+    remove_left_files(target.parent_path());
   } catch (const fs::filesystem_error& error) {
     throw OutputError(file.string(), error.code().message());
   }
 }
 
 void write_whole_file(const fs::path& file, const std::function<void(const fs::path& temporary)>& write) {
-  check_writable(file);
   try {
     const fs::path target = followed(file);
-    const TemporaryFile temporary(temporary_beside(target));
-    write(temporary.path);
-    if (fs::exists(target)) fs::permissions(temporary.path, fs::status(target).permissions());
-    flush_to_disk(temporary.path, file);
-    fs::rename(temporary.path, target);
+    check_target(file, target);
+    const TemporaryFile temporary(temporary_beside(target), file);
+    write(temporary.path());
+    if (fs::file_size(temporary.path()) == 0) throw OutputError(file.string(), "nothing was written");
+    if (fs::exists(target)) fs::permissions(temporary.path(), fs::status(target).permissions());
+    flush_to_disk(temporary.path(), file);
+    fs::rename(temporary.path(), target);
     flush_to_disk(target.parent_path(), file);
   } catch (const std::system_error& error) {
     // Input and output only: fs::filesystem_error and std::ios_base::failure.

@@ -53,9 +53,11 @@ Json request_part(const Request& request) {
   part["sides"] = name_of_sides(request.sides);
   part["solver"] = name_of(request.solver);
   part["tolerance"] = request.tolerance;
+  part["max_iterations"] = request.max_iterations;
   part["samples"] = request.samples;
   part["seed"] = request.seed;
   part["threads"] = request.threads;
+  part["memory_bytes"] = json_of(request.memory);
   return part;
 }
 

@@ -1,41 +1,27 @@
 #include "patchlight/output/write_vtk.h"
 
-#include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/mesh/interpolate.h"
-#include "patchlight/output/whole_file.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
+#include "patchlight/visibility/occluder.h"
 
+#include "output/vtk_polygons.h"
+
+#include <array>
 #include <numbers>
-#include <vtkCallbackCommand.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCommand.h>
-#include <vtkDoubleArray.h>
-#include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkFieldData.h>
-#include <vtkFloatArray.h>
-#include <vtkIntArray.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataWriter.h>
 
 namespace patchlight {
 namespace {
 
-template <class Array>
-using Pointer = vtkSmartPointer<Array>;
-
-// The unit of every array of values; docs/formats.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 13> units = {{{"radiance", "W/(m^2 sr)"},
+// The unit of every array of values; docs/output.md says what they mean.
+constexpr std::array<std::array<const char*, 2>, 15> units = {{{"radiance", "W/(m^2 sr)"},
                                                                {"radiosity", "W/m^2"},
                                                                {"irradiance", "W/m^2"},
+                                                               {"direct_irradiance", "W/m^2"},
+                                                               {"indirect_irradiance", "W/m^2"},
                                                                {"exitance", "W/m^2"},
                                                                {"reflectance", "1"},
                                                                {"luminance", "cd/m^2"},
@@ -47,64 +33,7 @@ constexpr std::array<std::array<const char*, 2>, 13> units = {{{"radiance", "W/(
                                                                {"rgb", "sRGB, 8 bits, at the recorded exposure"},
                                                                {"radiance_smooth", "W/(m^2 sr)"}}};
 
-Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
-  auto array = Pointer<vtkFloatArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(static_cast<int>(values.cols()));
-  array->SetNumberOfTuples(values.rows());
-  float* out = array->GetPointer(0);
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
-  }
-  return array;
-}
-
-// An array of numbers of any kind, one component, as vtkIntArray or vtkDoubleArray.
-template <class Array, class Values>
-Pointer<Array> numbers(const char* name, const Values& values) {
-  auto array = Pointer<Array>::New();
-  array->SetName(name);
-  for (const auto value : values) array->InsertNextValue(static_cast<typename Array::ValueType>(value));
-  return array;
-}
-
-Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values) {
-  auto array = Pointer<vtkStringArray>::New();
-  array->SetName(name.c_str());
-  for (const std::string& value : values) array->InsertNextValue(value);
-  return array;
-}
-
-Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {
-  auto array = Pointer<vtkUnsignedCharArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::uint8_t* out = array->GetPointer(0);
-  for (const auto& value : values) out = std::copy(value.begin(), value.end(), out);
-  return array;
-}
-
-Pointer<vtkPolyData> geometry(const PatchMesh& mesh) {
-  const vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
-  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-    points->SetPoint(static_cast<vtkIdType>(k), mesh.vertices[k].data());
-  }
-  const vtkNew<vtkCellArray> cells;
-  for (const auto& corners : mesh.corners) {
-    const bool triangle = corners[2] == corners[3];
-    cells->InsertNextCell(triangle ? 3 : 4);
-    for (std::size_t k = 0; k < (triangle ? 3U : 4U); ++k) cells->InsertCellPoint(corners[k]);
-  }
-  auto polygons = Pointer<vtkPolyData>::New();
-  polygons->SetPoints(points);
-  polygons->SetPolys(cells);
-  return polygons;
-}
-
-void add_values(vtkPolyData& polygons, const Simulation& simulation, double exposure) {
+void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
   const PatchMesh& mesh = simulation.mesh;
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
   Field luminances(radiance.rows(), 1);
@@ -113,7 +42,12 @@ void add_values(vtkPolyData& polygons, const Simulation& simulation, double expo
   vtkCellData& cell_data = *polygons.GetCellData();
   cell_data.AddArray(floats("radiance", radiance));
   cell_data.AddArray(floats("radiosity", simulation.solution.radiosity));
-  cell_data.AddArray(floats("irradiance", simulation.solution.irradiance));
+  const Field& H = simulation.solution.irradiance;
+  const Field& H_direct = simulation.solution.direct_irradiance;
+  cell_data.AddArray(floats("irradiance", H));
+  cell_data.AddArray(floats("direct_irradiance", H_direct));
+  // Rounding may make the difference slightly negative.
+  cell_data.AddArray(floats("indirect_irradiance", (H - H_direct).max(0.0)));
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
   cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
   cell_data.AddArray(floats("luminance", luminances));
@@ -125,7 +59,8 @@ void add_values(vtkPolyData& polygons, const Simulation& simulation, double expo
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", vertex_means(mesh, radiance, simulation.problem.area)));
+  const SmoothField smooth_radiance = smooth(mesh, radiance, simulation.problem.area, Occluder(scene));
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", smooth_radiance.at_vertices));
 }
 
 template <class Value>
@@ -174,40 +109,16 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   for (const auto& [name, unit] : units) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }
 
-// The first error that VTK reports, kept instead of printed.
-void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
-  auto& kept = *static_cast<std::string*>(message);
-  if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
-}
-
 }  // namespace
 
 void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                const Provenance& provenance) {
-  const Pointer<vtkPolyData> polygons = geometry(simulation.mesh);
-  add_values(*polygons, simulation, provenance.exposure);
+  const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
+  add_values(*polygons, scene, simulation, provenance.exposure);
   add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
   add_history(*polygons->GetFieldData(), simulation);
 
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::string error;
-    const vtkNew<vtkCallbackCommand> on_error;
-    on_error->SetCallback(keep_first_error);
-    on_error->SetClientData(&error);
-    const vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->SetInputData(polygons);
-    writer->SetFileName(temporary.c_str());
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToLZ4();
-    writer->SetHeaderTypeToUInt64();
-    const bool written = writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError && error.empty();
-    if (!written) {
-      throw OutputError(file.string(), "cannot be written; is the disk full?");
-    }
-  });
+  write_polygons(file, *polygons);
 }
 
 }  // namespace patchlight

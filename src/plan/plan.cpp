@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/plan/survey.h"
 #include "patchlight/visibility/convex_hull.h"
 
 #include <algorithm>
@@ -17,12 +18,7 @@ bool has_lamp(const Scene& scene) {
 }
 
 void require_lamp(const Scene& scene) {
-  if (has_lamp(scene)) return;
-  std::string names;
-  for (const Material& material : scene.materials) names += (names.empty() ? "" : ", ") + material.name;
-  throw InputError(scene.file,
-                   "found no lamp: no material of a face emits. Expected Ke above 0 in at least one; use --set " +
-                       std::string("MATERIAL.radiance=R,G,B with one of: ") + names);
+  if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
 }
 
 Decision decide_occlusion(const Scene& scene) {
@@ -51,9 +47,11 @@ Plan make_plan(const Scene& scene, const Request& request) {
   plan.sides = kept_sides(scene, request.sides);
   plan.max_edge =
       request.max_edge ? *request.max_edge : max_edge_for(scene, plan.sides, request.patches.value_or(default_patches));
+  // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
+  plan.probes = std::max(plan.probes, request.samples / 4);
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
-  plan.solver = {request.solver, request.tolerance, plan.solver.max_iterations};
+  plan.solver = {request.solver, request.tolerance, request.max_iterations};
   plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
   return plan;
 }

@@ -2,7 +2,6 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
-#include "patchlight/mesh/interpolate.h"
 #include "patchlight/mesh/patch_lookup.h"
 
 #include <algorithm>
@@ -115,13 +114,13 @@ std::vector<std::optional<Seen>> first_patches(const Occluder& occluder, const P
 
 }  // namespace
 
-Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occluder& occluder, const Camera& camera,
+Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options, const Observer& observer) {
   const PicturePlane plane = picture_plane(camera, up);
   const PatchLookup lookup(mesh);
   const auto rays_per_pixel = static_cast<std::size_t>(options.rays_per_pixel_edge * options.rays_per_pixel_edge);
   Image image{options.width, options.height,
-              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, vertex_radiance.cols())};
+              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, radiance.at_vertices.cols())};
 
   const std::vector<Tile> tiles = tiles_of(options);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
@@ -133,7 +132,7 @@ Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occl
       const Eigen::Index x = tile.left + pixel % tile.width();
       const Eigen::Index y = tile.top + pixel / tile.width();
       image.pixels.row(y * options.width + x) +=
-          interpolate(mesh, vertex_radiance, seen[k]->patch, seen[k]->point) / static_cast<double>(rays_per_pixel);
+          value_at(mesh, radiance, occluder, seen[k]->patch, seen[k]->point) / static_cast<double>(rays_per_pixel);
     }
   });
   return image;

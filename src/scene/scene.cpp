@@ -14,10 +14,8 @@ constexpr double planarity_tolerance = 1e-4;
 // A polygon counts as having an area when it is larger than this share of its squared perimeter.
 constexpr double relative_area_tolerance = 1e-12;
 
-std::string where(const Scene& scene, const Polygon& polygon) {
-  const std::string& file = scene.files.empty() ? scene.file : scene.files[polygon.file];
-  return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;
-}
+// Farther away, squares of areas would come near the largest double. Metres.
+constexpr double farthest_vertex = 1e15;
 
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
@@ -43,27 +41,20 @@ void check_material(const Scene& scene, const Material& material) {
 void check_polygon(const Scene& scene, PolygonIndex index) {
   const Polygon& polygon = scene.polygons[index];
   if (polygon.corners.size() < 3) {
-    throw InputError(where(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
-                                                " corners; expected at least three. Remove the face");
-  }
-  for (const std::uint32_t corner : polygon.corners) {
-    if (corner >= scene.vertices.size()) {
-      throw InputError(where(scene, polygon), "this face uses vertex " + std::to_string(corner + 1) + " of " +
-                                                  std::to_string(scene.vertices.size()) +
-                                                  "; expected a vertex that exists");
-    }
+    throw InputError(place_of(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
+                                                   " corners; expected at least three. Remove the face");
   }
   const std::vector<Point> points = corner_points(scene, index);
   const Vector area = area_vector(points);
   double perimeter = 0;
   for (std::size_t k = 0; k < points.size(); ++k) perimeter += (points[(k + 1) % points.size()] - points[k]).norm();
   if (!(area.norm() > relative_area_tolerance * perimeter * perimeter)) {
-    throw InputError(where(scene, polygon), "this face has no area; remove it, or merge its repeated vertices");
+    throw InputError(place_of(scene, polygon), "this face has no area; remove it, or merge its repeated vertices");
   }
   const Vector normal = area.normalized();
   for (const Point& point : points) {
     if (std::abs(normal.dot(point - points[0])) > planarity_tolerance * perimeter) {
-      throw InputError(where(scene, polygon),
+      throw InputError(place_of(scene, polygon),
                        "the corners of this face do not lie in one plane; cut it into triangles");
     }
   }
@@ -85,8 +76,34 @@ Vector front_normal(const Scene& scene, PolygonIndex polygon) {
   return length > 0 ? Vector(area / length) : Vector(Vector::Zero());
 }
 
+MaterialIndex material_on(const Polygon& polygon, Side side) {
+  return side == Side::back ? polygon.back_material.value_or(polygon.material) : polygon.material;
+}
+
+bool emits(const Scene& scene, PolygonIndex polygon, Side side) {
+  const Polygon& face = scene.polygons[polygon];
+  if (side == Side::back && !face.back_material) return false;
+  return (scene.materials[material_on(face, side)].exitance > 0).any();
+}
+
 bool is_lamp(const Scene& scene, PolygonIndex polygon) {
-  return (scene.materials[scene.polygons[polygon].material].exitance > 0).any();
+  return emits(scene, polygon, Side::front) || emits(scene, polygon, Side::back);
+}
+
+std::string place_of(const Scene& scene, const Polygon& polygon) {
+  const std::string& file = polygon.file < scene.files.size() ? scene.files[polygon.file] : scene.file;
+  return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;
+}
+
+Vector upright_axis(const Scene& scene) {
+  Vector shining = Vector::Zero();
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Spectrum& exitance = scene.materials[scene.polygons[p].material].exitance;
+    shining += exitance.sum() * area_vector(corner_points(scene, p));
+  }
+  constexpr double cosine_of_30_degrees = 0.866;
+  const bool along_y = -shining.y() > cosine_of_30_degrees * shining.norm();
+  return along_y ? Vector::UnitY() : Vector::UnitZ();
 }
 
 Box bounds(const Scene& scene) {
@@ -97,13 +114,27 @@ Box bounds(const Scene& scene) {
   return box;
 }
 
+void check_vertices(const Scene& scene) {
+  for (const Point& vertex : scene.vertices) {
+    if (!vertex.allFinite()) throw InputError(scene.file, "a vertex is not finite; expected three finite coordinates");
+    if (vertex.cwiseAbs().maxCoeff() <= farthest_vertex) continue;
+    throw InputError(scene.file, "a vertex lies over 1e15 m from the origin; expected a model of earthly size");
+  }
+  for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t corner : polygon.corners) {
+      if (corner < scene.vertices.size()) continue;
+      throw InputError(place_of(scene, polygon), "this face uses vertex " + std::to_string(corner + 1) + " of " +
+                                                     std::to_string(scene.vertices.size()) +
+                                                     "; expected a vertex that exists");
+    }
+  }
+}
+
 void check(const Scene& scene) {
   if (scene.polygons.empty()) {
     throw InputError(scene.file, "found no faces; expected at least one polygon");
   }
-  for (const Point& vertex : scene.vertices) {
-    if (!vertex.allFinite()) throw InputError(scene.file, "a vertex is not finite; expected three finite coordinates");
-  }
+  check_vertices(scene);
   for (const Material& material : scene.materials) check_material(scene, material);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) check_polygon(scene, p);
 }

@@ -1,6 +1,8 @@
 #include "patchlight/scene/triangulate.h"
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace patchlight {
 namespace {
@@ -16,7 +18,13 @@ bool contains(const Vector& normal, const Point& a, const Point& b, const Point&
   return turn(normal, a, b, x) >= 0 && turn(normal, b, c, x) >= 0 && turn(normal, c, a, x) >= 0;
 }
 
-// Among the remaining corners, is the one at `k` an ear: does it turn outward, and is no other corner inside it?
+// Does the direction from b to x lead into the angle at b between the edges to c and to a?
+bool is_inside_angle(const Vector& normal, const Point& a, const Point& b, const Point& c, const Point& x) {
+  return turn(normal, a, b, x) > 0 && turn(normal, b, c, x) > 0;
+}
+
+// Among the remaining corners, is the one at `k` an ear: does it turn outward, is no other corner inside it, and does
+// no seam begin at its tip and lead through it?
 bool is_ear(std::span<const Point> polygon, const std::vector<std::uint32_t>& left, std::size_t k,
             const Vector& normal) {
   const std::size_t n = left.size();
@@ -26,10 +34,28 @@ bool is_ear(std::span<const Point> polygon, const std::vector<std::uint32_t>& le
   if (turn(normal, a, b, c) <= 0) return false;
   for (std::size_t other = 0; other + 3 < n; ++other) {
     const Point& x = polygon[left[(k + 2 + other) % n]];
+    if (x == b) {
+      const Point& before = polygon[left[(k + 1 + other) % n]];
+      const Point& after = polygon[left[(k + 3 + other) % n]];
+      if (is_inside_angle(normal, a, b, c, before) || is_inside_angle(normal, a, b, c, after)) return false;
+    }
     if (x == a || x == b || x == c) continue;
     if (contains(normal, a, b, c, x)) return false;
   }
   return true;
+}
+
+// Where rounding leaves no ear: the corner that turns least, outward or inward.
+std::size_t flattest(std::span<const Point> polygon, const std::vector<std::uint32_t>& left, const Vector& normal) {
+  const std::size_t n = left.size();
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double amount =
+        std::abs(turn(normal, polygon[left[(k + n - 1) % n]], polygon[left[k]], polygon[left[(k + 1) % n]]));
+    if (amount < least) least = amount, best = k;
+  }
+  return best;
 }
 
 }  // namespace
@@ -51,14 +77,14 @@ std::vector<Triangle> triangulate(std::span<const Point> polygon) {
     return {{1, 2, 3}, {1, 3, 0}};
   }
 
-  // Ear clipping (Meisters 1975). Where rounding leaves no ear, the first corner is cut off: the result is complete.
+  // Ear clipping (Meisters 1975). Where rounding leaves no ear, the flattest corner is cut off: the result is complete.
   std::vector<std::uint32_t> left;
   for (std::uint32_t k = 0; k < polygon.size(); ++k) left.push_back(k);
   std::vector<Triangle> triangles;
   while (left.size() >= 3) {
     std::size_t ear = 0;
     while (ear < left.size() && left.size() > 3 && !is_ear(polygon, left, ear, normal)) ++ear;
-    if (ear == left.size()) ear = 0;
+    if (ear == left.size()) ear = flattest(polygon, left, normal);
     const std::size_t n = left.size();
     triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));

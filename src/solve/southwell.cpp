@@ -30,12 +30,15 @@ Solution progressive_refinement(const RowTransport& transport, const RadiosityPr
   Stopping stopping(transport, problem, options);
   const Eigen::Index n = problem.exitance.rows();
   Field unshot = problem.exitance;
-  Solution solution{problem.exitance, Field::Zero(n, unshot.cols()), {}, {}, false};
+  Solution solution{.radiosity = problem.exitance,
+                    .irradiance = Field::Zero(n, unshot.cols()),
+                    .direct_irradiance = transport.apply(problem.exitance),
+                    .ambient = {},
+                    .history = {}};
 
   // With X = B - unshot, the radiosity shot so far, B = E + K X: the residual of X is what is unshot. Iteration 0 is X
   // = E.
-  Field first = transport.apply(problem.exitance) * problem.reflectance;
-  solution.history.push_back(stopping.measure(first, Field::Zero(n, unshot.cols()), 2, observer));
+  solution.history.push_back(stopping.measure(solution, problem.reflectance * solution.direct_irradiance, 2, observer));
   solution.converged = stopping.reached(solution.history.back());
   for (int k = 1; k <= options.max_iterations && !solution.converged; ++k) {
     for (Eigen::Index shot = 0; shot < n; ++shot) {
@@ -49,10 +52,10 @@ Solution progressive_refinement(const RowTransport& transport, const RadiosityPr
       solution.irradiance += H;
     }
     solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
-    solution.history.push_back(stopping.measure(unshot, solution.radiosity - problem.exitance, 2.0 + k, observer));
+    solution.history.push_back(stopping.measure(solution, unshot, 2.0 + k, observer));
     solution.converged = stopping.reached(solution.history.back());
   }
-  if (solution.history.size() == 1) solution.irradiance = transport.apply(problem.exitance);
+  if (solution.history.size() == 1) solution.irradiance = solution.direct_irradiance;
   solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
   solution.ambient = ambient_irradiance(unshot, problem);
   return solution;

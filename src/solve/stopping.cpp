@@ -15,10 +15,9 @@ Stopping::Stopping(const TransportOperator& transport, const RadiosityProblem& p
   contraction_ = problem.reflectance.colwise().maxCoeff().transpose() * std::max(1.0, row_sum);
 }
 
-Iteration Stopping::measure(const FieldView& residual, const FieldView& reflected, double work,
-                            const Observer& observer) {
+Iteration Stopping::measure(const Solution& iterate, const FieldView& residual, double work, const Observer& observer) {
   const Eigen::ArrayXd norm = area_norm(residual, problem_.area);
-  const Eigen::ArrayXd reflected_norm = area_norm(reflected, problem_.area);
+  const Eigen::ArrayXd reflected_norm = area_norm(iterate.radiosity - problem_.exitance, problem_.area);
   if (number_ == 0) first_residual_ = norm;
 
   Iteration iteration{number_++, 0, 0, wall_seconds() - start_, work};
@@ -34,7 +33,8 @@ Iteration Stopping::measure(const FieldView& residual, const FieldView& reflecte
     // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
     const double wanted = std::log(options_.relative_error);
     const double measured = std::log(std::clamp(iteration.relative_residual, options_.relative_error, 1.0));
-    if (!observer({.stage = Stage::solve, .fraction = measured / wanted, .iteration = &iteration})) throw Cancelled();
+    const Progress progress{Stage::solve, measured / wanted, &iteration, &iterate.irradiance};
+    if (!observer(progress)) throw Cancelled();
   }
   return iteration;
 }

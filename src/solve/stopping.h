@@ -12,9 +12,9 @@ class Stopping {
   /// Costs one operator application, for the largest row sum.
   Stopping(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options);
 
-  /// The next row of the history. `residual` r = E + K B - B and `reflected` = B - E, one row per patch; `work` in
-  /// operator applications. \throws Cancelled when the observer says so.
-  Iteration measure(const FieldView& residual, const FieldView& reflected, double work, const Observer& observer);
+  /// The next row of the history, for the radiosity and irradiance of `iterate`. `residual` r = E + K B - B, one row
+  /// per patch; `work` in operator applications. \throws Cancelled when the observer says so.
+  Iteration measure(const Solution& iterate, const FieldView& residual, double work, const Observer& observer);
 
   /// True when this is good enough.
   bool reached(const Iteration& iteration) const;

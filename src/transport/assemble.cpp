@@ -3,13 +3,16 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 #include "patchlight/form_factor/monte_carlo.h"
+#include "patchlight/form_factor/patch_keys.h"
 #include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/form_factor/solid_angle.h"
 
 #include "transport/narrow.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 #include <vector>
 
 namespace patchlight {
@@ -40,9 +43,11 @@ struct Assembler {
   const Occluder& occluder;
   const AssemblyOptions& options;
   std::vector<PatchShape> shapes;
+  std::vector<std::uint32_t> keys;
   SamplePairs samples;
 
   std::vector<Pair> facing_pairs(PatchIndex first, PatchRange seconds) const;
+  std::array<PatchIndex, 2> ordered(const Pair& pair) const;
   PairSample sample(const Pair& pair, std::uint32_t k) const;
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   std::vector<Pair> row(PatchIndex first, PatchRange seconds, AssemblyCounts& counts) const;
@@ -61,26 +66,30 @@ std::vector<Pair> Assembler::facing_pairs(PatchIndex first, PatchRange seconds) 
   return pairs;
 }
 
+// The two patches of a pair in an order that does not depend on their numbers: near pairs the smaller first, else by
+// key.
+std::array<PatchIndex, 2> Assembler::ordered(const Pair& pair) const {
+  const double first = shapes[pair.first].area;
+  const double second = shapes[pair.second].area;
+  const bool sizes_differ = std::abs(first - second) > 1e-9 * (first + second);
+  const bool swap = pair.near && sizes_differ ? second < first : keys[pair.second] < keys[pair.first];
+  return swap ? std::array{pair.second, pair.first} : std::array{pair.first, pair.second};
+}
+
 // Sample k of a pair: its shadow ray, and its weight, the mean of which is the unoccluded exchange area.
 PairSample Assembler::sample(const Pair& pair, std::uint32_t k) const {
-  const PatchShape& a = shapes[pair.first];
-  const PatchShape& b = shapes[pair.second];
-  const auto& [u, v, s, t] = samples.at(pair.first, pair.second, k);
+  const auto [i, j] = ordered(pair);
+  const PatchShape& a = shapes[i];
+  const PatchShape& b = shapes[j];
+  const auto& [u, v, s, t] = samples.at(keys[i], keys[j], k);
+  const Point x = square_to_quad(a.corners.points, u, v);
   if (!pair.near) {
-    const Point x = square_to_quad(a.corners.points, u, v);
     const Point y = square_to_quad(b.corners.points, s, t);
-    return {{x, y, mesh.polygon[pair.first], mesh.polygon[pair.second]},
-            a.area * b.area * geometry_term(x, a.normal, y, b.normal)};
+    return {{x, y, mesh.polygon[i], mesh.polygon[j]}, a.area * b.area * geometry_term(x, a.normal, y, b.normal)};
   }
-  // Near patches: from a point of the smaller one by solid angle, as the geometry term has no finite variance there.
-  const bool first_is_smaller = a.area <= b.area;
-  const PatchShape& small = first_is_smaller ? a : b;
-  const PatchShape& large = first_is_smaller ? b : a;
-  const Point x = square_to_quad(small.corners.points, u, v);
-  const PolygonSample y = sample_solid_angle(x, small.normal, large.corners, s, t);
-  const PatchIndex from = first_is_smaller ? pair.first : pair.second;
-  const PatchIndex to = first_is_smaller ? pair.second : pair.first;
-  return {{x, y.weight > 0 ? y.point : large.centroid, mesh.polygon[from], mesh.polygon[to]}, small.area * y.weight};
+  // Near patches by solid angle, as the geometry term has no finite variance there.
+  const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, s, t);
+  return {{x, y.weight > 0 ? y.point : b.centroid, mesh.polygon[i], mesh.polygon[j]}, a.area * y.weight};
 }
 
 // Traces samples [begin, end) of every pair and adds up their weights.
@@ -182,7 +191,11 @@ AssemblyCounts fill_tile(const Assembler& assembler, const Tile& tile, std::span
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const Observer& observer) {
   assert(options.probes >= 1 && options.samples >= options.probes);
-  const Assembler assembler{mesh, occluder, options, patch_shapes(mesh),
+  const Assembler assembler{mesh,
+                            occluder,
+                            options,
+                            patch_shapes(mesh),
+                            patch_keys(mesh),
                             SamplePairs(near_factor * static_cast<std::uint32_t>(options.samples), options.seed)};
   Assembly result{ExchangeAreas(mesh.size()), {}};
   const std::vector<Tile> tiles = upper_tiles(result.exchange_areas.blocks());

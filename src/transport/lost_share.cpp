@@ -2,8 +2,12 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
+#include "patchlight/form_factor/patch_keys.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <vector>
 
 namespace patchlight {
@@ -13,8 +17,11 @@ namespace {
 constexpr double toward_centroid = 0.01;
 constexpr double behind = 1e-5;
 
-// Rays that start at one point, when it has to be decided whether the point is covered.
+// When it has to be decided whether a point is covered, so many rays start there over the hemisphere, and as many
+// around the horizon with this slope: under a face that hangs close over the patch they get out, inside a solid they do
+// not.
 constexpr int rays_per_point = 8;
+constexpr double grazing_slope = 1e-3;
 
 enum class Sight { patch, nothing, back, contact };
 
@@ -30,21 +37,41 @@ struct Observatory {
   double extent;
 
   std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays) const;
-  Shares shares_of_point_groups(const std::vector<Sight>& sights) const;
-  Shares measure(PatchIndex patch, int rays, std::uint64_t seed) const;
+  Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
-// `groups` starting points, each with `size` directions.
-std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint64_t seed) {
-  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), hash({seed, patch, 0x6c6f7374}));
+// A right-handed frame that turns with the patch: along its first edge, across it, and along the normal.
+Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch) {
   const PatchCorners corners = mesh.corner_points(patch);
-  const Eigen::Matrix3d frame = frame_around(mesh.normal[patch]);
+  Eigen::Matrix3d frame;
+  frame.col(2) = mesh.normal[patch];
+  frame.col(1) = frame.col(2).cross(corners.points[1] - corners.points[0]).normalized();
+  frame.col(0) = frame.col(1).cross(frame.col(2));
+  return frame;
+}
+
+// `groups` starting points, each with `size` directions.
+std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint32_t seed) {
+  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), seed);
+  const PatchCorners corners = mesh.corner_points(patch);
+  const Eigen::Matrix3d frame = patch_frame(mesh, patch);
   std::vector<Ray> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& start = samples[k / static_cast<std::size_t>(size) * static_cast<std::size_t>(size)];
     rays.push_back({square_to_quad(corners.points, start[0], start[1]),
                     frame * square_to_cosine_hemisphere(samples[k][2], samples[k][3]), mesh.polygon[patch]});
+  }
+  return rays;
+}
+
+// For each group of rays as many from its starting point, evenly around the horizon.
+std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, const std::vector<Ray>& groups) {
+  const Eigen::Matrix3d frame = patch_frame(mesh, patch);
+  std::vector<Ray> rays = groups;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const double azimuth = 2 * std::numbers::pi * static_cast<double>(k % rays_per_point) / rays_per_point;
+    rays[k].direction = (frame * Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope)).normalized();
   }
   return rays;
 }
@@ -78,26 +105,30 @@ std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& r
 }
 
 // A point is covered when every ray from it meets a back or a face that lies against the patch.
-Shares Observatory::shares_of_point_groups(const std::vector<Sight>& sights) const {
+Shares shares_of_groups(const std::vector<Sight>& sights, const std::vector<Sight>& grazing) {
   int covered = 0;
   int exposed = 0;
   int escaped = 0;
   int at_backs = 0;
-  for (auto group = sights.begin(); group != sights.end(); group += rays_per_point) {
-    const auto count = [&](Sight sight) { return static_cast<int>(std::count(group, group + rays_per_point, sight)); };
-    if (count(Sight::back) + count(Sight::contact) == rays_per_point) {
+  for (std::size_t first = 0; first < sights.size(); first += rays_per_point) {
+    const auto count = [&](const std::vector<Sight>& among, Sight sight) {
+      const auto begin = among.begin() + static_cast<std::ptrdiff_t>(first);
+      return static_cast<int>(std::count(begin, begin + rays_per_point, sight));
+    };
+    const auto unseen = [&](const auto& among) { return count(among, Sight::back) + count(among, Sight::contact); };
+    if (unseen(sights) == rays_per_point && unseen(grazing) == rays_per_point) {
       ++covered;
       continue;
     }
     ++exposed;
-    escaped += count(Sight::nothing);
-    at_backs += count(Sight::back);
+    escaped += count(sights, Sight::nothing);
+    at_backs += count(sights, Sight::back);
   }
   const double rays = std::max(1, exposed * rays_per_point);
   return {escaped / rays, at_backs / rays, static_cast<double>(covered) / (covered + exposed)};
 }
 
-Shares Observatory::measure(PatchIndex patch, int rays, std::uint64_t seed) const {
+Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
   const auto sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
   const auto count = [&](Sight sight) { return std::count(sights.begin(), sights.end(), sight); };
@@ -105,7 +136,8 @@ Shares Observatory::measure(PatchIndex patch, int rays, std::uint64_t seed) cons
     return {static_cast<double>(count(Sight::nothing)) / rays, 0, 0};
   }
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
-  return shares_of_point_groups(look(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed)));
+  const auto groups = hemisphere_rays(mesh, patch, rays, rays_per_point, seed);
+  return shares_of_groups(look(patch, groups), look(patch, grazing_rays(mesh, patch, groups)));
 }
 
 }  // namespace
@@ -116,11 +148,12 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
   for (const Point& vertex : mesh.vertices) box.extend(vertex);
   const Observatory observatory{mesh, occluder, box.diagonal().norm()};
 
+  const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
   LostShare lost{zero, zero, zero, rays_per_patch};
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
-    const Shares shares = observatory.measure(i, rays_per_patch, seed);
+    const Shares shares = observatory.measure(i, rays_per_patch, hash({seed, keys[i], 1}));
     lost.escaped[i] = shares.escaped;
     lost.at_backs[i] = shares.at_backs;
     lost.covered[i] = shares.covered;

@@ -95,9 +95,9 @@ struct Occluder::Tracer {
   Point centre = Point::Zero();
   double scale = 1;  // 1 / extent: rays are traced in a scene of about unit size
   TriangleScene everything;
-  TriangleScene blockers;  // all but the polygons on the convex hull
+  TriangleScene blockers;  // those that can block a segment
 
-  explicit Tracer(const Scene& scene);
+  Tracer(const Scene& scene, Blockers blockers);
   ~Tracer() { rtcReleaseDevice(device); }
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -107,13 +107,14 @@ struct Occluder::Tracer {
   void trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene) : device(rtcNewDevice(nullptr)) {
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which) : device(rtcNewDevice(nullptr)) {
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  build(everything, scene, std::vector<std::uint8_t>(scene.polygons.size(), 0));
-  build(blockers, scene, on_convex_hull(scene));
+  const std::vector<std::uint8_t> none(scene.polygons.size(), 0);
+  build(everything, scene, none);
+  build(blockers, scene, which == Blockers::all ? none : on_convex_hull(scene));
 }
 
 void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
@@ -183,7 +184,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint
   for (std::size_t k = 0; k < segments.size(); ++k) blocked[k] = rays.tfar[k] < 0;
 }
 
-Occluder::Occluder(const Scene& scene) : tracer_(std::make_unique<Tracer>(scene)) {}
+Occluder::Occluder(const Scene& scene, Blockers blockers) : tracer_(std::make_unique<Tracer>(scene, blockers)) {}
 Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;

@@ -5,8 +5,8 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/interpolate.h"
 #include "patchlight/mesh/patch_lookup.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/simulate.h"
 #include "patchlight/visibility/occluder.h"
 
@@ -53,13 +53,15 @@ Reference read_reference(const std::filesystem::path& file) {
 // The solution's irradiance, interpolated between the vertices of the patch at each point.
 Field interpolated(const Simulation& simulation, const Occluder& occluder, const std::vector<Sensor>& sensors) {
   const PatchLookup lookup(simulation.mesh);
-  const Field at_vertices = vertex_means(simulation.mesh, simulation.solution.irradiance, simulation.problem.area);
-  Field result = Field::Zero(static_cast<Eigen::Index>(sensors.size()), at_vertices.cols());
+  const SmoothField irradiance =
+      smooth(simulation.mesh, simulation.solution.irradiance, simulation.problem.area, occluder);
+  Field result = Field::Zero(static_cast<Eigen::Index>(sensors.size()), simulation.solution.irradiance.cols());
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const Ray down{sensors[k].point + 1e-3 * sensors[k].normal, -sensors[k].normal};
     const auto hit = occluder.first_hits(std::vector<Ray>{down})[0];
     const auto patch = hit ? lookup.patch_at(hit->polygon, hit->side, hit->point) : std::nullopt;
-    if (patch) result.row(static_cast<Eigen::Index>(k)) = interpolate(simulation.mesh, at_vertices, *patch, hit->point);
+    if (patch)
+      result.row(static_cast<Eigen::Index>(k)) = value_at(simulation.mesh, irradiance, occluder, *patch, hit->point);
   }
   return result;
 }

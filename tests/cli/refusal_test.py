@@ -3,7 +3,7 @@ import unittest
 
 from support import MATERIALS, ROOM, ToolTest, content
 
-USAGE, INPUT, OUTPUT = 1, 2, 6
+USAGE, INPUT, MEMORY, OUTPUT = 1, 2, 4, 6
 
 
 class RefusalTest(ToolTest):
@@ -80,6 +80,24 @@ class RefusalTest(ToolTest):
             with self.subTest(output):
                 self.assert_refused(OUTPUT, [output], "solve", "room.obj", "-o", output)
 
+    def test_series_that_cannot_be_written(self):
+        self.write("a_series", "a file in the way")
+        self.assert_refused(OUTPUT, ["a_series"], "solve", "room.obj", "--series", "a.pvd")
+        self.assert_refused(OUTPUT, ["no/a.pvd"], "solve", "room.obj", "--series", "no/a.pvd")
+
+    def test_more_than_the_memory_allowed(self):
+        """Half of the n^2 pairs in four bytes each: 40,000 patches need 3.2 GB and a little."""
+        solve = ("solve", "room.obj", "-o", "room.vtp")
+        for size in ("2GB", "2 GB", "2e9", "1900MiB", "1.8GiB", "2000000kB"):
+            with self.subTest(size):
+                named = ["40000 patches", "3.3", "--memory", "--patches"]
+                self.assert_refused(MEMORY, named, *solve, "--patches", 40000, "--memory", size)
+        self.assert_refused(MEMORY, ["patches", "--memory"], *solve, "--max-edge", "0.005", "--memory", "1GB")
+        self.assert_refused(MEMORY, ["program itself"], *solve, "--memory", "10MB")
+        # What nobody has, before a single patch is made.
+        self.assert_refused(MEMORY, ["patches"], *solve, "--patches", 1000000000)
+        self.assert_refused(MEMORY, ["patches"], *solve, "--max-edge", "1e-9")
+
     def test_every_output_is_checked_before_any_is_written(self):
         for option, output in (("--picture", "no/a.png"), ("--report", "no/a.json"), ("--points-output", "no/a.csv")):
             with self.subTest(option):
@@ -107,8 +125,10 @@ class RefusalTest(ToolTest):
             "--patches": ("0", "-5", "1.5", "many"),
             "--tolerance": ("0", "1", "-1e-6", "nan"),
             "--samples": ("3", "-1", "16.5"),
+            "--max-iterations": ("-1", "ten"),
             "--seed": ("-1", "x", "99999999999999999999999"),
             "--threads": ("-1", "two"),
+            "--memory": ("0", "-1GB", "2 pounds", "GB", "1e", ""),
         }.items():
             for value in values:
                 with self.subTest(option + " " + value):
@@ -151,7 +171,8 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
 
     def test_wrong_extension(self):
-        self.assert_refused(USAGE, ["-o", "a.vtk", ".vtp"], "solve", "room.obj", "-o", "a.vtk")
+        self.assert_refused(USAGE, ["-o", "a.vtk", ".vtp", ".ply", ".glb"], "solve", "room.obj", "-o", "a.vtk")
+        self.assert_refused(USAGE, ["--series", "a.vtp", ".pvd"], "solve", "room.obj", "--series", "a.vtp")
         self.assert_refused(USAGE, ["--picture", "a.jpg", ".png"], "solve", "room.obj", "--picture", "a.jpg")
 
     def test_one_file_for_two_purposes(self):

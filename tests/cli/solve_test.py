@@ -10,8 +10,8 @@ import unittest
 
 from support import TOOL, ToolTest
 
-OPTIONS = """--output --report --picture --false-color --camera --points --points-output --unit --up --sides --set --max-edge
---patches --solver --tolerance --samples --seed --threads --quiet --verbose --help""".split()
+OPTIONS = """--output --series --report --picture --false-color --camera --points --points-output --format --unit --up --sides --set --max-edge
+--patches --solver --tolerance --max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
 
 NOT_CONVERGED, INTERRUPTED = 3, 130
 
@@ -42,7 +42,7 @@ class SolveTest(ToolTest):
         text = self.run_tool("solve", "--help").stdout
         entries = re.split(r"\n  (?=-)", text.split("Options:")[1])[1:]
         self.assertGreater(len(entries), 15)
-        always_given = ("-h,", "-o,", "--report", "--picture", "--points FILE")
+        always_given = ("-h,", "-o,", "--series", "--report", "--picture", "--points FILE")
         for entry in entries:
             if not entry.startswith(always_given):
                 self.assertIn("default", entry)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "patchlight/base/field.h"
+
 #include <functional>
 
 namespace patchlight {
@@ -24,6 +26,7 @@ struct Progress {
   Stage stage = Stage::read;
   double fraction = 0;                   ///< of this stage, 0 to 1
   const Iteration* iteration = nullptr;  ///< in Stage::solve only
+  const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
 };
 
 /// Called in every stage at least twice a second, never from two threads at once; returning false stops the run,

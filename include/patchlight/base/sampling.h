@@ -34,7 +34,4 @@ Vector square_to_cosine_hemisphere(double u, double v);
 /// Its density with respect to solid angle, 1/sr; zero below the horizon.
 double square_to_cosine_hemisphere_pdf(const Vector& direction);
 
-/// A right-handed orthonormal frame whose third column is the unit vector `normal`. Duff et al. 2017.
-Eigen::Matrix3d frame_around(const Vector& normal);
-
 }  // namespace patchlight

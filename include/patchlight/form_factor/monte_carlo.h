@@ -10,14 +10,14 @@
 namespace patchlight {
 
 /// Pairs of points on two patches, from scrambled Sobol sequences kept in a table. Which scramble a pair of patches
-/// uses follows from (seed, patch, patch) alone.
+/// uses follows from the seed and the two patches' keys alone.
 class SamplePairs {
  public:
   /// `samples` is the largest number of samples of one pair of patches.
   SamplePairs(std::uint32_t samples, std::uint64_t seed);
 
   /// Coordinates (u, v, u', v') of one sample, in (0, 1).
-  const std::array<double, 4>& at(PatchIndex first, PatchIndex second, std::uint32_t sample) const;
+  const std::array<double, 4>& at(std::uint32_t first_key, std::uint32_t second_key, std::uint32_t sample) const;
 
  private:
   std::uint32_t samples_;

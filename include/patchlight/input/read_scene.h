@@ -23,10 +23,10 @@ struct MaterialSetting {
 MaterialSetting parse_material_setting(const std::string& text);
 
 struct ReadOptions {
-  double metres_per_unit = 1;  ///< length of one model unit; with formats that state their unit, a further factor
-  std::optional<Vector> up{};  ///< if not given, what the format says
-  std::vector<MaterialSetting> settings;
-  std::string format{};  ///< an extension without its dot; if empty, that of the file
+  double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
+  std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
+  std::vector<MaterialSetting> settings = {};
+  std::string format = {};  ///< an extension without its dot; if empty, that of the file
 };
 
 /// The extensions of the formats that can be read, without dots.

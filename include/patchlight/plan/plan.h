@@ -14,14 +14,16 @@ namespace patchlight {
 
 /// What the user asks for; what is left open the plan fills in.
 struct Request {
-  std::optional<double> max_edge;      ///< longest patch edge, metres
-  std::optional<std::size_t> patches;  ///< or the number of kept patches
+  std::optional<double> max_edge = {};      ///< longest patch edge, metres
+  std::optional<std::size_t> patches = {};  ///< or the number of kept patches
   Sides sides = Sides::automatic;
   Solver solver = Solver::gauss_seidel;
-  double tolerance = 1e-6;  ///< the solver's relative error
-  int samples = 16;         ///< shadow rays of a partly occluded pair of patches
+  double tolerance = 1e-6;    ///< the solver's relative error
+  int max_iterations = 1000;  ///< after which the solver gives up
+  int samples = 16;           ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all processors
+  int threads = 0;               ///< 0: all processors
+  std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
 };
 
 /// A physical effect that can be simulated or left out.

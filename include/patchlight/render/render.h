@@ -3,6 +3,7 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/render/image.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/visibility/occluder.h"
@@ -15,11 +16,11 @@ struct RenderOptions {
   int rays_per_pixel_edge = 3;  ///< squared per pixel, box filter
 };
 
-/// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, interpolated between
-/// the mesh's vertices. `vertex_radiance` has one row per vertex of the mesh. Sides without patches are transparent to
-/// the camera; where nothing is met the picture is black. \throws InputError when eye and target are one point or the
-/// field of view is not between 0 and 180 degrees; Cancelled.
-Image render(const PatchMesh& mesh, const FieldView& vertex_radiance, const Occluder& occluder, const Camera& camera,
+/// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, from the smoothed
+/// radiance of the patches. Sides without patches are transparent to the camera; where nothing is met the picture is
+/// black. \throws InputError when eye and target are one point or the field of view is not between 0 and 180 degrees;
+/// Cancelled.
+Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 
 /// A view that shows most of the kept sides. Where an upright side of the scene's bounds is open, from before it

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
+#include "patchlight/scene/problem.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,13 +19,16 @@ inline constexpr PolygonIndex no_polygon = ~PolygonIndex{0};
 /// The two sides of a polygon: from the front its corners run counter-clockwise.
 enum class Side : std::uint8_t { front, back };
 
-/// A planar polygon of the model, without holes, not necessarily convex.
+/// A planar polygon of the model, not necessarily convex; a hole is joined to the outline by a seam that is walked
+/// along both ways.
 struct Polygon {
   std::vector<std::uint32_t> corners;  ///< indices into Scene::vertices, at least three
   MaterialIndex material = 0;
-  std::uint32_t group = 0;  ///< index into Scene::groups
-  std::uint32_t line = 0;   ///< in the model file, from 1; 0 if unknown
-  std::uint32_t file = 0;   ///< index into Scene::files
+  std::uint32_t group = 0;                       ///< index into Scene::groups
+  std::uint32_t line = 0;                        ///< in the model file, from 1; 0 if unknown
+  std::uint32_t file = 0;                        ///< index into Scene::files
+  std::uint32_t face = 0;                        ///< number of the face in the model that it comes from, from 0
+  std::optional<MaterialIndex> back_material{};  ///< of its back side, when that is a face of its own
 };
 
 /// Where a picture is taken from.
@@ -32,6 +36,13 @@ struct Camera {
   Point eye;
   Point target;
   double vertical_field_of_view = 50;  ///< degrees
+};
+
+/// A material that may be meant as a lamp.
+struct LampHint {
+  std::string material;
+  Spectrum radiance;   ///< what it may be meant to emit, W/(m^2 sr)
+  std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
 /// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance.
@@ -45,7 +56,10 @@ struct Scene {
   std::string sha256;               ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;       ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
-  std::vector<std::string> notes;  ///< what the file holds that is not simulated, and other remarks
+  bool up_stated = false;            ///< the model file says which way is up
+  std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
+  std::vector<Problem> problems;     ///< what is wrong with the model, worst first
+  std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to
 };
 
 /// The corner points of a polygon.
@@ -54,11 +68,28 @@ std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);
 /// The unit normal of a polygon's front side; zero for a polygon without area.
 Vector front_normal(const Scene& scene, PolygonIndex polygon);
 
-/// True when the polygon's material emits in any band.
+/// The material of one side of a polygon.
+MaterialIndex material_on(const Polygon& polygon, Side side);
+
+/// True when this side of the polygon emits in any band: the front side with the polygon's material, the back side only
+/// with a material of its own.
+bool emits(const Scene& scene, PolygonIndex polygon, Side side);
+
+/// True when one of the polygon's sides emits.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
+
+/// The axis that points up, guessed: opposite to where the lamps shine on the average, if that is nearer to the y or
+/// the z axis than 30 degrees; z otherwise. For models whose files do not say.
+Vector upright_axis(const Scene& scene);
+
+/// Where a polygon stands, for messages: "room.obj:12", or the file alone when the line is not known.
+std::string place_of(const Scene& scene, const Polygon& polygon);
 
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
+
+/// Checks what repair() relies on: finite vertices, corners in range. \throws InputError naming the file and line.
+void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: finite vertices, corners in range, at least one polygon, planar polygons
 /// with area, reflectance in [0, 1], exitance finite and not negative. \throws InputError naming the file and line, or

@@ -12,7 +12,7 @@ namespace patchlight {
 enum class Sides {
   automatic,  ///< all but those that face the inside of a closed solid without a lamp, or the dark outside of a closed
               ///< shell
-  front,      ///< the front sides only
+  front,      ///< the front sides only; of polygons whose back is a face of its own both
   both        ///< both sides of every polygon
 };
 
@@ -24,10 +24,9 @@ struct KeptSides {
   std::vector<std::string> notes;   ///< what was decided, for the report
 };
 
-/// Chooses the sides. A solid is a set of polygons connected by shared edges; it is closed and consistently oriented
-/// when every edge belongs to exactly two of its polygons, which traverse it in opposite directions. Vertices are
-/// compared by position. A solid holds a lamp when a point just before the front of an emitting polygon has winding
-/// number +-1 in it.
+/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; polygons of it that are turned against
+/// the others are seen as if turned back. A solid holds a lamp when a point just before an emitting side of a polygon
+/// has winding number +-1 in it.
 ///
 /// Sides::automatic keeps a side unless
 /// - it faces the inside of a closed solid that holds no lamp, or

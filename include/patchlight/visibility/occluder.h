@@ -40,7 +40,14 @@ struct Hit {
 /// wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision, from its foot.
 class Occluder {
  public:
-  explicit Occluder(const Scene& scene);
+  /// Which polygons can block a segment.
+  enum class Blockers {
+    inside_hull,  ///< all but those on the scene's convex hull: enough between points of the scene's surfaces, and
+                  ///< faster
+    all           ///< all: for points that may lie outside
+  };
+
+  explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull);
   ~Occluder();
   Occluder(Occluder&&) noexcept;
   Occluder& operator=(Occluder&&) noexcept;

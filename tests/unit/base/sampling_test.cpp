@@ -86,14 +86,5 @@ TEST(SquareToCosineHemisphere, HasItsDensity) {
   EXPECT_NEAR(integral, 1, 1e-12);
 }
 
-TEST(FrameAround, IsRightHandedAndOrthonormal) {
-  for (const Vector& normal : {Vector(0, 0, 1), Vector(0, 0, -1), Vector(1, 2, 3), Vector(-1, 1e-9, -1)}) {
-    const Eigen::Matrix3d frame = frame_around(normal.normalized());
-    EXPECT_LT((frame.transpose() * frame - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-    EXPECT_NEAR(frame.determinant(), 1, 1e-12);
-    EXPECT_LT((frame.col(2) - normal.normalized()).norm(), 1e-15);
-  }
-}
-
 }  // namespace
 }  // namespace patchlight

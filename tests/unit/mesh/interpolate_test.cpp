@@ -15,6 +15,11 @@ Eigen::Array<double, 1, 2> linear(const Point& x) {
   return {1.5 + Vector(0.3, -0.7, 0.2).dot(x), -2 + Vector(1, 0.4, -0.9).dot(x)};
 }
 
+Eigen::Array<double, 1, Eigen::Dynamic> interpolated(const PatchMesh& mesh, const Field& vertex_values,
+                                                     PatchIndex patch, const Point& point) {
+  return interpolate(mesh, vertex_values, patch, interpolation_weights(mesh, patch, point));
+}
+
 Field linear_at_vertices(const PatchMesh& mesh) {
   Field values(static_cast<Eigen::Index>(mesh.vertices.size()), 2);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -49,7 +54,7 @@ TEST(Interpolate, ReproducesLinearFunctions) {
         const Point point = mix(corners, random);
         const Eigen::Array<double, 1, 2> expected = linear(point);
         // A point off the plane counts as its projection.
-        const auto value = interpolate(mesh, values, patch, point + 0.01 * mesh.normal[patch]);
+        const auto value = interpolated(mesh, values, patch, point + 0.01 * mesh.normal[patch]);
         EXPECT_NEAR(value[0], expected[0], tolerance) << shape.name;
         EXPECT_NEAR(value[1], expected[1], tolerance) << shape.name;
       }
@@ -64,7 +69,7 @@ TEST(Interpolate, TakesTheCornersValueAtACorner) {
     for (Eigen::Index v = 0; v < values.rows(); ++v) values(v, 0) = static_cast<double>(v % 7);
     for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
       for (const std::uint32_t vertex : mesh.corners[patch]) {
-        const auto value = interpolate(mesh, values, patch, mesh.vertices[vertex]);
+        const auto value = interpolated(mesh, values, patch, mesh.vertices[vertex]);
         // Rounding of 1e-16 in position over a thickness of 1e-6 x 0.3 at least; at a straight corner of a
         // quadrilateral the inverse has a square root there: (1e-16)^(1/2).
         EXPECT_NEAR(value[0], values(vertex, 0), 7 * 3e-8) << shape.name;
@@ -81,14 +86,14 @@ TEST(Interpolate, StaysWithinTheCornersValuesOutside) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-5, 5);
   for (int k = 0; k < 1000; ++k) {
-    const auto value = interpolate(mesh, values, 0, {anywhere(random), anywhere(random), 0});
+    const auto value = interpolated(mesh, values, 0, {anywhere(random), anywhere(random), 0});
     EXPECT_GE(value[0], values.col(0).minCoeff() - 1e-15);
     EXPECT_LE(value[0], values.col(0).maxCoeff() + 1e-15);
   }
 }
 
-Eigen::VectorXd areas(const PatchMesh& mesh) {
-  return Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+CornerWeights areas(const PatchMesh& mesh) {
+  return Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), mesh.size()).replicate(1, 4);
 }
 
 TEST(VertexMeans, AreExactForConstants) {

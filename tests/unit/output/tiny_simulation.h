@@ -47,6 +47,7 @@ inline Simulation tiny_simulation() {
   Solution& solution = simulation.solution;
   solution.irradiance.resize(3, 3);
   solution.irradiance << 1, 2, 3, 0.1, 0.7, 5, 1e-3, 40, 6;
+  solution.direct_irradiance = 0.25 * solution.irradiance;
   solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
   solution.history = {{0, 1, std::numeric_limits<double>::infinity(), 0, 1}, {1, 1e-7, 2e-7, 0.25, 2}};
   solution.converged = true;

@@ -79,6 +79,22 @@ TEST(WholeFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
+// A file that a killed run left is not locked; one that somebody writes is.
+TEST(CheckWritable, RemovesLeftTemporariesButNoneInUse) {
+  const TemporaryFolder folder;
+  put(folder.path() / ".patchlight-1-0.vtp", "half");
+  put(folder.path() / ".patchlightrc", "not ours");
+  fs::create_directory(folder.path() / ".patchlight-1-1.vtp");
+  write_whole_file(folder.path() / "result.vtp", [&](const fs::path& in_use) {
+    put(in_use, "being written");
+    check_writable(folder.path() / "other.vtp");
+    EXPECT_TRUE(fs::exists(in_use));
+    EXPECT_FALSE(fs::exists(folder.path() / ".patchlight-1-0.vtp"));
+  });
+  EXPECT_EQ(content_of(folder.path() / "result.vtp"), "being written");
+  EXPECT_EQ(folder.entries(), 3U);
+}
+
 TEST(CheckWritable, LeavesNoTrace) {
   const TemporaryFolder folder;
   check_writable(folder.path() / "result.vtp");

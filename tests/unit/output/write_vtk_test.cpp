@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/mesh/interpolate.h"
+#include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
 
 #include "temporary_folder.h"
@@ -90,6 +90,8 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("radiance"), radiance);
   expect_floats(cells->GetArray("radiosity"), simulation.solution.radiosity);
   expect_floats(cells->GetArray("irradiance"), simulation.solution.irradiance);
+  expect_floats(cells->GetArray("direct_irradiance"), simulation.solution.direct_irradiance);
+  expect_floats(cells->GetArray("indirect_irradiance"), 0.75 * simulation.solution.irradiance);
   expect_floats(cells->GetArray("exitance"), simulation.problem.exitance);
   expect_floats(cells->GetArray("reflectance"), simulation.problem.reflectance);
   expect_floats(cells->GetArray("luminance"), luminances);
@@ -97,7 +99,7 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
   expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
   expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"),
-                vertex_means(simulation.mesh, radiance, simulation.problem.area));
+                smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);
@@ -152,7 +154,7 @@ TEST(WriteVtk, TakesAnyNumberOfBands) {
     material.exitance = material.exitance.head(2).eval();
   }
   for (Field* field : {&simulation.problem.reflectance, &simulation.problem.exitance, &simulation.solution.irradiance,
-                       &simulation.solution.radiosity}) {
+                       &simulation.solution.direct_irradiance, &simulation.solution.radiosity}) {
     *field = field->leftCols(2).eval();
   }
   const auto polygons = written_and_read(scene, simulation);

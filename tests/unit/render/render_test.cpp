@@ -26,7 +26,7 @@ Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& ca
                  const Vector& up = Vector::UnitZ()) {
   const PatchMesh mesh = front_patches(scene);
   const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
-  return render(mesh, vertex_means(mesh, radiance, area), Occluder(scene), camera, up, options);
+  return render(mesh, smooth(mesh, radiance, area, Occluder(scene)), Occluder(scene), camera, up, options);
 }
 
 // The area in pixels of a quadrilateral's image under y-axis perspective, by the shoelace formula.
@@ -165,8 +165,8 @@ TEST(Render, CanBeCancelled) {
     EXPECT_EQ(progress.stage, Stage::render);
     return false;
   };
-  EXPECT_THROW(render(front_patches(scene), Field::Constant(4, 1, 1), Occluder(scene), camera_along_y(50),
-                      Vector::UnitZ(), {}, stop),
+  EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, 1, 1), CornerWeights::Ones(1, 4)}, Occluder(scene),
+                      camera_along_y(50), Vector::UnitZ(), {}, stop),
                Cancelled);
 }
 

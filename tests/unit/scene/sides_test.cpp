@@ -130,14 +130,33 @@ TEST(KeptSides, ARoomHoldsItsFurniture) {
   expect_all(kept, 12, 14, both_sides);
 }
 
-TEST(KeptSides, AnOpenOrInconsistentOrBranchedSurfaceKeepsEverything) {
+TEST(KeptSides, ATurnedFaceOfASolidKeepsTheSideThatItsNeighboursKeep) {
+  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2});
+  std::reverse(scene.polygons[2].corners.begin(), scene.polygons[2].corners.end());
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 2, front_only);
+  expect_all(kept, 2, 3, back_only);
+  expect_all(kept, 3, 6, front_only);
+}
+
+TEST(KeptSides, ABackThatIsAFaceOfItsOwnIsKeptAndMayBeALamp) {
+  // Two plates, the back of the second is a lamp: it is in the cube that a point behind it is in.
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::outward);
+  scene = with_polygon(std::move(scene), {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}});
+  scene.polygons[6].back_material = lamp;
+  EXPECT_TRUE(is_lamp(scene, 6));
+  EXPECT_FALSE(emits(scene, 6, Side::front));
+  EXPECT_EQ(sides_of(kept_sides(scene, Sides::front), 6), both_sides);
+  EXPECT_EQ(sides_of(kept_sides(scene, Sides::front), 0), front_only);
+  const KeptSides kept = automatic(scene);
+  expect_all(kept, 0, 6, back_only);
+  EXPECT_EQ(sides_of(kept, 6), both_sides);
+}
+
+TEST(KeptSides, AnOpenOrBranchedSurfaceKeepsEverything) {
   Scene open = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   open.polygons.pop_back();
   expect_all(automatic(open), 0, 5, both_sides);
-
-  Scene inconsistent = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
-  std::reverse(inconsistent.polygons[2].corners.begin(), inconsistent.polygons[2].corners.end());
-  expect_all(automatic(inconsistent), 0, 6, both_sides);
 
   // Two cubes that share an edge: four polygons meet there.
   Scene branched = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What of a scene is made of one material.
+struct MaterialFacts {
+  Material material;
+  std::size_t faces = 0;
+  double area = 0;  ///< m^2, of the sides that have this material: backs count only where they have one of their own
+  Spectrum flux;    ///< W, emitted by these sides
+};
+
+/// A unit that makes a model of implausible size plausible.
+struct UnitGuess {
+  std::string unit;  ///< as --unit takes it
+  std::string reason;
+};
+
+/// What a scene holds and what is wrong with it.
+struct SceneReport {
+  Box bounds;  ///< metres
+  std::size_t vertices = 0;
+  std::size_t polygons = 0;
+  std::size_t groups = 0;
+  double area = 0;                       ///< m^2, each polygon once
+  std::vector<MaterialFacts> materials;  ///< those that faces have, in the scene's order
+  std::size_t lamps = 0;                 ///< emitting polygons
+  std::size_t shells = 0;                ///< sets of polygons connected by shared edges
+  std::size_t closed_shells = 0;
+  std::size_t open_edges = 0;     ///< edges of one polygon only: the rims of openings and of sheets
+  double open_edge_length = 0;    ///< metres
+  std::vector<Problem> problems;  ///< those of reading and repair and those found here, worst first
+  std::optional<UnitGuess> unit_guess;
+  bool usable = true;  ///< false when nothing emits: it cannot be solved
+};
+
+/// Looks at a scene that repair() and check() have passed. Pure. O(n log n) for n corners.
+SceneReport survey(const Scene& scene);
+
+/// One sentence on a scene in which nothing emits: which material looks like a lamp, and the --set that switches it on.
+std::string advice_without_lamp(const Scene& scene);
+
+}  // namespace patchlight

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What can be wrong with a model, worst first.
+enum class ProblemKind : std::uint8_t {
+  // Something the model means is lost.
+  no_lamp,                ///< nothing emits
+  covered_lamp,           ///< a lamp coincides with an earlier face that does not emit
+  missing_material_file,  ///< an mtllib that is nowhere
+  unknown_material,       ///< a usemtl that no material file defines
+  self_intersecting,      ///< a face whose outline crosses itself
+  // The answer may differ from what is meant.
+  implausible_size,     ///< the unit is probably another
+  full_reflectance,     ///< a reflectance of 1: nothing is absorbed
+  moved_material_file,  ///< an mtllib found at another place than it names
+  no_material,          ///< faces before any usemtl
+  turned_faces,         ///< faces that are turned against their neighbours
+  non_planar,           ///< faces whose corners do not lie in one plane
+  duplicate_faces,      ///< a face that is there already, with the same front
+  // Harmless.
+  two_sided_faces,     ///< two faces at one place, back to back
+  non_manifold_edges,  ///< edges of more than two faces
+  zero_area,           ///< faces without area
+  repeated_corners,    ///< faces that name a corner twice in a row
+  welded_vertices      ///< different vertices at one place
+};
+
+enum class Severity : std::uint8_t { error, warning, remark };
+
+/// A face as it stands in the model.
+struct ProblemFace {
+  std::vector<Point> corners;  ///< metres
+  std::uint32_t file = 0;      ///< index into Scene::files
+  std::uint32_t line = 0;      ///< from 1; 0 if unknown
+  std::uint32_t face = 0;      ///< number of the face in the model, from 0
+};
+
+/// One kind of thing that is wrong.
+struct Problem {
+  ProblemKind kind = ProblemKind::no_lamp;
+  std::size_t count = 0;           ///< of faces, edges, vertices, files or materials, as the kind says
+  std::string what;                ///< one sentence: what was found, how many, and what is done about it
+  std::vector<ProblemFace> faces;  ///< those concerned, in the model's order; may be empty
+};
+
+/// "self_intersecting" and so on.
+const char* name_of(ProblemKind kind);
+
+Severity severity_of(ProblemKind kind);
+
+/// "error", "warning" or "remark".
+const char* name_of(Severity severity);
+
+/// The problems with the worst first; those of one kind stay in order.
+std::vector<Problem> worst_first(std::vector<Problem> problems);
+
+}  // namespace patchlight

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// How the polygons of a scene hang together. A shell is a set of polygons connected by shared edges; vertices nearer
+/// than weld_distance() are one.
+struct Shells {
+  std::vector<PolygonIndex> shell;   ///< per polygon: the first polygon of its shell
+  std::vector<std::uint8_t> turned;  ///< per polygon: 1 when it is turned against most of the area it is connected to
+  std::vector<std::uint8_t> closed;  ///< per polygon: 1 when each edge of its shell belongs to exactly two of its
+                                     ///< polygons, which walk along it in opposite directions once those turned are
+                                     ///< turned back
+  std::vector<std::array<Point, 2>> boundary;  ///< the edges of one polygon only
+  std::vector<PolygonIndex> branched;          ///< the polygons at edges that three or more walk along
+  std::size_t branched_edges = 0;
+  std::size_t count = 0;         ///< of shells
+  std::size_t closed_count = 0;  ///< of closed shells
+};
+
+/// O(n log n) for n corners.
+Shells shells_of(const Scene& scene);
+
+}  // namespace patchlight

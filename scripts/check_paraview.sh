@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Opens a result and a series in ParaView, applies scripts/paraview_view.py, takes screenshots and compares what ParaView
+# finds with the report. Fetches ParaView into FOLDER when it is not there: about 75 MB to download, 600 MB on disk.
+# usage: scripts/check_paraview.sh [FOLDER]    default: build/paraview; needs the tool in build/src
+# Without ParaView and without a network it says so and ends well, unless CI is set.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+folder=$(realpath -m "${1:-build/paraview}")
+out=build/paraview_check
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then as_root=(sudo); fi
+
+give_up() {
+  if [ -n "${CI:-}" ]; then echo "error: paraview: $1" >&2; exit 1; fi
+  echo "paraview: $1; left out"
+  exit 0
+}
+
+update_lists() {
+  "${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update
+}
+
+install() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 install -y \
+    --no-install-recommends "$@" >/dev/null
+}
+
+# The package python3-paraview would remove libvtk9-dev, which patchlight is built with: it is unpacked, not installed.
+fetch_paraview() {
+  [ -x "$folder/usr/bin/pvbatch" ] && return
+  echo "paraview: fetching ParaView into $folder"
+  local debs
+  debs=$(mktemp -d)
+  chmod a+rx "$debs"
+  (cd "$debs" && { apt-get -qq download paraview python3-paraview || { update_lists && apt-get -qq download paraview python3-paraview; }; }) ||
+    { rm -r "$debs"; give_up "ParaView cannot be downloaded"; }
+  rm -rf "$folder.new"
+  mkdir -p "$folder.new"
+  for deb in "$debs"/*.deb; do dpkg -x "$deb" "$folder.new"; done
+  rm -r "$debs" && rm -rf "$folder" && mv "$folder.new" "$folder"
+}
+
+# Libraries that pvbatch needs and the machine lacks come with Debian's paraview package. Qt's part of it is not used.
+complete() {
+  ! env LD_LIBRARY_PATH="$libraries" ldd "$folder/usr/bin/pvbatch" | grep -q 'not found'
+}
+
+fetch_paraview
+libraries="$folder/usr/lib/$(gcc -print-multiarch)"
+command -v xvfb-run >/dev/null || install xvfb xauth || { update_lists && install xvfb xauth; } || give_up "there is no xvfb-run"
+complete || install paraview || { update_lists && install paraview; } || give_up "libraries of ParaView are missing"
+
+rm -rf "$out"
+mkdir -p "$out"
+build/src/patchlight solve meshes/cornell_box.obj --up y --quiet --patches 8000 --report "$out/cornell_box.json" \
+  -o "$out/cornell_box.vtp" -o "$out/cornell_box.ply" -o "$out/cornell_box.glb" --series "$out/cornell_box.pvd"
+# ParaView wants an X server, even for pictures that nobody sees.
+timeout 300 xvfb-run -a -s "-screen 0 1280x1024x24" env LD_LIBRARY_PATH="$libraries" \
+  PYTHONPATH="$folder/usr/lib/python3/dist-packages" "$folder/usr/bin/pvbatch" scripts/check_paraview.py "$out" cornell_box

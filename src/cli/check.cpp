@@ -1,0 +1,124 @@
+#include "cli/check.h"
+
+#include "patchlight/light/photometry.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_problems.h"
+#include "patchlight/output/write_survey.h"
+#include "patchlight/plan/survey.h"
+
+#include "cli/interrupt.h"
+
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+namespace patchlight::cli {
+namespace {
+
+std::string rounded(double value, int digits = 4) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+template <class Values>
+std::string listed(const Values& values, const char* separator) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : separator) + rounded(value);
+  return text;
+}
+
+std::string size_line(const Scene& scene, const SceneReport& report) {
+  std::ostringstream text;
+  text << "size: " << listed(Vector(report.bounds.sizes()), " x ") << " m, from (" << listed(report.bounds.min(), ", ")
+       << ") to (" << listed(report.bounds.max(), ", ") << "), one model unit being " << rounded(scene.metres_per_unit)
+       << " m\n";
+  return text.str();
+}
+
+std::string counts_lines(const SceneReport& report) {
+  std::ostringstream text;
+  text << "faces: " << counted(report.polygons, "polygon") << " of " << rounded(report.area) << " m^2, "
+       << report.vertices << " vertices, " << counted(report.groups, "group") << '\n';
+  text << "shells: " << report.shells << ", of these " << report.closed_shells << " closed; ";
+  if (report.open_edges == 0) {
+    text << "no open edges\n";
+  } else {
+    text << counted(report.open_edges, "open edge") << ", " << rounded(report.open_edge_length) << " m in all\n";
+  }
+  return text.str();
+}
+
+std::string material_lines(const SceneReport& report) {
+  std::size_t width = 0;
+  for (const MaterialFacts& facts : report.materials) width = std::max(width, facts.material.name.size());
+  width = std::min<std::size_t>(width, 40);
+  std::ostringstream text;
+  text << "materials:\n";
+  for (const MaterialFacts& facts : report.materials) {
+    text << "  " << std::left << std::setw(static_cast<int>(width)) << facts.material.name << "  reflectance "
+         << listed(facts.material.reflectance, ", ") << "; " << counted(facts.faces, "face") << ", "
+         << rounded(facts.area) << " m^2\n";
+  }
+  return text.str();
+}
+
+std::string lamp_lines(const SceneReport& report) {
+  std::ostringstream text;
+  text << "lamps: " << (report.lamps == 0 ? "none" : counted(report.lamps, "face")) << '\n';
+  for (const MaterialFacts& facts : report.materials) {
+    if (!(facts.material.exitance > 0).any()) continue;
+    text << "  " << facts.material.name << "  flux " << listed(facts.flux, ", ") << " W, "
+         << rounded(luminance(facts.flux)) << " lm from " << rounded(facts.area) << " m^2\n";
+  }
+  return text.str();
+}
+
+std::string problem_lines(const Scene& scene, const SceneReport& report) {
+  std::array<std::size_t, 3> count{};
+  for (const Problem& problem : report.problems) ++count[static_cast<std::size_t>(severity_of(problem.kind))];
+  std::ostringstream text;
+  text << "problems: " << counted(count[0], "error") << ", " << counted(count[1], "warning") << ", "
+       << counted(count[2], "remark") << '\n';
+  for (const Problem& problem : report.problems) {
+    text << "  " << name_of(severity_of(problem.kind)) << ": " << name_of(problem.kind) << ": " << problem.what << '\n';
+  }
+  for (const std::string& note : scene.notes) {
+    const bool is_problem = std::any_of(report.problems.begin(), report.problems.end(),
+                                        [&](const Problem& problem) { return problem.what == note; });
+    if (!is_problem) text << "  note: " << note << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace
+
+ExitCode check(const CheckArguments& arguments) {
+  for (const auto* file : {&arguments.json, &arguments.problems}) {
+    if (!file->empty()) check_writable(*file);
+  }
+  const Scene scene = read_scene(arguments.model, arguments.read);
+  const SceneReport report = survey(scene);
+
+  const WritingGuard guard;
+  if (!arguments.json.empty()) write_survey(arguments.json, scene, report);
+  if (!arguments.problems.empty()) write_problems(arguments.problems, scene, report);
+  if (arguments.json_on_stdout) {
+    std::cout << survey_json(scene, report) << std::flush;
+  } else {
+    std::cout << scene.file << ": " << (report.usable ? "can be solved" : "cannot be solved as it is") << '\n'
+              << size_line(scene, report) << counts_lines(report) << material_lines(report) << lamp_lines(report)
+              << problem_lines(scene, report) << std::flush;
+  }
+  if (report.usable) return good;
+  print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));
+  return input_error;
+}
+
+}  // namespace patchlight::cli

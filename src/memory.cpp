@@ -1,0 +1,80 @@
+#include "memory.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/scene/sides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+
+namespace patchlight {
+namespace {
+
+// The exchange areas, in float, half of a symmetric matrix. The rest is measured: what the program and its libraries
+// take, and the mesh, the fields and the results per patch.
+constexpr double bytes_per_pair = 2;
+constexpr double bytes_per_patch = 1500;
+constexpr double bytes_of_program = 50e6;
+
+// Share of the machine's memory that may be taken when nothing is said.
+constexpr double usable_share = 0.8;
+
+double installed_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+// The number of patches for which memory_needed() is this.
+double patches_in(double bytes) {
+  const double half = bytes_per_patch / (2 * bytes_per_pair);
+  return std::max(1.0, std::sqrt(half * half + std::max(0.0, bytes - bytes_of_program) / bytes_per_pair) - half);
+}
+
+std::string gigabytes(double bytes) {
+  std::ostringstream text;
+  text << std::setprecision(3) << bytes / 1e9 << " GB";
+  return text.str();
+}
+
+double kept_area(const Scene& scene, const KeptSides& sides) {
+  double sum = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    sum += area_vector(corner_points(scene, p)).norm() * (sides.front[p] + sides.back[p]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double memory_needed(std::size_t patches) {
+  const auto n = static_cast<double>(patches);
+  return bytes_per_pair * n * n + bytes_per_patch * n + bytes_of_program;
+}
+
+void require_memory(std::size_t patches, const Request& request) {
+  const double needed = memory_needed(patches);
+  const double usable = request.memory ? *request.memory : usable_share * installed_bytes();
+  if (needed <= usable) return;
+  const std::string hint =
+      usable > 2 * bytes_of_program
+          ? "ask for at most " + std::to_string(static_cast<long>(patches_in(usable))) + " patches with --patches"
+          : "the program itself takes " + gigabytes(bytes_of_program);
+  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) + ", most of it for their " +
+                    "form factors, and " + gigabytes(usable) +
+                    (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);
+}
+
+void require_memory(const Scene& scene, const Request& request) {
+  if (request.max_edge) {
+    const double largest = *request.max_edge * *request.max_edge;
+    const double least = kept_area(scene, kept_sides(scene, request.sides)) / largest;
+    // Too many to count are as good as the largest number.
+    require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request);
+  } else {
+    require_memory(request.patches.value_or(default_patches), request);
+  }
+}
+
+}  // namespace patchlight

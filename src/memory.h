@@ -1,0 +1,20 @@
+#pragma once
+
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+
+#include <cstddef>
+
+namespace patchlight {
+
+/// Bytes that solving takes at its peak, all in all: rather a little too many than too few.
+double memory_needed(std::size_t patches);
+
+/// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
+/// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.
+void require_memory(const Scene& scene, const Request& request);
+
+/// \throws MemoryError when solving for so many patches would take more memory than it may.
+void require_memory(std::size_t patches, const Request& request);
+
+}  // namespace patchlight

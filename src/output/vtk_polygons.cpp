@@ -1,0 +1,97 @@
+#include "output/vtk_polygons.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/whole_file.h"
+
+#include <algorithm>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCommand.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkXMLPolyDataWriter.h>
+
+namespace patchlight {
+namespace {
+
+// The first error that VTK reports, kept instead of printed.
+void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
+  auto& kept = *static_cast<std::string*>(message);
+  if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
+}
+
+}  // namespace
+
+Pointer<vtkPolyData> polygons_of(const PatchMesh& mesh) {
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+    points->SetPoint(static_cast<vtkIdType>(k), mesh.vertices[k].data());
+  }
+  const vtkNew<vtkCellArray> cells;
+  for (const auto& corners : mesh.corners) {
+    const bool triangle = corners[2] == corners[3];
+    cells->InsertNextCell(triangle ? 3 : 4);
+    for (std::size_t k = 0; k < (triangle ? 3U : 4U); ++k) cells->InsertCellPoint(corners[k]);
+  }
+  auto polygons = Pointer<vtkPolyData>::New();
+  polygons->SetPoints(points);
+  polygons->SetPolys(cells);
+  return polygons;
+}
+
+Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
+  auto array = Pointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(values.cols()));
+  array->SetNumberOfTuples(values.rows());
+  float* out = array->GetPointer(0);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
+  }
+  return array;
+}
+
+Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {
+  auto array = Pointer<vtkUnsignedCharArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::uint8_t* out = array->GetPointer(0);
+  for (const auto& value : values) out = std::copy(value.begin(), value.end(), out);
+  return array;
+}
+
+Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values) {
+  auto array = Pointer<vtkStringArray>::New();
+  array->SetName(name.c_str());
+  for (const std::string& value : values) array->InsertNextValue(value);
+  return array;
+}
+
+void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::string error;
+    const vtkNew<vtkCallbackCommand> on_error;
+    on_error->SetCallback(keep_first_error);
+    on_error->SetClientData(&error);
+    const vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer->SetInputData(&polygons);
+    writer->SetFileName(temporary.c_str());
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetCompressorTypeToLZ4();
+    writer->SetHeaderTypeToUInt64();
+    const bool written = writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError && error.empty();
+    if (!written) {
+      throw OutputError(file.string(), "cannot be written; is the disk full?");
+    }
+  });
+}
+
+}  // namespace patchlight

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+
+namespace patchlight {
+
+template <class Array>
+using Pointer = vtkSmartPointer<Array>;
+
+/// The patches as cells, one each: triangles and quadrilaterals. Coordinates in double.
+Pointer<vtkPolyData> polygons_of(const PatchMesh& mesh);
+
+/// One tuple per row, narrowed to float.
+Pointer<vtkFloatArray> floats(const char* name, const FieldView& values);
+
+/// One tuple of three bytes per colour.
+Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values);
+
+Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values);
+
+/// An array of numbers of any kind, one component, as vtkIntArray, vtkFloatArray or vtkDoubleArray.
+template <class Array, class Values>
+Pointer<Array> numbers(const char* name, const Values& values) {
+  auto array = Pointer<Array>::New();
+  array->SetName(name);
+  for (const auto value : values) array->InsertNextValue(static_cast<typename Array::ValueType>(value));
+  return array;
+}
+
+/// Writes a whole .vtp file, appended raw data, LZ4. \throws OutputError.
+void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons);
+
+}  // namespace patchlight

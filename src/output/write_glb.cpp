@@ -1,0 +1,150 @@
+#include "patchlight/output/write_glb.h"
+
+#include "patchlight/base/error.h"
+
+#include "output/append_bytes.h"
+#include "output/vertex_colours.h"
+#include "output/write_bytes.h"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace patchlight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers of the glTF 2.0 specification.
+constexpr int type_float = 5126, type_unsigned_short = 5123, type_unsigned_int = 5125;
+constexpr int target_vertices = 34962, target_indices = 34963;
+constexpr std::uint32_t magic = 0x46546C67, chunk_json = 0x4E4F534A, chunk_binary = 0x004E4942;
+
+// The binary chunk and where its parts are.
+struct Buffer {
+  std::string bytes;
+  std::size_t positions = 0, colours = 0, indices = 0;     // bytes each
+  std::size_t vertices = 0, corners = 0;                   // numbers of entries
+  Eigen::Array3f lowest = Eigen::Array3f::Constant(0.0F);  // of the positions
+  Eigen::Array3f highest = Eigen::Array3f::Constant(0.0F);
+};
+
+// glTF's y points up.
+Vector y_up(const Vector& vector, const Scene& scene) {
+  const bool turned = std::abs(scene.up.y()) < std::abs(scene.up.z());
+  return turned ? Vector(vector.x(), vector.z(), -vector.y()) : vector;
+}
+
+// IEC 61966-2-1:1999, section 5.2: linear value of an 8-bit sRGB channel, as a share of 65535.
+std::uint16_t linear(std::uint8_t channel) {
+  const double encoded = channel / 255.0;
+  const double value = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+  return static_cast<std::uint16_t>(std::lround(65535 * value));
+}
+
+void append_triangle(std::string& bytes, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  for (const std::uint32_t corner : {a, b, c}) append_bytes(bytes, corner);
+}
+
+Buffer buffer_of(const Scene& scene, const Simulation& simulation, const Point& centre, double exposure) {
+  const PatchMesh& mesh = simulation.mesh;
+  Buffer buffer;
+  buffer.vertices = mesh.vertices.size();
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+    const Eigen::Array3f position = y_up(mesh.vertices[k] - centre, scene).cast<float>().array();
+    for (const float coordinate : position) append_bytes(buffer.bytes, coordinate);
+    buffer.lowest = k == 0 ? position : buffer.lowest.min(position);
+    buffer.highest = k == 0 ? position : buffer.highest.max(position);
+  }
+  buffer.positions = buffer.bytes.size();
+  // Vertex colours are linear in glTF: sixteen bits keep all eight of sRGB. Opaque.
+  for (const auto& colour : vertex_colours(scene, simulation, exposure)) {
+    for (const std::uint8_t channel : colour) append_bytes(buffer.bytes, linear(channel));
+    append_bytes(buffer.bytes, std::numeric_limits<std::uint16_t>::max());
+  }
+  buffer.colours = buffer.bytes.size() - buffer.positions;
+  for (const auto& [a, b, c, d] : mesh.corners) {
+    append_triangle(buffer.bytes, a, b, c);
+    if (c != d) append_triangle(buffer.bytes, a, c, d);
+  }
+  buffer.indices = buffer.bytes.size() - buffer.positions - buffer.colours;
+  buffer.corners = buffer.indices / sizeof(std::uint32_t);
+  return buffer;
+}
+
+Json array_of(const Eigen::Array3f& values) { return Json::array({values[0], values[1], values[2]}); }
+
+Json description(const Buffer& buffer, const Vector& translation, const Provenance& provenance) {
+  const auto view = [](std::size_t offset, std::size_t length, int target) -> Json {
+    return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
+  };
+  Json json;
+  json["asset"] = {{"version", "2.0"},
+                   {"generator", std::string("patchlight ") + version()},
+                   {"extras", {{"exposure", provenance.exposure}, {"command_line", provenance.command_line}}}};
+  json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
+  json["scene"] = 0;
+  json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  json["nodes"] =
+      Json::array({{{"mesh", 0}, {"translation", Json::array({translation.x(), translation.y(), translation.z()})}}});
+  const Json primitive = {
+      {"attributes", {{"POSITION", 0}, {"COLOR_0", 1}}}, {"indices", 2}, {"material", 0}, {"mode", 4}};
+  json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+  json["materials"] = Json::array({{{"name", "light"},
+                                    {"doubleSided", false},
+                                    {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                                    {"extensions", {{"KHR_materials_unlit", Json::object()}}}}});
+  json["accessors"] = Json::array(
+      {{{"bufferView", 0},
+        {"componentType", type_float},
+        {"count", buffer.vertices},
+        {"type", "VEC3"},
+        {"min", array_of(buffer.lowest)},
+        {"max", array_of(buffer.highest)}},
+       {{"bufferView", 1},
+        {"componentType", type_unsigned_short},
+        {"normalized", true},
+        {"count", buffer.vertices},
+        {"type", "VEC4"}},
+       {{"bufferView", 2}, {"componentType", type_unsigned_int}, {"count", buffer.corners}, {"type", "SCALAR"}}});
+  json["bufferViews"] =
+      Json::array({view(0, buffer.positions, target_vertices), view(buffer.positions, buffer.colours, target_vertices),
+                   view(buffer.positions + buffer.colours, buffer.indices, target_indices)});
+  json["buffers"] = Json::array({{{"byteLength", buffer.bytes.size()}}});
+  return json;
+}
+
+void append_chunk(std::string& bytes, std::uint32_t type, const std::string& chunk) {
+  append_bytes(bytes, static_cast<std::uint32_t>(chunk.size()));
+  append_bytes(bytes, type);
+  bytes += chunk;
+}
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+               const Provenance& provenance) {
+  const Point centre = bounds(scene).center();
+  const Buffer buffer = buffer_of(scene, simulation, centre, provenance.exposure);
+  // Bytes that are not UTF-8 are replaced. Chunks are padded to four bytes, JSON with spaces; the other one fits.
+  std::string text =
+      description(buffer, y_up(centre, scene), provenance).dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+
+  const std::size_t header = 12, chunk_header = 8;
+  const std::size_t size = header + chunk_header + text.size() + chunk_header + buffer.bytes.size();
+  if (size > std::numeric_limits<std::uint32_t>::max()) {
+    throw OutputError(file.string(), "needs more than the 4 GiB that a .glb can hold; expected fewer patches or .vtp");
+  }
+  std::string bytes;
+  bytes.reserve(size);
+  append_bytes(bytes, magic);
+  append_bytes(bytes, std::uint32_t{2});  // version of the container
+  append_bytes(bytes, static_cast<std::uint32_t>(size));
+  append_chunk(bytes, chunk_json, text);
+  append_chunk(bytes, chunk_binary, buffer.bytes);
+  write_bytes(file, bytes);
+}
+
+}  // namespace patchlight

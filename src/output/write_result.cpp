@@ -1,0 +1,24 @@
+#include "patchlight/output/write_result.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/write_glb.h"
+#include "patchlight/output/write_ply.h"
+#include "patchlight/output/write_vtk.h"
+
+namespace patchlight {
+
+const std::vector<std::string>& result_extensions() {
+  static const std::vector<std::string> extensions = {".vtp", ".ply", ".glb"};
+  return extensions;
+}
+
+void write_result(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+                  const Provenance& provenance) {
+  const std::string extension = file.extension().string();
+  if (extension == ".vtp") return write_vtk(file, scene, simulation, provenance);
+  if (extension == ".ply") return write_ply(file, scene, simulation, provenance);
+  if (extension == ".glb") return write_glb(file, scene, simulation, provenance);
+  throw OutputError(file.string(), "the extension names no known format; expected .vtp, .ply or .glb");
+}
+
+}  // namespace patchlight

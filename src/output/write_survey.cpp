@@ -1,0 +1,89 @@
+#include "patchlight/output/write_survey.h"
+
+#include "patchlight/light/photometry.h"
+#include "patchlight/output/provenance.h"
+
+#include "output/write_bytes.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace patchlight {
+namespace {
+
+// Keeps the keys in the order in which they are set.
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_faces = 1000;
+
+template <class Values>
+Json array_of(const Values& values) {
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(value);
+  return array;
+}
+
+Json material_part(const MaterialFacts& facts) {
+  Json part;
+  part["name"] = facts.material.name;
+  part["reflectance"] = array_of(facts.material.reflectance);
+  part["exitance_W_m2"] = array_of(facts.material.exitance);
+  part["faces"] = facts.faces;
+  part["area_m2"] = facts.area;
+  part["flux_W"] = array_of(facts.flux);
+  part["flux_lm"] = luminance(facts.flux);
+  return part;
+}
+
+Json problem_part(const Scene& scene, const Problem& problem) {
+  Json part;
+  part["kind"] = name_of(problem.kind);
+  part["severity"] = name_of(severity_of(problem.kind));
+  part["count"] = problem.count;
+  part["what"] = problem.what;
+  part["faces"] = Json::array();
+  for (std::size_t k = 0; k < std::min(most_faces, problem.faces.size()); ++k) {
+    const ProblemFace& face = problem.faces[k];
+    Json entry;
+    entry["file"] = face.file < scene.files.size() ? scene.files[face.file] : scene.file;
+    entry["line"] = face.line;
+    part["faces"].push_back(entry);
+  }
+  return part;
+}
+
+}  // namespace
+
+std::string survey_json(const Scene& scene, const SceneReport& report) {
+  Json json;
+  json["version"] = version();
+  json["file"] = scene.file;
+  json["sha256"] = scene.sha256;
+  json["usable"] = report.usable;
+  json["metres_per_unit"] = scene.metres_per_unit;
+  json["bounds_m"] = {array_of(report.bounds.min()), array_of(report.bounds.max())};
+  json["size_m"] = array_of(Vector(report.bounds.sizes()));
+  json["unit_guess"] = report.unit_guess ? Json(report.unit_guess->unit) : Json();
+  json["polygons"] = report.polygons;
+  json["vertices"] = report.vertices;
+  json["groups"] = report.groups;
+  json["area_m2"] = report.area;
+  json["lamps"] = report.lamps;
+  json["shells"] = report.shells;
+  json["closed_shells"] = report.closed_shells;
+  json["open_edges"] = report.open_edges;
+  json["open_edge_length_m"] = report.open_edge_length;
+  json["materials"] = Json::array();
+  for (const MaterialFacts& facts : report.materials) json["materials"].push_back(material_part(facts));
+  json["problems"] = Json::array();
+  for (const Problem& problem : report.problems) json["problems"].push_back(problem_part(scene, problem));
+  json["notes"] = scene.notes;
+  // Names from a model may hold bytes that are not UTF-8: they are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_survey(const std::filesystem::path& file, const Scene& scene, const SceneReport& report) {
+  write_bytes(file, survey_json(scene, report));
+}
+
+}  // namespace patchlight

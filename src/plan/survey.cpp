@@ -1,0 +1,190 @@
+#include "patchlight/plan/survey.h"
+
+#include "patchlight/scene/shells.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+// A model is between a chair's part and a large building. Metres.
+constexpr double smallest_plausible = 0.4;
+constexpr double largest_plausible = 150;
+
+// What a room measures: the guess is the unit that comes nearest, inches and feet only if they come nearer by a factor
+// of four. Metres.
+constexpr double usual_size = 6;
+constexpr double rarity = 4;
+
+// A radiance to begin with where the model names none: 1,800 cd/m^2, a lit panel. W/(m^2 sr).
+constexpr double usual_radiance = 10;
+
+struct Unit {
+  const char* name;
+  double metres;
+  double handicap;
+};
+constexpr std::array<Unit, 5> units = {
+    {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
+
+std::string rounded(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
+  if (size >= smallest_plausible && size <= largest_plausible) return std::nullopt;
+  const double in_model_units = size / scene.metres_per_unit;
+  const auto distance = [&](const Unit& unit) {
+    return std::abs(std::log(in_model_units * unit.metres / usual_size)) + std::log(unit.handicap);
+  };
+  const Unit& best = *std::min_element(units.begin(), units.end(),
+                                       [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
+  const double guessed = in_model_units * best.metres;
+  if (guessed < smallest_plausible || guessed > largest_plausible) return std::nullopt;
+  return UnitGuess{best.name, "the model would be " + rounded(guessed) + " m long instead of " + rounded(size) +
+                                  " m, the size of a room or a building"};
+}
+
+std::vector<Problem> problems_with_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
+  if (size >= smallest_plausible && size <= largest_plausible) return {};
+  const std::string advice =
+      guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason + ": --unit " + guess->unit
+            : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
+  return {
+      {ProblemKind::implausible_size,
+       1,
+       "the model is " + rounded(size) + " m long with " + rounded(scene.metres_per_unit) + " m per unit; " + advice,
+       {}}};
+}
+
+std::string first_few(const std::vector<std::string>& names) {
+  constexpr std::size_t few = 8;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
+  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
+}
+
+std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
+  std::vector<std::string> names;
+  for (const MaterialFacts& facts : materials) {
+    if ((facts.material.reflectance >= 1).any()) names.push_back(facts.material.name);
+  }
+  if (names.empty()) return {};
+  return {{ProblemKind::full_reflectance,
+           names.size(),
+           "reflectance 1 (Kd), so nothing is absorbed: " + first_few(names) +
+               "; it is taken as it is. Real surfaces stay below 0.9, and a closed room of reflectance 1 has no answer",
+           {}}};
+}
+
+std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
+  std::vector<MaterialFacts> all;
+  for (const Material& material : scene.materials) {
+    all.push_back({material, 0, 0, Spectrum::Zero(material.exitance.size())});
+  }
+  const auto add = [&all](MaterialIndex index, double area) {
+    MaterialFacts& facts = all[index];
+    ++facts.faces;
+    facts.area += area;
+    facts.flux += area * facts.material.exitance;
+  };
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Polygon& polygon = scene.polygons[p];
+    const double area = area_vector(corner_points(scene, p)).norm();
+    add(polygon.material, area);
+    if (polygon.back_material) add(*polygon.back_material, area);
+  }
+  std::erase_if(all, [](const MaterialFacts& facts) { return facts.faces == 0; });
+  return all;
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+// The reader's hints, else the materials with a name like a lamp's.
+std::vector<LampHint> possible_lamps(const Scene& scene) {
+  if (!scene.lamp_hints.empty()) return scene.lamp_hints;
+  std::vector<LampHint> hints;
+  for (const Material& material : scene.materials) {
+    const std::string name = in_lower_case(material.name);
+    for (const char* part : {"light", "lamp", "lumin", "emit", "emissi", "glow", "bulb", "neon", "leucht"}) {
+      if (name.find(part) == std::string::npos) continue;
+      hints.push_back({material.name, Spectrum::Constant(1, usual_radiance), "its name"});
+      break;
+    }
+  }
+  return hints;
+}
+
+// As one types it in a shell.
+std::string setting_for(const LampHint& hint) {
+  std::ostringstream text;
+  const bool plain = hint.material.find_first_of(" \t'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+  text << "--set " << (plain ? "" : "'") << hint.material
+       << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ",")) << (plain ? "" : "'");
+  return text.str();
+}
+
+}  // namespace
+
+std::string advice_without_lamp(const Scene& scene) {
+  const std::vector<LampHint> hints = possible_lamps(scene);
+  if (hints.empty()) {
+    std::vector<std::string> names;
+    for (const Material& material : scene.materials) names.push_back(material.name);
+    return "no material emits, and none looks like a lamp; choose one with --set MATERIAL.radiance=R,G,B from " +
+           first_few(names);
+  }
+  std::string advice = "no material emits";
+  for (const LampHint& hint : hints) {
+    advice +=
+        "; '" + hint.material + "' looks like a lamp (" + hint.reason + "): " + setting_for(hint) + " switches it on";
+    if (&hint - hints.data() == 2) break;
+  }
+  return advice;
+}
+
+SceneReport survey(const Scene& scene) {
+  SceneReport report;
+  report.bounds = bounds(scene);
+  report.vertices = scene.vertices.size();
+  report.polygons = scene.polygons.size();
+  report.groups = scene.groups.size();
+  report.materials = facts_of_materials(scene);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    report.lamps += is_lamp(scene, p);
+    report.area += area_vector(corner_points(scene, p)).norm();
+  }
+
+  const Shells shells = shells_of(scene);
+  report.shells = shells.count;
+  report.closed_shells = shells.closed_count;
+  report.open_edges = shells.boundary.size();
+  for (const auto& [from, to] : shells.boundary) report.open_edge_length += (to - from).norm();
+
+  const double size = report.bounds.sizes().maxCoeff();
+  report.unit_guess = guess_unit(scene, size);
+  report.usable = report.lamps > 0;
+  report.problems = scene.problems;
+  const auto add = [&report](const std::vector<Problem>& problems) {
+    report.problems.insert(report.problems.end(), problems.begin(), problems.end());
+  };
+  add(problems_with_size(scene, report.unit_guess, size));
+  add(problems_with_reflectance(report.materials));
+  if (!report.usable) add({{ProblemKind::no_lamp, 1, advice_without_lamp(scene), {}}});
+  report.problems = worst_first(std::move(report.problems));
+  return report;
+}
+
+}  // namespace patchlight

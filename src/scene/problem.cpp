@@ -1,0 +1,70 @@
+#include "patchlight/scene/problem.h"
+
+#include <algorithm>
+
+namespace patchlight {
+
+const char* name_of(ProblemKind kind) {
+  switch (kind) {
+    case ProblemKind::no_lamp:
+      return "no_lamp";
+    case ProblemKind::covered_lamp:
+      return "covered_lamp";
+    case ProblemKind::missing_material_file:
+      return "missing_material_file";
+    case ProblemKind::unknown_material:
+      return "unknown_material";
+    case ProblemKind::self_intersecting:
+      return "self_intersecting";
+    case ProblemKind::implausible_size:
+      return "implausible_size";
+    case ProblemKind::full_reflectance:
+      return "full_reflectance";
+    case ProblemKind::moved_material_file:
+      return "moved_material_file";
+    case ProblemKind::no_material:
+      return "no_material";
+    case ProblemKind::turned_faces:
+      return "turned_faces";
+    case ProblemKind::non_planar:
+      return "non_planar";
+    case ProblemKind::duplicate_faces:
+      return "duplicate_faces";
+    case ProblemKind::two_sided_faces:
+      return "two_sided_faces";
+    case ProblemKind::non_manifold_edges:
+      return "non_manifold_edges";
+    case ProblemKind::zero_area:
+      return "zero_area";
+    case ProblemKind::repeated_corners:
+      return "repeated_corners";
+    case ProblemKind::welded_vertices:
+      return "welded_vertices";
+  }
+  return "";
+}
+
+Severity severity_of(ProblemKind kind) {
+  if (kind <= ProblemKind::self_intersecting) return Severity::error;
+  return kind <= ProblemKind::duplicate_faces ? Severity::warning : Severity::remark;
+}
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::error:
+      return "error";
+    case Severity::warning:
+      return "warning";
+    case Severity::remark:
+      return "remark";
+  }
+  return "";
+}
+
+std::vector<Problem> worst_first(std::vector<Problem> problems) {
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.kind < b.kind; });
+  return problems;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,307 @@
+#include "patchlight/scene/repair.h"
+
+#include "patchlight/scene/shells.h"
+#include "patchlight/scene/weld.h"
+
+#include "scene/coincident.h"
+#include "scene/simple_polygon.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+using Faces = std::vector<ProblemFace>;
+
+ProblemFace face_of(const Scene& scene, const Polygon& polygon) {
+  ProblemFace face{.corners = {}, .file = polygon.file, .line = polygon.line, .face = polygon.face};
+  for (const std::uint32_t corner : polygon.corners) face.corners.push_back(scene.vertices[corner]);
+  return face;
+}
+
+// "3 faces", "1 face".
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+// "3 faces (first at room.obj:12)".
+std::string listed(const Scene& scene, const Faces& faces) {
+  Polygon first;
+  first.file = faces.front().file;
+  first.line = faces.front().line;
+  std::ostringstream text;
+  text << counted(faces.size(), "face") << (faces.size() == 1 ? " (" : " (first at ") << place_of(scene, first) << ')';
+  return text.str();
+}
+
+// The scene with one more problem, unless no face is concerned. `does` follows the number of faces: "have no area".
+Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string& does) {
+  if (faces.empty()) return scene;
+  const std::string what = listed(scene, faces) + " " + does;
+  scene.problems.push_back({kind, faces.size(), what, std::move(faces)});
+  return scene;
+}
+
+Scene number_faces(Scene scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) scene.polygons[p].face = p;
+  return scene;
+}
+
+// Keeps one vertex of those at one place, and only those that polygons use.
+Scene weld_vertices(Scene scene) {
+  constexpr std::uint32_t unused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> number(scene.vertices.size(), unused);
+  for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t corner : polygon.corners) number[corner] = 0;
+  }
+  std::vector<Point> used;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == unused) continue;
+    number[v] = static_cast<std::uint32_t>(used.size());
+    used.push_back(scene.vertices[v]);
+  }
+  const double distance = weld_distance(bounds(scene));
+  const std::vector<std::uint32_t> stands_for = welded(used, distance);
+
+  std::size_t moved = 0;
+  std::vector<std::uint32_t> new_number(used.size());
+  scene.vertices.clear();
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    new_number[v] = static_cast<std::uint32_t>(scene.vertices.size());
+    if (stands_for[v] == v) {
+      scene.vertices.push_back(used[v]);
+    } else {
+      new_number[v] = new_number[stands_for[v]];
+      moved += used[v] != used[stands_for[v]];
+    }
+  }
+  for (Polygon& polygon : scene.polygons) {
+    for (std::uint32_t& corner : polygon.corners) corner = new_number[number[corner]];
+  }
+  if (moved == 0) return scene;
+  std::ostringstream what;
+  what << (moved == 1 ? "1 vertex is" : std::to_string(moved) + " vertices are") << " within " << distance
+       << " m of another one: each pair is taken as one vertex";
+  scene.problems.push_back({ProblemKind::welded_vertices, moved, what.str(), {}});
+  return scene;
+}
+
+// Does the outline turn back at b, so that from a to c it is a spike narrower than `width`?
+bool is_spike(const Point& a, const Point& b, const Point& c, double width) {
+  const Vector back = a - b;
+  const Vector on = c - b;
+  if (back.dot(on) <= 0) return false;
+  const Vector& longer = back.squaredNorm() > on.squaredNorm() ? back : on;
+  const Vector& shorter = back.squaredNorm() > on.squaredNorm() ? on : back;
+  return shorter.cross(longer.normalized()).norm() <= width;
+}
+
+// The corners without those that repeat the one before, and without the tips of spikes.
+std::vector<std::uint32_t> without_spikes(std::vector<std::uint32_t> corners, const std::vector<Point>& vertices,
+                                          double width) {
+  const auto signed_place = [](std::size_t place) { return static_cast<std::ptrdiff_t>(place); };
+  for (std::size_t k = 0, sound = 0; corners.size() > 1 && sound < corners.size();) {
+    const std::size_t n = corners.size();
+    const std::uint32_t before = corners[(k + n - 1) % n];
+    const std::uint32_t after = corners[(k + 1) % n];
+    const bool leave_out = before == corners[k] || before == after ||
+                           is_spike(vertices[before], vertices[corners[k]], vertices[after], width);
+    if (!leave_out) {
+      k = (k + 1) % n;
+      ++sound;
+      continue;
+    }
+    // Look again at the corner before, whose neighbour is another one now.
+    corners.erase(corners.begin() + signed_place(k));
+    k = (k + n - 2) % (n - 1);
+    sound = 0;
+  }
+  return corners;
+}
+
+Scene clean_corners(Scene scene) {
+  const double width = weld_distance(bounds(scene));
+  Faces repeated;
+  for (Polygon& polygon : scene.polygons) {
+    std::vector<std::uint32_t> kept = without_spikes(polygon.corners, scene.vertices, width);
+    if (kept.size() == polygon.corners.size()) continue;
+    // Those of which fewer than three corners are left have no area and are left out as such.
+    if (kept.size() >= 3) repeated.push_back(face_of(scene, polygon));
+    polygon.corners = std::move(kept);
+  }
+  return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
+                      "with corners that repeat the one before, or are the tips of spikes without width; left out");
+}
+
+// The polygon with other corners.
+Polygon with_corners(Polygon polygon, std::vector<std::uint32_t> corners) {
+  polygon.corners = std::move(corners);
+  return polygon;
+}
+
+std::vector<Polygon> in_triangles(const Polygon& polygon, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Polygon> pieces;
+  for (const auto& [a, b, c] : triangles) {
+    pieces.push_back(with_corners(polygon, {polygon.corners[a], polygon.corners[b], polygon.corners[c]}));
+  }
+  return pieces;
+}
+
+// What becomes of one polygon.
+struct Pieces {
+  std::vector<Polygon> polygons;
+  std::vector<Point> new_vertices;  // numbered after those of the scene
+  std::optional<ProblemKind> kind;
+};
+
+// The two triangles of a bent quadrilateral: of both diagonals the one over which it is bent less.
+std::vector<std::array<std::uint32_t, 3>> folded(const std::vector<Point>& points) {
+  const auto cosine = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {  // over the diagonal a c
+    const Vector one = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
+    return one.dot((points[c] - points[a]).cross(points[d] - points[a]).normalized());
+  };
+  if (cosine(0, 1, 2, 3) >= cosine(1, 2, 3, 0)) return {{0, 1, 2}, {0, 2, 3}};
+  return {{1, 2, 3}, {1, 3, 0}};
+}
+
+// A polygon that does not cross itself: whole when it is planar, else in triangles.
+Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points) {
+  if (polygon.corners.size() == 3) return {{polygon}, {}, {}};
+  const bool planar = is_planar(points);
+  if (!planar && points.size() == 4) return {in_triangles(polygon, folded(points)), {}, ProblemKind::non_planar};
+  const auto triangles = proper_triangles(points);
+  if (!triangles) return {{}, {}, ProblemKind::self_intersecting};
+  if (planar) return {{polygon}, {}, {}};
+  return {in_triangles(polygon, *triangles), {}, ProblemKind::non_planar};
+}
+
+// A polygon that crosses itself, cut at the crossings.
+Pieces cut_pieces(const Scene& scene, const Polygon& polygon, const std::vector<Point>& points, double width) {
+  Pieces cut{{}, {}, ProblemKind::self_intersecting};
+  for (const std::vector<Point>& loop : cut_at_crossings(points, width)) {
+    std::vector<std::uint32_t> corners;
+    for (const Point& point : loop) {
+      corners.push_back(static_cast<std::uint32_t>(scene.vertices.size() + cut.new_vertices.size()));
+      cut.new_vertices.push_back(point);
+    }
+    Polygon piece = with_corners(polygon, corners);
+    for (Polygon& simple : simple_pieces(piece, loop).polygons) cut.polygons.push_back(std::move(simple));
+  }
+  return cut;
+}
+
+Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width) {
+  std::vector<Point> points;
+  for (const std::uint32_t corner : polygon.corners) points.push_back(scene.vertices[corner]);
+  if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, ProblemKind::zero_area};
+  const bool is_bent_quadrilateral = points.size() == 4 && !is_planar(points);
+  if (!is_bent_quadrilateral && crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
+  Pieces pieces = simple_pieces(polygon, points);
+  std::erase_if(pieces.polygons, [&](const Polygon& piece) {
+    std::vector<Point> corners;
+    for (const std::uint32_t corner : piece.corners) corners.push_back(scene.vertices[corner]);
+    return is_narrow(corners, width);
+  });
+  return pieces;
+}
+
+// Leaves out polygons without area and cuts those that are not simple and planar.
+Scene make_simple(Scene scene) {
+  const double width = weld_distance(bounds(scene));
+  Faces narrow, crossing, lost, bent;
+  std::vector<Polygon> polygons;
+  polygons.reserve(scene.polygons.size());
+  for (const Polygon& polygon : scene.polygons) {
+    Pieces pieces = pieces_of(scene, polygon, width);
+    if (pieces.kind == ProblemKind::zero_area) narrow.push_back(face_of(scene, polygon));
+    if (pieces.kind == ProblemKind::non_planar) bent.push_back(face_of(scene, polygon));
+    if (pieces.kind == ProblemKind::self_intersecting) {
+      (pieces.polygons.empty() ? lost : crossing).push_back(face_of(scene, polygon));
+    }
+    scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
+    for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
+  }
+  scene.polygons = std::move(polygons);
+  scene = with_problem(std::move(scene), ProblemKind::zero_area, std::move(narrow), "without area; left out");
+  scene = with_problem(std::move(scene), ProblemKind::non_planar, std::move(bent),
+                       "with corners that do not lie in one plane; cut into triangles");
+  scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
+                       "with an outline that crosses itself; cut at the crossings, all parts facing one way");
+  return with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(lost),
+                      "with an outline that crosses itself so that no area can be told; left out");
+}
+
+Scene merge_coincident(Scene scene) {
+  const Coincidence found = find_coincident(scene);
+  Faces duplicates, covered, two_sided;
+  std::size_t other_material = 0;
+  for (const Coincidence::Pair& pair : found.pairs) {
+    Polygon& first = scene.polygons[pair.first];
+    const Polygon& second = scene.polygons[pair.second];
+    if (!pair.same_front && !first.back_material) {
+      two_sided.push_back(face_of(scene, second));
+      first.back_material = second.material;
+      continue;
+    }
+    const Side side = pair.same_front ? Side::front : Side::back;
+    duplicates.push_back(face_of(scene, second));
+    other_material += material_on(first, side) != second.material;
+    if (emits(scene, pair.second, Side::front) && !emits(scene, pair.first, side)) {
+      covered.push_back(face_of(scene, second));
+    }
+  }
+  std::vector<Polygon> kept;
+  kept.reserve(scene.polygons.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!found.is_second[p]) kept.push_back(std::move(scene.polygons[p]));
+  }
+  scene.polygons = std::move(kept);
+  const std::string others =
+      other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
+  scene = with_problem(std::move(scene), ProblemKind::covered_lamp, std::move(covered),
+                       "of lamps at the place of an earlier face that does not emit; the earlier face stays, so remove "
+                       "it or move the lamp");
+  scene = with_problem(std::move(scene), ProblemKind::duplicate_faces, std::move(duplicates),
+                       "at the place of an earlier one with the same front" + others + "; the first stays");
+  return with_problem(std::move(scene), ProblemKind::two_sided_faces, std::move(two_sided),
+                      "back to back with an earlier one; the two become one polygon with a material on each side");
+}
+
+Scene report_shells(Scene scene) {
+  const Shells shells = shells_of(scene);
+  Faces turned, branched;
+  std::size_t lamps = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!shells.turned[p] || scene.polygons[p].back_material) continue;
+    turned.push_back(face_of(scene, scene.polygons[p]));
+    lamps += is_lamp(scene, p);
+  }
+  for (const PolygonIndex p : shells.branched) branched.push_back(face_of(scene, scene.polygons[p]));
+  const std::string shine = lamps > 0 ? ", " + counted(lamps, "lamp") + " among them" : "";
+  scene = with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
+                       "turned against the faces next to them" + shine +
+                           "; they stay: --sides auto finds the right sides of closed shells, a lamp shines from its "
+                           "front, --sides front shows the wrong side");
+  if (branched.empty()) return scene;
+  const std::string what = counted(shells.branched_edges, "edge") + " of three faces or more, " +
+                           listed(scene, branched) + " at them; --sides auto keeps both sides of shells joined there";
+  scene.problems.push_back({ProblemKind::non_manifold_edges, shells.branched_edges, what, std::move(branched)});
+  return scene;
+}
+
+}  // namespace
+
+Scene repair(Scene scene) {
+  check_vertices(scene);
+  scene = number_faces(std::move(scene));
+  scene = weld_vertices(std::move(scene));
+  scene = clean_corners(std::move(scene));
+  scene = make_simple(std::move(scene));
+  scene = merge_coincident(std::move(scene));
+  scene = report_shells(std::move(scene));
+  scene.problems = worst_first(std::move(scene.problems));
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,154 @@
+#include "scene/simple_polygon.h"
+
+#include "patchlight/scene/triangulate.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace patchlight {
+namespace {
+
+// A vector area below this share of the squared perimeter does not tell the plane.
+constexpr double vanishing_area = 1e-6;
+
+// Ten times nearer than check() asks for.
+constexpr double planarity_tolerance = 1e-5;
+
+// Triangles whose area is negative by no more than this share of the squared perimeter have none.
+constexpr double area_rounding = 1e-12;
+
+constexpr std::size_t most_crossings = 100;
+
+double perimeter(std::span<const Point> polygon) {
+  double sum = 0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) sum += (polygon[(k + 1) % polygon.size()] - polygon[k]).norm();
+  return sum;
+}
+
+// Two corners far from each other: the farthest from the first one, and the farthest from that.
+std::array<Point, 2> far_apart(std::span<const Point> polygon) {
+  const auto farthest_from = [&](const Point& point) {
+    return *std::max_element(polygon.begin(), polygon.end(), [&](const Point& a, const Point& b) {
+      return (a - point).squaredNorm() < (b - point).squaredNorm();
+    });
+  };
+  const Point one = farthest_from(polygon[0]);
+  return {one, farthest_from(one)};
+}
+
+// Where two edges cross, the edges being those that begin at corners first < second.
+struct Crossing {
+  std::size_t first, second;
+  Point point;
+};
+
+// Twice the signed area of a triangle, positive when it turns left around the normal.
+double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
+  return normal.dot((b - a).cross(c - a));
+}
+
+std::optional<Crossing> find_crossing(std::span<const Point> polygon) {
+  const Vector normal = plane_normal(polygon);
+  const std::size_t n = polygon.size();
+  const double rounding = area_rounding * perimeter(polygon) * perimeter(polygon);
+  const auto opposite = [rounding](double x, double y) {
+    return (x > rounding && y < -rounding) || (x < -rounding && y > rounding);
+  };
+  for (std::size_t i = 0; i + 2 < n; ++i) {
+    const Point& a = polygon[i];
+    const Point& b = polygon[i + 1];
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j + 1 == n) continue;  // neighbours
+      const Point& c = polygon[j];
+      const Point& d = polygon[(j + 1) % n];
+      const double side_c = turn(normal, a, b, c);
+      const double side_d = turn(normal, a, b, d);
+      if (!opposite(side_c, side_d) || !opposite(turn(normal, c, d, a), turn(normal, c, d, b))) continue;
+      return Crossing{i, j, c + side_c / (side_c - side_d) * (d - c)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Vector plane_normal(std::span<const Point> polygon) {
+  const Vector area = area_vector(polygon);
+  const double length = perimeter(polygon);
+  if (area.norm() > vanishing_area * length * length) return area.normalized();
+  Point mean = Point::Zero();
+  for (const Point& corner : polygon) mean += corner / static_cast<double>(polygon.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Point& corner : polygon) spread += (corner - mean) * (corner - mean).transpose();
+  const double size = spread.trace();
+  if (!(size > 0)) return Vector::Zero();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / size);
+  return axes.eigenvectors().col(0);
+}
+
+bool is_narrow(std::span<const Point> polygon, double width) {
+  const auto [from, to] = far_apart(polygon);
+  const Vector along = (to - from).normalized();
+  return std::all_of(polygon.begin(), polygon.end(),
+                     [&](const Point& corner) { return (corner - from).cross(along).norm() <= width; });
+}
+
+bool is_planar(std::span<const Point> polygon) {
+  if (polygon.size() == 3) return true;
+  const Vector normal = plane_normal(polygon);
+  const double tolerance = planarity_tolerance * perimeter(polygon);
+  return std::all_of(polygon.begin(), polygon.end(),
+                     [&](const Point& corner) { return std::abs(normal.dot(corner - polygon[0])) <= tolerance; });
+}
+
+bool crosses_itself(std::span<const Point> polygon) { return polygon.size() > 3 && find_crossing(polygon).has_value(); }
+
+std::vector<std::vector<Point>> cut_at_crossings(std::vector<Point> polygon, double width) {
+  std::vector<std::vector<Point>> simple;
+  std::vector<std::vector<Point>> left = {std::move(polygon)};
+  for (std::size_t cuts = 0; !left.empty();) {
+    const std::vector<Point> loop = std::move(left.back());
+    left.pop_back();
+    if (loop.size() < 3 || is_narrow(loop, width)) continue;
+    const std::optional<Crossing> crossing = find_crossing(loop);
+    if (!crossing) {
+      simple.push_back(loop);
+      continue;
+    }
+    if (++cuts > most_crossings) return {};
+    // From the crossing along the outline back to it: once the corners between the two edges, once all others.
+    const auto begin = loop.begin();
+    const auto first = static_cast<std::ptrdiff_t>(crossing->first) + 1;
+    const auto second = static_cast<std::ptrdiff_t>(crossing->second) + 1;
+    std::vector<Point> inner = {crossing->point};
+    inner.insert(inner.end(), begin + first, begin + second);
+    std::vector<Point> outer = {crossing->point};
+    outer.insert(outer.end(), begin + second, loop.end());
+    outer.insert(outer.end(), begin, begin + first);
+    left.push_back(std::move(outer));
+    left.push_back(std::move(inner));
+  }
+  const auto largest = std::max_element(simple.begin(), simple.end(), [](const auto& a, const auto& b) {
+    return area_vector(a).squaredNorm() < area_vector(b).squaredNorm();
+  });
+  if (largest == simple.end()) return simple;
+  const Vector front = area_vector(*largest);
+  for (std::vector<Point>& loop : simple) {
+    if (area_vector(loop).dot(front) < 0) std::reverse(loop.begin(), loop.end());
+  }
+  return simple;
+}
+
+std::optional<std::vector<std::array<std::uint32_t, 3>>> proper_triangles(std::span<const Point> polygon) {
+  const Vector normal = plane_normal(polygon);
+  const double rounding = area_rounding * perimeter(polygon) * perimeter(polygon);
+  std::vector<std::array<std::uint32_t, 3>> triangles = triangulate(polygon);
+  for (const auto& [a, b, c] : triangles) {
+    if (turn(normal, polygon[a], polygon[b], polygon[c]) < -rounding) return std::nullopt;
+  }
+  return triangles;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,60 @@
+"""The Debian packages: they name what they need, and unpacked elsewhere they work.
+
+usage: debian_test.py BUILD_FOLDER VERSION CMAKE COMPILER
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def output(*words, **options):
+    return subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True, **options).stdout
+
+
+def dependencies(deb):
+    """The names of the packages needed; of alternatives the first."""
+    return [re.match(r"[^ (|]+", entry)[0] for entry in output("dpkg-deb", "-f", deb, "Depends").strip().split(", ")]
+
+
+def installed(package):
+    done = subprocess.run(["dpkg-query", "-W", "-f", "${db:Status-Status}", package], capture_output=True, text=True,
+                          check=False)
+    return done.stdout.startswith("installed")
+
+
+def main(build, version, cmake, _compiler):
+    cpack = pathlib.Path(cmake).with_name("cpack")
+    with tempfile.TemporaryDirectory(prefix="patchlight-debian-") as name:
+        folder = pathlib.Path(name)
+        output(cpack, "--config", pathlib.Path(build) / "CPackConfig.cmake", "-B", folder)
+        debs = {output("dpkg-deb", "-f", deb, "Package").strip(): deb for deb in folder.glob("*.deb")}
+        assert set(debs) == {"patchlight", "libpatchlight-dev"}, debs
+        for deb in debs.values():
+            assert output("dpkg-deb", "-f", deb, "Version").strip() == version
+            print(output("dpkg", "-I", deb))
+            for package in dependencies(deb):
+                assert installed(package), f"{deb.name} needs {package}, which patchlight was not built with"
+            output("dpkg-deb", "-x", deb, folder / "root")
+
+        # The tool needs libraries, the library what it was built with.
+        needed = dependencies(debs["patchlight"])
+        for package in ("libembree3-3", "libtbb12", "libvtk9.1", "libc6", "libstdc++6"):
+            assert package in needed, f"patchlight does not depend on {package}: {needed}"
+        assert not any(package.endswith("-dev") for package in needed), needed
+        wanted = set(re.findall(r"lib[a-z0-9+-]+-dev|nlohmann-json3-dev",
+                                (ROOT / "scripts" / "install_packages.sh").read_text()))
+        missing = wanted - {"libcli11-dev", "libgtest-dev"} - set(dependencies(debs["libpatchlight-dev"]))
+        assert not missing, f"libpatchlight-dev does not depend on {missing}"
+
+        usr = folder / "root" / "usr"
+        output(usr / "bin" / "patchlight", "solve", ROOT / "meshes" / "furnace_cube.obj", "--patches", 100, "-o",
+               folder / "cube.glb")
+        for file in ("share/man/man1/patchlight.1", "share/doc/patchlight/copyright", "include/patchlight/simulate.h"):
+            assert (usr / file).is_file(), file
+
+
+main(*sys.argv[1:])

@@ -1,0 +1,60 @@
+#include "patchlight/plan/plan.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/mesh/mesher.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+const Decision& decision(const Plan& plan, const std::string& effect) {
+  for (const Decision& candidate : plan.decisions) {
+    if (candidate.effect == effect) return candidate;
+  }
+  throw std::out_of_range(effect);
+}
+
+TEST(MakePlan, RefusesASceneWithoutLamp) {
+  try {
+    make_plan(cube_room(0.5, 0), {});
+    FAIL() << "expected an InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no lamp"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("grey"), std::string::npos);
+  }
+}
+
+TEST(MakePlan, OcclusionOnlyWhereSomethingCanStandBetween) {
+  EXPECT_FALSE(decision(make_plan(cube_room(0.5, 1), {}), "occlusion").simulate);
+  EXPECT_TRUE(decision(make_plan(furnished_room(0.5), {}), "occlusion").simulate);
+}
+
+TEST(MakePlan, InterreflectionOnlyWhereSomethingReflects) {
+  EXPECT_FALSE(decision(make_plan(cube_room(0, 1), {}), "interreflection").simulate);
+  EXPECT_TRUE(decision(make_plan(cube_room(0.1, 1), {}), "interreflection").simulate);
+}
+
+TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
+  const Scene scene = furnished_room(0.5);
+  for (const std::size_t patches : {1000U, 4000U}) {
+    Request request;
+    request.patches = patches;
+    const Plan plan = make_plan(scene, request);
+    const double count = tessellate(scene, plan.sides, plan.max_edge).size();
+    EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.1);
+  }
+}
+
+TEST(MakePlan, TakesTheEdgeThatIsAskedFor) {
+  Request request;
+  request.max_edge = 0.123;
+  EXPECT_EQ(make_plan(furnished_room(0.5), request).max_edge, 0.123);
+}
+
+}  // namespace
+}  // namespace patchlight
