@@ -83,8 +83,7 @@ bool is_made_up(const std::string& name) { return name.starts_with("$Rel") || na
 // Collects the faces of all nodes.
 class Collector {
  public:
-  Collector(Scene scene, const aiScene& model, bool has_materials)
-      : scene_(std::move(scene)), model_(model), has_materials_(has_materials) {}
+  Collector(Scene scene, const aiScene& model) : scene_(std::move(scene)), model_(model) {}
 
   void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above) {
     const Eigen::Matrix4d to_scene = above * matrix(node.mTransformation);
@@ -124,7 +123,7 @@ class Collector {
         if (corner >= mesh.mNumVertices) throw InputError(scene_.file, "a face names a vertex that is not there");
         polygon.corners.push_back(first + corner);
       }
-      polygon.material = has_materials_ ? mesh.mMaterialIndex : 0;
+      polygon.material = mesh.mMaterialIndex;
       polygon.group = entry->second;
       scene_.polygons.push_back(std::move(polygon));
     }
@@ -132,7 +131,6 @@ class Collector {
 
   Scene scene_;
   const aiScene& model_;
-  bool has_materials_;
   std::map<std::string, std::uint32_t> groups_;
   std::size_t other_primitives_ = 0;
 };
@@ -151,16 +149,10 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   }
   Scene scene;
   scene.file = file;
-  if (format.has_materials) {
-    scene = with_materials(std::move(scene), *model);
-  } else {
-    scene.materials.push_back(default_material());
-    scene.notes.push_back(
-        "this format has no materials: all faces get the material 'default', reflectance 0.5; --set changes it");
-  }
+  scene = with_materials(std::move(scene), *model);
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
-  Collector collector(std::move(scene), *model, format.has_materials);
+  Collector collector(std::move(scene), *model);
   collector.add_node(*model->mRootNode, to_scene, "");
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;

@@ -8,8 +8,7 @@ namespace patchlight {
 
 /// What one of assimp's formats carries.
 struct AssimpFormat {
-  std::string extension;      ///< without its dot, lower case: the only importer that is asked
-  bool has_materials = true;  ///< otherwise all faces get the material "default", reflectance 0.5
+  std::string extension;                               ///< without its dot, lower case: the only importer that is asked
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from assimp's axes to those of the file
 };
 

@@ -18,6 +18,16 @@ std::string unique_name(const std::string& name, std::size_t number, const std::
 
 Material default_material() { return {"default", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}; }
 
+Scene scene_without_materials(const std::string& file, double metres_per_unit) {
+  Scene scene;
+  scene.file = file;
+  scene.metres_per_unit = metres_per_unit;
+  scene.materials.push_back(default_material());
+  scene.notes.emplace_back(
+      "this format has no materials: all faces get the material 'default', reflectance 0.5; --set changes it");
+  return scene;
+}
+
 Scene with_used_materials(Scene scene) {
   constexpr MaterialIndex unused = ~MaterialIndex{0};
   std::vector<MaterialIndex> number(scene.materials.size(), unused);

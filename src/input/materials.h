@@ -10,6 +10,9 @@ namespace patchlight {
 /// The material of faces for which the file gives none: "default", reflectance 0.5 in all bands.
 Material default_material();
 
+/// An empty scene for a format without materials: its only material is the default one, and a note says so.
+Scene scene_without_materials(const std::string& file, double metres_per_unit);
+
 /// The scene with only those materials that polygons use, in their order, names that are empty or come twice made
 /// unique: "material 3", "wall (2)".
 Scene with_used_materials(Scene scene);

@@ -5,14 +5,30 @@
 #include "input/sha256.h"
 #include "input/text.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace patchlight {
+namespace {
+
+// assimp turns z up into y up by -90 degrees about x, rounded to single precision; this is the way back, with the same
+// rounding.
+Eigen::Matrix3d back_to_z_up() {
+  const float angle = std::numbers::pi_v<float> / 2;
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  Eigen::Matrix3d turn;
+  turn << 1, 0, 0, 0, cosine, -sine, 0, sine, cosine;
+  return turn;
+}
+
+}  // namespace
 
 Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
   const std::string bytes = read_text(file, file.string(), "the model file");
   AssimpFormat format;
   format.extension = "ifc";
-  // assimp turns z up into y up, (x, y, z) to (x, z, -y); this is the way back.
-  format.turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  format.turn = back_to_z_up();
   Scene scene =
       read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
   scene.up = Vector::UnitZ();

@@ -253,8 +253,8 @@ TEST_F(ReadScene, RefusesUnusableFilesNamingThem) {
            {folder_, "folder"},
            {write("empty.obj", ""), "empty"},
            {write("comment.obj", "# nothing\n"), "no faces"},
-           {write("m.stl", "solid"), "'.stl' is not known; expected a model file (.obj)"},
-           {write("plain", "solid"), "expected a model file (.obj)"},
+           {write("m.md", "solid"), "'.md' is not known; expected one of .obj, .ply"},
+           {write("plain", "solid"), "expected one of .obj"},
            {"/dev/null", "extension"}}) {
     const std::string message = refusal(file);
     EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0U) << message;
