@@ -81,6 +81,17 @@ std::vector<Material> changed(std::vector<Material> materials, const std::vector
   return materials;
 }
 
+// Says why the faces were left out, if there were any.
+[[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
+  std::string reasons;
+  for (const Problem& problem : scene.problems) {
+    if (problem.kind != ProblemKind::zero_area && problem.kind != ProblemKind::self_intersecting) continue;
+    reasons += (reasons.empty() ? "" : "; ") + problem.what;
+  }
+  throw InputError(scene.file, reasons.empty() ? "found no faces; expected at least one polygon"
+                                               : "none of its faces can be used: " + reasons);
+}
+
 // The extension in lower case, with its dot.
 std::string extension(const std::filesystem::path& file) {
   std::string text = file.extension().string();
@@ -126,9 +137,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   scene.up = options.up;
   scene.materials = changed(std::move(scene.materials), options.settings);
   scene = repair(std::move(scene));
-  if (scene.polygons.empty() && !scene.problems.empty()) {
-    throw InputError(scene.file, "no face is left of which light could come: " + scene.problems[0].what);
-  }
+  if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
