@@ -34,19 +34,11 @@ struct Observatory {
   Shares measure(PatchIndex patch, int rays, std::uint64_t seed) const;
 };
 
-// A frame that turns with the patch: its first edge, the direction to the left of it, its normal.
-Eigen::Matrix3d frame_of(const PatchCorners& corners, const Vector& normal) {
-  const Vector left = normal.cross(corners.points[1] - corners.points[0]).normalized();
-  Eigen::Matrix3d frame;
-  frame << left.cross(normal), left, normal;
-  return frame;
-}
-
 // `groups` starting points, each with `size` directions.
 std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint64_t seed) {
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), hash({seed, patch, 0x6c6f7374}));
   const PatchCorners corners = mesh.corner_points(patch);
-  const Eigen::Matrix3d frame = frame_of(corners, mesh.normal[patch]);
+  const Eigen::Matrix3d frame = frame_around(mesh.normal[patch]);
   std::vector<Ray> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
