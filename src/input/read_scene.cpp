@@ -88,6 +88,17 @@ std::vector<Material> changed(std::vector<Material> materials, const std::vector
   return materials;
 }
 
+// Says why the faces were left out, if there were any.
+[[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
+  std::string reasons;
+  for (const Problem& problem : scene.problems) {
+    if (problem.kind != ProblemKind::zero_area && problem.kind != ProblemKind::self_intersecting) continue;
+    reasons += (reasons.empty() ? "" : "; ") + problem.what;
+  }
+  throw InputError(scene.file, reasons.empty() ? "found no faces; expected at least one polygon"
+                                               : "none of its faces can be used: " + reasons);
+}
+
 // The extension in lower case, without its dot; the standard input is OBJ.
 std::string extension(const std::filesystem::path& file) {
   if (file == "-") return "obj";
@@ -161,9 +172,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   Scene scene = merge_scenes(std::move(scenes));
   scene.materials = changed(std::move(scene.materials), options.settings);
   scene = repair(std::move(scene));
-  if (scene.polygons.empty() && !scene.problems.empty()) {
-    throw InputError(scene.file, "no face is left of which light could come: " + scene.problems[0].what);
-  }
+  if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
   if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
   std::vector<std::string> notes;

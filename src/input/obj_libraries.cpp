@@ -1,0 +1,106 @@
+#include "input/obj_libraries.h"
+
+#include "input/text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <set>
+
+namespace patchlight {
+namespace {
+
+std::string at(const std::filesystem::path& file, std::uint32_t line) {
+  return file.string() + ":" + std::to_string(line);
+}
+
+// A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
+struct LibraryFile {
+  std::string name;
+  std::filesystem::path place;
+  bool moved = false;  // it is beside the model instead of where the statement says
+};
+
+bool is_file(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error);
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+// Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
+// written under Windows.
+LibraryFile find_library(const std::filesystem::path& obj, const std::string& name) {
+  const std::filesystem::path folder = obj.parent_path();
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  for (const std::string& path : {name, slashes}) {
+    if (is_file(folder / path)) return {name, folder / path};
+  }
+  const std::filesystem::path last = std::filesystem::path(slashes).filename();
+  if (last.empty()) return {name, {}};
+  if (is_file(folder / last)) return {name, folder / last, true};
+  std::vector<std::filesystem::path> similar;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::filesystem::path& file = entry.path();
+    if (in_lower_case(file.filename().string()) == in_lower_case(last.string())) similar.push_back(file.filename());
+  }
+  std::sort(similar.begin(), similar.end());
+  if (!similar.empty() && is_file(folder / similar[0])) return {name, folder / similar[0], true};
+  return {name, {}};
+}
+
+// The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
+std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const std::string& statement) {
+  const LibraryFile whole = find_library(obj, statement);
+  if (!whole.place.empty() && !whole.moved) return {whole};
+  std::vector<LibraryFile> files;
+  for (const std::string_view name : words(statement)) files.push_back(find_library(obj, std::string(name)));
+  const bool all_there = std::all_of(files.begin(), files.end(), [](const auto& file) { return !file.place.empty(); });
+  return all_there || whole.place.empty() ? files : std::vector{whole};
+}
+
+std::optional<Problem> problem_with(const LibraryFile& file, const std::string& where) {
+  const std::string found = "mtllib (" + where + ") names '" + file.name + "', ";
+  if (file.place.empty()) {
+    return Problem{ProblemKind::missing_material_file,
+                   1,
+                   found +
+                       "which is neither there nor beside the model; the materials that no other file defines "
+                       "are grey, reflectance 0.5",
+                   {}};
+  }
+  if (!file.moved) return std::nullopt;
+  return Problem{ProblemKind::moved_material_file,
+                 1,
+                 found + "which is not there; " + file.place.string() + " is taken instead",
+                 {}};
+}
+
+}  // namespace
+
+Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements) {
+  Libraries libraries;
+  std::set<std::string> names;
+  std::set<std::filesystem::path> places;
+  for (const ObjName& statement : statements) {
+    const std::string where = at(obj, statement.line);
+    for (const LibraryFile& file : library_files(obj, statement.name)) {
+      if (!names.insert(file.name).second) continue;
+      const std::optional<Problem> problem = problem_with(file, where);
+      if (problem) libraries.problems.push_back(*problem);
+      if (file.place.empty() || !places.insert(file.place).second) continue;
+      libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
+      const std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
+      libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
+    }
+  }
+  return libraries;
+}
+
+}  // namespace patchlight

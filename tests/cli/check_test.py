@@ -1,0 +1,101 @@
+"""patchlight check: what a model holds, what is wrong with it, and whether it can be solved."""
+import json
+import unittest
+
+from support import MATERIALS, ROOM, ToolTest, content
+
+GOOD, USAGE, INPUT, OUTPUT = 0, 1, 2, 6
+
+
+class CheckTest(ToolTest):
+    def check(self, *arguments, code=GOOD):
+        done = self.run_tool("check", *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def report(self, *arguments, code=GOOD):
+        return json.loads(self.check("--json", *arguments, code=code).stdout)
+
+    def test_sound_room(self):
+        before = content(self.folder)
+        done = self.check("room.obj")
+        for words in ("can be solved", "2 x 2 x 2 m", "lamp  flux 7.854", "0 errors, 0 warnings, 0 remarks", "1 closed"):
+            self.assertIn(words, done.stdout)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(content(self.folder), before, "nothing is written")
+        report = self.report("room.obj")
+        self.assertTrue(report["usable"])
+        self.assertEqual((report["polygons"], report["lamps"], report["closed_shells"]), (8, 1, 1))
+        self.assertEqual(report["problems"], [])
+
+    def test_json_goes_to_a_file_or_to_standard_output(self):
+        done = self.check("room.obj", "--json", "check.json")
+        self.assertIn("can be solved", done.stdout)
+        text = (self.folder / "check.json").read_text()
+        self.assertEqual(self.check("room.obj", "--json").stdout, text)
+        self.assertEqual(self.check("--json", "room.obj").stdout, text)
+
+    def test_problems_come_worst_first_with_their_lines(self):
+        self.write("room.obj", ROOM + "usemtl brass\nf 1 2 2\nf 13 14 15 16\nf 16 15 14 13\nf 1 2 7 3\n")
+        report = self.report("room.obj")
+        kinds = [problem["kind"] for problem in report["problems"]]
+        self.assertEqual(kinds[0], "unknown_material")
+        self.assertIn("zero_area", kinds)
+        severities = [("error", "warning", "remark").index(problem["severity"]) for problem in report["problems"]]
+        self.assertEqual(severities, sorted(severities))
+        line = ROOM.count("\n") + 2
+        duplicate = next(problem for problem in report["problems"] if problem["kind"] == "duplicate_faces")
+        self.assertEqual(duplicate["faces"], [{"file": "room.obj", "line": line + 1}])
+        self.assertIn(f"room.obj:{line + 1}", duplicate["what"])
+
+    def test_marked_faces_for_paraview(self):
+        self.write("room.obj", ROOM + "f 1 2 2\n")
+        self.check("room.obj", "--vtk", "problems.vtp")
+        data = (self.folder / "problems.vtp").read_bytes()
+        for name in (b"problem_kind", b"severity", b"source_line", b"problem_names"):
+            self.assertIn(name, data)
+
+    def test_without_a_lamp_it_names_the_setting_that_switches_one_on(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ka 20 10 5"))
+        done = self.check("room.obj", code=INPUT)
+        setting = "--set lamp.radiance=20,10,5"
+        self.assertIn(setting, done.stdout)
+        self.assertIn(setting, done.stderr)
+        self.assertFalse(self.report("room.obj", code=INPUT)["usable"])
+        self.check("room.obj", *setting.split())
+        solved = self.run_tool("solve", "room.obj", "-o", "room.vtp", "--patches", "50")
+        self.assertEqual(solved.returncode, INPUT)
+        self.assertIn(setting, solved.stderr)
+
+    def test_reflectance_one_warns_and_an_open_room_is_solved(self):
+        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 1 1 1"))
+        self.assertEqual([p["kind"] for p in self.report("room.obj")["problems"]], ["full_reflectance"])
+        self.write("room.obj", ROOM.replace("f 4 8 5 1\n", ""))
+        done = self.run_tool("solve", "room.obj", "-o", "room.vtp", "--patches", "100")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+
+    def test_unit_of_a_model_of_implausible_size(self):
+        vertices = [line.split() for line in ROOM.splitlines()]
+        scaled = [["v", *(str(1000 * float(x)) for x in words[1:])] if words[0] == "v" else words for words in vertices]
+        self.write("room.obj", "\n".join(" ".join(words) for words in scaled) + "\n")
+        report = self.report("room.obj")
+        self.assertEqual(report["unit_guess"], "mm")
+        self.assertEqual([p["kind"] for p in report["problems"]], ["implausible_size"])
+        self.assertEqual(self.report("room.obj", "--unit", "mm")["problems"], [])
+
+    def test_unusable_models_are_refused(self):
+        self.write("room.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        self.assertIn("room.obj:4", self.check("room.obj", code=INPUT).stderr)
+        self.assertIn("missing.obj", self.check("missing.obj", code=INPUT).stderr)
+
+    def test_command_line(self):
+        for arguments, word in (((), "model"), (("room.obj", "--vtk", "a.vtk"), ".vtp"), (("room.obj", "--jsn"), "--json"),
+                                (("room.obj", "--unit", "mile"), "--unit"), (("room.obj", "--json", "room.obj"), "room.obj")):
+            with self.subTest(arguments):
+                self.assertIn(word, self.check(*arguments, code=USAGE).stderr)
+        self.assertIn("no/a.vtp", self.check("room.obj", "--vtk", "no/a.vtp", code=OUTPUT).stderr)
+        self.assertIn("problem_kind", self.check("--help").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,100 @@
+#include "patchlight/plan/survey.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/repair.h"
+
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+bool has(const SceneReport& report, ProblemKind kind) {
+  return std::any_of(report.problems.begin(), report.problems.end(),
+                     [kind](const Problem& problem) { return problem.kind == kind; });
+}
+
+SceneReport survey_of(const Scene& scene) { return survey(repair(scene)); }
+
+// 4 x 3 x 2.5 m: surface 2 (12 + 10 + 7.5) = 59; the floating box 1 x 0.8 x 0.7: 2 (0.8 + 0.7 + 0.56) = 4.12; lamp 1.
+TEST(Survey, CountsAndMeasures) {
+  const SceneReport report = survey_of(furnished_room(0.5));
+  EXPECT_EQ(report.polygons, 13U);
+  EXPECT_EQ(report.vertices, 20U);
+  EXPECT_EQ(report.lamps, 1U);
+  EXPECT_NEAR(report.area, 59 + 4.12 + 1, 1e-12);
+  EXPECT_EQ(report.bounds.sizes(), Vector(4, 3, 2.5));
+  ASSERT_EQ(report.materials.size(), 2U);
+  EXPECT_NEAR(report.materials[0].area, 59 + 4.12, 1e-12);
+  EXPECT_EQ(report.materials[0].faces, 12U);
+  EXPECT_EQ(report.materials[0].flux[0], 0);
+  EXPECT_NEAR(report.materials[1].flux[0], 10, 1e-12);
+  EXPECT_EQ(report.shells, 3U);
+  EXPECT_EQ(report.closed_shells, 2U);
+  EXPECT_EQ(report.open_edges, 4U) << "the rim of the lamp";
+  EXPECT_NEAR(report.open_edge_length, 4, 1e-12);
+  EXPECT_TRUE(report.usable);
+  EXPECT_TRUE(report.problems.empty());
+}
+
+TEST(Survey, LeavesOutMaterialsThatNoFaceHasAndCountsBacks) {
+  Scene scene = furnished_room(0.5);
+  scene.materials.push_back(grey(0.1));
+  scene.materials.push_back(grey(0.2, 7));
+  scene.polygons[12].back_material = 3;
+  const SceneReport report = survey(scene);
+  ASSERT_EQ(report.materials.size(), 3U);
+  EXPECT_NEAR(report.materials[2].flux[0], 7, 1e-12);
+}
+
+TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
+  for (const auto& [scale, unit] : std::vector<std::pair<double, std::string>>{{1, ""}, {1000, "mm"}, {100, "cm"}}) {
+    Scene scene = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(scale)));
+    const SceneReport report = survey_of(scene);
+    EXPECT_EQ(report.unit_guess ? report.unit_guess->unit : "", unit);
+    EXPECT_EQ(has(report, ProblemKind::implausible_size), !unit.empty());
+  }
+  // Read as millimetres, a model in metres is too small.
+  Scene small = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
+  small.metres_per_unit = 1e-3;
+  EXPECT_EQ(survey_of(small).unit_guess.value().unit, "m");
+  // No unit is that large.
+  Scene tiny = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
+  EXPECT_FALSE(survey_of(tiny).unit_guess);
+  EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
+}
+
+TEST(Survey, FullReflectanceIsAWarning) {
+  EXPECT_TRUE(has(survey_of(furnished_room(1)), ProblemKind::full_reflectance));
+  EXPECT_FALSE(has(survey_of(furnished_room(0.99)), ProblemKind::full_reflectance));
+}
+
+TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
+  Scene scene = furnished_room(0.5, 0);
+  scene.materials[0].name = "wall";
+  scene.materials[1].name = "Ceiling Lamp";
+  const SceneReport report = survey_of(scene);
+  EXPECT_FALSE(report.usable);
+  ASSERT_TRUE(has(report, ProblemKind::no_lamp));
+  EXPECT_EQ(report.problems[0].kind, ProblemKind::no_lamp) << "the worst comes first";
+  EXPECT_NE(report.problems[0].what.find("--set 'Ceiling Lamp.radiance=10'"), std::string::npos)
+      << report.problems[0].what;
+
+  scene.lamp_hints = {{"wall", rgb(20, 10, 5), "its Ka is 20, 10, 5"}};
+  const std::string advice = advice_without_lamp(scene);
+  EXPECT_NE(advice.find("its Ka is 20, 10, 5"), std::string::npos) << advice;
+  EXPECT_NE(advice.find("--set wall.radiance=20,10,5 "), std::string::npos) << advice;
+
+  scene.lamp_hints.clear();
+  scene.materials[1].name = "panel";
+  EXPECT_NE(advice_without_lamp(scene).find("wall, panel"), std::string::npos);
+  EXPECT_THROW(make_plan(scene, {}), InputError);
+}
+
+}  // namespace
+}  // namespace patchlight
