@@ -26,7 +26,7 @@ std::string convergence(const Plan& plan, const Solution& solution) {
   text << name_of(plan.solver.solver) << ": " << (solution.converged ? "converged" : "NOT converged") << " after "
        << last.number << (last.number == 1 ? " iteration" : " iterations");
   if (std::isfinite(last.error_bound)) {
-    text << ", relative error at most " << rounded(last.error_bound, 2);
+    text << ", solver error at most " << rounded(last.error_bound, 2);
   } else {
     text << ", relative residual " << rounded(last.relative_residual, 2) << " (no bound on the error is known)";
   }
@@ -87,8 +87,10 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
 
 std::string summary(const Scene& scene, const Simulation& simulation, bool long_form) {
   std::ostringstream text;
-  text << scene.file << ": " << scene.polygons.size() << " polygons, " << simulation.mesh.size()
-       << " patches with edges up to " << rounded(simulation.plan.max_edge) << " m\n";
+  const Vector size = bounds(scene).diagonal();
+  text << scene.file << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x " << rounded(size.z()) << " m, "
+       << scene.polygons.size() << " polygons, " << simulation.mesh.size() << " patches with edges up to "
+       << rounded(simulation.plan.max_edge) << " m\n";
   if (long_form) text << details(simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
   text << energy(simulation.balance) << '\n';
@@ -106,7 +108,7 @@ std::string explain_not_converged(const Simulation& simulation) {
   const Plan& plan = simulation.plan;
   return convergence(plan, simulation.solution) + ", asked for " + rounded(plan.solver.relative_error, 2) +
          ". Either " + std::to_string(plan.solver.max_iterations) +
-         " iterations are too few for this solver: try --solver gauss-seidel or a larger --tolerance; or light cannot "
+         " iterations are too few for this solver: try a larger --max-iterations or --tolerance; or light cannot "
          "leave the scene because the largest reflectance, " +
          rounded(simulation.problem.reflectance.maxCoeff(), 6) + ", is close to 1: lower it with --set";
 }

@@ -9,8 +9,9 @@
 namespace patchlight {
 namespace {
 
-// Coordinates are rounded to this share of the scene's size: far above rounding errors, far below the size of a patch.
-constexpr double resolution = 1e-6;
+// Coordinates are rounded to this share of the scene's size: far above the rounding errors of files in single
+// precision.
+constexpr double resolution = 1e-4;
 
 // Two moments that differ by less than this share of their sum are equal: rounding alone would decide.
 constexpr double ambiguity = 1e-6;

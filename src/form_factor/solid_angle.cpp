@@ -85,6 +85,8 @@ PolygonSample sample_solid_angle(const Point& from, const Vector& normal, std::s
                                                           (c - from).normalized(), fan.solid_angles[k], stretched, v);
     const Vector plane_normal = (b - a).cross(c - a);
     point = from + plane_normal.dot(a - from) / plane_normal.dot(direction) * direction;
+    // From a point on an edge or in the plane itself the spherical triangle has no angle: any point of it will do.
+    if (!point.allFinite()) point = (a + b + c) / 3;
   }
   const double cosine = normal.dot((point - from).normalized());
   return {point, std::max(0.0, cosine) * fan.total / std::numbers::pi};

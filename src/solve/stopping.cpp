@@ -7,12 +7,18 @@
 #include <limits>
 
 namespace patchlight {
+namespace {
+
+// Row sums are known to about 1e-9: with ||K||_A above this nothing is known about the error.
+constexpr double largest_contraction = 1 - 1e-8;
+
+}  // namespace
 
 Stopping::Stopping(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options)
     : problem_(problem), options_(options), start_(wall_seconds()) {
   // ||K||_A <= rho_max max_i sum_j F_ij, as A^(1/2) F A^(-1/2) is symmetric and similar to F. docs/theory.md section 7.
   const double row_sum = transport.apply(Field::Ones(transport.size(), 1)).maxCoeff();
-  contraction_ = problem.reflectance.colwise().maxCoeff().transpose() * std::max(1.0, row_sum);
+  contraction_ = problem.reflectance.colwise().maxCoeff().transpose() * row_sum;
 }
 
 Iteration Stopping::measure(const Solution& iterate, const FieldView& residual, double work, const Observer& observer) {
@@ -24,8 +30,8 @@ Iteration Stopping::measure(const Solution& iterate, const FieldView& residual, 
   for (Eigen::Index band = 0; band < norm.size(); ++band) {
     if (norm[band] == 0) continue;
     // ||B* - B||_A <= ||r||_A / (1 - ||K||_A)
-    const double bound =
-        contraction_[band] < 1 ? norm[band] / (1 - contraction_[band]) : std::numeric_limits<double>::infinity();
+    const double bound = contraction_[band] < largest_contraction ? norm[band] / (1 - contraction_[band])
+                                                                  : std::numeric_limits<double>::infinity();
     iteration.relative_residual = std::max(iteration.relative_residual, norm[band] / first_residual_[band]);
     iteration.error_bound = std::max(iteration.error_bound, bound / reflected_norm[band]);
   }
@@ -40,7 +46,7 @@ Iteration Stopping::measure(const Solution& iterate, const FieldView& residual, 
 }
 
 bool Stopping::reached(const Iteration& iteration) const {
-  if ((contraction_ >= 1).any()) return iteration.relative_residual <= options_.relative_error;
+  if ((contraction_ >= largest_contraction).any()) return iteration.relative_residual <= options_.relative_error;
   return iteration.error_bound <= options_.relative_error;
 }
 

@@ -31,6 +31,8 @@ struct Pair {
   double unoccluded = 0;      // exchange area without occluders, m^2
   double free_weight = 0;     // summed weights of the samples whose shadow ray is free
   double blocked_weight = 0;  // and of those whose ray is blocked
+  int free_rays = 0;
+  int blocked_rays = 0;
 };
 
 struct PairSample {
@@ -109,6 +111,7 @@ void Assembler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t 
   for (std::size_t k = 0; k < segments.size(); ++k) {
     Pair& pair = pairs[k / (end - begin)];
     (blocked[k] ? pair.blocked_weight : pair.free_weight) += weights[k];
+    ++(blocked[k] ? pair.blocked_rays : pair.free_rays);
   }
 }
 
@@ -128,7 +131,7 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
   trace({near_end, pairs.end()}, 0, probes);
 
   // 2. The remaining samples where the probes disagree.
-  const auto partial = [](const Pair& pair) { return pair.free_weight > 0 && pair.blocked_weight > 0; };
+  const auto partial = [](const Pair& pair) { return (pair.free_weight > 0) == (pair.blocked_weight > 0); };
   const auto mixed_end = std::stable_partition(near_end, pairs.end(), partial);
   trace({near_end, mixed_end}, probes, all);
 
@@ -144,8 +147,12 @@ std::vector<Pair> Assembler::row(PatchIndex first, PatchRange seconds, AssemblyC
 }
 
 double Assembler::exchange_area(const Pair& pair) const {
-  if (pair.blocked_weight == 0) return pair.unoccluded;
-  if (pair.free_weight == 0) return 0;
+  if (pair.blocked_rays == 0) return pair.unoccluded;
+  if (pair.free_rays == 0) return 0;
+  // Of patches that see each other in a small part only, no sample may lie in it: then all rays count alike.
+  if (pair.free_weight + pair.blocked_weight == 0) {
+    return pair.unoccluded * pair.free_rays / (pair.free_rays + pair.blocked_rays);
+  }
   // What is mostly hidden is estimated directly; what is mostly seen by the control variate, the exact unoccluded value
   // less the mean of what is blocked. Either way the error is that of the smaller part.
   const double count = options.samples * (pair.near ? static_cast<double>(near_factor) : 1.0);

@@ -14,8 +14,8 @@ const char* name_of(Stage stage);
 
 /// One row of a solver's history.
 struct Iteration {
-  int number = 0;                ///< 0 is the starting value B = E + R H_direct
-  double relative_residual = 0;  ///< ||r||_A / ||K E + R H_direct||_A, worst band
+  int number = 0;                ///< 0 is the starting value B = E
+  double relative_residual = 0;  ///< ||r||_A / ||K E||_A, worst band
   double error_bound = 0;        ///< bound on ||B - B_k||_A / ||B_k - E||_A, worst band; infinite when none is known
   double seconds = 0;            ///< wall time since the solver started
   double work = 0;               ///< operator applications so far; N shots or N rows count as one
@@ -29,8 +29,8 @@ struct Progress {
   const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
 };
 
-/// Called in every stage at least twice a second, never from two threads at once; returning false stops the run,
-/// which then throws Cancelled.
+/// Called while a stage goes on, about ten times a second where its work is cut finely enough, never from two threads
+/// at once; returning false stops the run, which then throws Cancelled.
 using Observer = std::function<bool(const Progress&)>;
 
 }  // namespace patchlight

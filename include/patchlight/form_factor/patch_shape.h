@@ -42,7 +42,7 @@ Orientation orientation(const PatchShape& first, const PatchShape& second);
 bool is_near(const PatchShape& first, const PatchShape& second);
 
 /// Unoccluded exchange area A_i F_ij in m^2 of two patches that are not averted: the contour integral for near patches,
-/// product quadrature for others; relative error below 1e-3 beyond two diameters and 1e-4 beyond four.
+/// product quadrature for others; relative error below 1e-3.
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second);
 
 }  // namespace patchlight

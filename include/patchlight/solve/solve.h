@@ -20,9 +20,10 @@ struct SolverOptions {
   int max_iterations = 1000;     ///< for progressive refinement one iteration is as many shots as there are patches
 };
 
-/// Solves B = E + rho o F B for all bands at once. Stops by the bound ||r||_A / (1 - rho_max) of docs/theory.md section
-/// 7; where rho_max is 1 by the relative residual instead, and the history's error_bound is infinite. What cannot
-/// converge ends after max_iterations with converged = false and its history. \throws Cancelled.
+/// Solves B = E + rho o F B for all bands at once. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times the
+/// largest row sum of F, of docs/theory.md section 7. Where kappa is not below 1 there is no bound: the relative
+/// residual decides instead, and the history's error_bound is infinite. What cannot converge ends after max_iterations
+/// with converged = false and its history. \throws Cancelled.
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 
