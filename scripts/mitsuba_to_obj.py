@@ -192,7 +192,7 @@ class Scene:
 
     def add_shape(self, shape, number):
         kind = shape.get("type")
-        name = shape.get("id") or f"{kind}{number}"
+        name = shape.get("id") or kind
         if kind == "obj":
             mesh = self.read_mesh(shape)
             name = shape.get("id") or next(
