@@ -6,6 +6,7 @@
 #include "patchlight/visibility/convex_hull.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace patchlight {
 namespace {
@@ -42,6 +43,7 @@ Decision decide_interreflection(const Scene& scene) {
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
+  assert(!request.max_edge || *request.max_edge > 0);
   require_lamp(scene);
   Plan plan;
   plan.sides = kept_sides(scene, request.sides);
