@@ -312,13 +312,15 @@ TEST_F(Formats, TheFormatCanBeGiven) {
 
 TEST_F(Formats, EqualMaterialsOfSeveralFilesAreShared) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const std::string above = "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";  // coincident faces would become one
   write("a.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl floor\nKd .1 .1 .1\n");
   write("b.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl floor\nKd .2 .2 .2\n");
-  const std::string faces = square + "usemtl wall\nf 1 2 3\nusemtl floor\nf 1 3 4\n";
-  const std::vector<std::filesystem::path> files = {write("a.obj", "mtllib a.mtl\n" + faces),
-                                                    write("b.obj", "mtllib b.mtl\n" + faces)};
+  const std::string faces = "usemtl wall\nf 1 2 3\nusemtl floor\nf 1 3 4\n";
+  const std::vector<std::filesystem::path> files = {write("a.obj", "mtllib a.mtl\n" + square + faces),
+                                                    write("b.obj", "mtllib b.mtl\n" + above + faces)};
   const Scene scene = read_scene(files);
   ASSERT_EQ(scene.materials.size(), 3U);
+  ASSERT_EQ(scene.polygons.size(), 4U);
   EXPECT_EQ(scene.polygons[0].material, scene.polygons[2].material);
   EXPECT_EQ(scene.materials[scene.polygons[3].material].name, "floor (b.obj)");
   EXPECT_TRUE(any_contains(scene.notes, "'floor (b.obj)'"));
