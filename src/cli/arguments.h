@@ -46,7 +46,7 @@ struct SolveArguments {
 
 /// What `patchlight check` is asked to do. A path that is empty stands for an output that is not wanted.
 struct CheckArguments {
-  std::filesystem::path model;
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   std::filesystem::path problems;  ///< .vtp
   std::filesystem::path json;      ///< .json

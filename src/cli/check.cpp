@@ -103,7 +103,7 @@ ExitCode check(const CheckArguments& arguments) {
   for (const auto* file : {&arguments.json, &arguments.problems}) {
     if (!file->empty()) check_writable(*file);
   }
-  const Scene scene = read_scene(arguments.model, arguments.read);
+  const Scene scene = read_scene(arguments.models, arguments.read);
   const SceneReport report = survey(scene);
 
   const WritingGuard guard;

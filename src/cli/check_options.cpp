@@ -1,16 +1,21 @@
 #include "cli/check_options.h"
 
-#include "cli/parse_value.h"
+#include "cli/model_options.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace patchlight::cli {
+namespace {
+
+constexpr int most_models = 1'000'000;
+
+}  // namespace
 
 struct CheckOptions {
-  std::string model, problems, json;
-  std::vector<std::string> settings;
-  double metres_per_unit = 1;
+  ModelOptions model;
+  std::string problems, json;
   bool wants_json = false;
 };
 
@@ -18,24 +23,23 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
   auto options = std::make_shared<CheckOptions>();
   CheckOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("check", "tells what a model holds and what is wrong with it");
-  command.add_option("MODEL", to.model, "the model (.obj with .mtl)")->option_text(" ");
-  command
-      .add_option_function<std::string>(
-          "--unit", [&to](const std::string& text) { to.metres_per_unit = unit_length(text); },
-          "length of one model unit; default m")
-      ->option_text("m|cm|mm|in|ft");
-  command.add_option("--set", to.settings, "changes a material before the check, as in solve; may be\nrepeated")
-      ->allow_extra_args(false)
-      ->option_text("MATERIAL.reflectance|exitance|radiance=R,G,B");
+  add_model_options(command, to.model);
   command
       .add_option_function<std::vector<std::string>>(
           "--json",
           [&to](const std::vector<std::string>& values) {
+            // In "check --json room.obj" the word after --json is the model.
             to.wants_json = true;
-            if (!values.empty()) to.json = values.front();
+            for (const std::string& value : values) {
+              if (std::filesystem::path(value).extension() == ".json") {
+                to.json = value;
+              } else if (!value.empty()) {
+                to.model.models.push_back(value);
+              }
+            }
           },
-          "all of it as JSON: into a file, or without FILE on standard\noutput instead of the text")
-      ->expected(0, 1)
+          "all of it as JSON: into a file (.json), or without FILE on\nstandard output instead of the text")
+      ->expected(0, most_models)
       ->option_text("[FILE]");
   command
       .add_option_function<std::string>(
@@ -47,23 +51,20 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
 
 CheckArguments finish_check(const CheckOptions& options) {
   CheckArguments arguments;
-  // In "check --json room.obj" the word after --json is the model.
-  const bool json_took_the_model = options.model.empty() && !options.json.empty();
-  arguments.model = json_took_the_model ? options.json : options.model;
-  arguments.json = json_took_the_model ? "" : options.json;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.json = options.json;
   arguments.json_on_stdout = options.wants_json && arguments.json.empty();
   arguments.problems = options.problems;
-  arguments.read.metres_per_unit = options.metres_per_unit;
-  for (const std::string& setting : options.settings) {
-    arguments.read.settings.push_back(parse_material_setting(setting));
-  }
-  if (arguments.model.empty()) throw UsageError("check: found no model; expected: patchlight check MODEL");
+  if (arguments.models.empty()) throw UsageError("check: found no model; expected: patchlight check MODEL");
   if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp") {
     throw UsageError("--vtk: found '" + options.problems + "'; expected a name that ends in .vtp");
   }
   for (const auto* output : {&arguments.json, &arguments.problems}) {
-    if (output->empty() || weakly_canonical(*output) != weakly_canonical(arguments.model)) continue;
-    throw UsageError("check: '" + output->string() + "' is the model; expected another file for the result");
+    for (const std::filesystem::path& model : arguments.models) {
+      if (output->empty() || weakly_canonical(*output) != weakly_canonical(model)) continue;
+      throw UsageError("check: '" + output->string() + "' is a model; expected another file for the result");
+    }
   }
   if (!arguments.json.empty() && weakly_canonical(arguments.json) == weakly_canonical(arguments.problems)) {
     throw UsageError("--vtk: '" + options.problems + "' is also --json; expected different files");

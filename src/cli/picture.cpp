@@ -52,11 +52,12 @@ Field display_radiance(const Simulation& simulation) {
 }
 
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Occluder& occluder, double exposure, const Observer& observer) {
+                          const Occluder& occluder, const Observer& observer) {
   const Camera camera = arguments.camera ? *arguments.camera : default_camera(scene, simulation.plan.sides, occluder);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
   if (arguments.colors == PictureColors::natural) {
+    const double exposure = exposure_for(image.pixels, Eigen::VectorXd::Ones(image.pixels.rows()));
     return {.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure)};
   }
   const Eigen::VectorXd values = pixel_luminance(image);

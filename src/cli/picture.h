@@ -11,8 +11,8 @@ namespace patchlight::cli {
 /// also an estimate of the light still under way.
 Field display_radiance(const Simulation& simulation);
 
-/// The picture that the arguments ask for. \throws Cancelled.
+/// The picture that the arguments ask for, exposed for what it shows. \throws Cancelled.
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Occluder& occluder, double exposure, const Observer& observer);
+                          const Occluder& occluder, const Observer& observer);
 
 }  // namespace patchlight::cli

@@ -80,7 +80,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
-    results.picture = make_picture(arguments, results.scene, simulation, occluder, exposure, observer);
+    results.picture = make_picture(arguments, results.scene, simulation, occluder, observer);
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());

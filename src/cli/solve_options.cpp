@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_result.h"
 
+#include "cli/model_options.h"
 #include "cli/parse_value.h"
 
 #include <string>
@@ -23,11 +24,10 @@ struct CameraOption {
 }  // namespace
 
 struct SolveOptions {
-  std::vector<std::string> models, results;
-  std::string format, series, report, picture, points, points_output;
+  ModelOptions model;
+  std::vector<std::string> results;
+  std::string series, report, picture, points, points_output;
   bool solver_given = false;
-  std::vector<std::string> settings;
-  double metres_per_unit = 1;
   std::optional<Vector> up;
   std::optional<double> max_edge;
   std::optional<CameraOption> camera;
@@ -94,30 +94,11 @@ void add_points(CLI::App& command, SolveOptions& options) {
            ".irradiance.csv, in\nthe folder of -o, else in the current one");
 }
 
-// The formats that can be read, as one word or list.
-std::string formats(const std::string& separator) {
-  std::string list;
-  for (const std::string& format : readable_formats()) list += (list.empty() ? "" : separator) + format;
-  return list;
-}
-
 void add_model(CLI::App& command, SolveOptions& options) {
-  command
-      .add_option(
-          "MODEL", options.models,
-          "the model, or several files that together are one\nscene: " + formats(", ") + "; - is the\nstandard input")
-      ->option_text("...");
-  add(command, "--format", formats("|"), "format of the model files; default: from the extension,\nobj for -",
-      [&options](const std::string& text) {
-        std::vector<std::pair<std::string, std::string>> allowed;
-        for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
-        options.format = choice<std::string>("--format", text, allowed);
-      });
-  add(command, "--unit", "m|cm|mm|in|ft", "length of one model unit; default m",
-      [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
+  add_model_options(command, options.model);
   add(command, "--up", "y|z",
-      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else against the "
-      "lamps' light",
+      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else that across "
+      "which most\narea lies, or against the lamps' light",
       [&options](const std::string& text) {
         options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });
@@ -127,12 +108,6 @@ void add_model(CLI::App& command, SolveOptions& options) {
         options.request.sides = choice<Sides>(
             "--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
       });
-  command
-      .add_option("--set", options.settings,
-                  "changes a material: reflectance (0 to 1), exitance (W/m^2)\nor radiance (W/(m^2 sr)); may be "
-                  "repeated; default: as in\nthe model")
-      ->allow_extra_args(false)
-      ->option_text("MATERIAL.reflectance|exitance|radiance=R,G,B");
 }
 
 void add_accuracy(CLI::App& command, SolveOptions& options) {
@@ -187,7 +162,8 @@ void require_extension(const std::string& option, const std::string& file, const
 }
 
 void require_consistent(const SolveOptions& options) {
-  if (options.models.empty()) throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
+  if (options.model.models.empty())
+    throw UsageError("solve: found no model; expected: patchlight solve MODEL -o RESULT.vtp");
   if (options.results.empty() && options.series.empty() && options.picture.empty() && options.report.empty() &&
       options.points.empty()) {
     throw UsageError(
@@ -253,13 +229,11 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
 
 SolveArguments finish_solve(const SolveOptions& options) {
   require_consistent(options);
-  const double metres = options.metres_per_unit;
+  const double metres = options.model.metres_per_unit;
   SolveArguments arguments;
-  for (const std::string& model : options.models) arguments.models.emplace_back(model);
-  arguments.read = {.metres_per_unit = metres, .up = options.up, .settings = {}, .format = options.format};
-  for (const std::string& setting : options.settings) {
-    arguments.read.settings.push_back(parse_material_setting(setting));
-  }
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.read.up = options.up;
   arguments.request = options.request;
   if (options.max_edge) arguments.request.max_edge = *options.max_edge * metres;
   if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;

@@ -17,21 +17,22 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 15> units = {{{"radiance", "W/(m^2 sr)"},
-                                                               {"radiosity", "W/m^2"},
-                                                               {"irradiance", "W/m^2"},
-                                                               {"direct_irradiance", "W/m^2"},
-                                                               {"indirect_irradiance", "W/m^2"},
-                                                               {"exitance", "W/m^2"},
-                                                               {"reflectance", "1"},
-                                                               {"luminance", "cd/m^2"},
-                                                               {"area", "m^2"},
-                                                               {"material_id", "index into material_names"},
-                                                               {"source_polygon", "index of the face in the model"},
-                                                               {"row_sum", "1"},
-                                                               {"raw_row_sum", "1"},
-                                                               {"rgb", "sRGB, 8 bits, at the recorded exposure"},
-                                                               {"radiance_smooth", "W/(m^2 sr)"}}};
+constexpr std::array<std::array<const char*, 2>, 15> units = {
+    {{"radiance", "W/(m^2 sr)"},
+     {"radiosity", "W/m^2"},
+     {"irradiance", "W/m^2"},
+     {"direct_irradiance", "W/m^2"},
+     {"indirect_irradiance", "W/m^2"},
+     {"exitance", "W/m^2"},
+     {"reflectance", "1"},
+     {"luminance", "cd/m^2"},
+     {"area", "m^2"},
+     {"material_id", "index into material_names"},
+     {"source_polygon", "number of the face in the model's files, from 0"},
+     {"row_sum", "1"},
+     {"raw_row_sum", "1"},
+     {"rgb", "sRGB, 8 bits, at the recorded exposure"},
+     {"radiance_smooth", "W/(m^2 sr)"}}};
 
 void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
   const PatchMesh& mesh = simulation.mesh;
@@ -53,7 +54,9 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   cell_data.AddArray(floats("luminance", luminances));
   cell_data.AddArray(numbers<vtkFloatArray>("area", mesh.area));
   cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
-  cell_data.AddArray(numbers<vtkIntArray>("source_polygon", mesh.polygon));
+  std::vector<std::uint32_t> faces;
+  for (const PolygonIndex polygon : mesh.polygon) faces.push_back(scene.polygons[polygon].face);
+  cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
   cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
   cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));

@@ -96,11 +96,18 @@ std::string place_of(const Scene& scene, const Polygon& polygon) {
 }
 
 Vector upright_axis(const Scene& scene) {
+  // Floors, ceilings, table tops: rooms have more area across their upright axis than across any other.
+  constexpr double much_more = 1.25;
+  Vector across = Vector::Zero();
   Vector shining = Vector::Zero();
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Spectrum& exitance = scene.materials[scene.polygons[p].material].exitance;
-    shining += exitance.sum() * area_vector(corner_points(scene, p));
+    const Vector area = area_vector(corner_points(scene, p));
+    across += area.cwiseAbs();
+    shining += exitance.sum() * area;
   }
+  if (across.y() > much_more * across.z()) return Vector::UnitY();
+  if (across.z() > much_more * across.y()) return Vector::UnitZ();
   constexpr double cosine_of_30_degrees = 0.866;
   const bool along_y = -shining.y() > cosine_of_30_degrees * shining.norm();
   return along_y ? Vector::UnitY() : Vector::UnitZ();

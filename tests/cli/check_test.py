@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from support import MATERIALS, ROOM, ToolTest, content
+from support import MATERIALS, ROOM, ToolTest, content, run
 
 GOOD, USAGE, INPUT, OUTPUT = 0, 1, 2, 6
 
@@ -87,6 +87,17 @@ class CheckTest(ToolTest):
         self.write("room.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         self.assertIn("room.obj:4", self.check("room.obj", code=INPUT).stderr)
         self.assertIn("missing.obj", self.check("missing.obj", code=INPUT).stderr)
+
+    def test_several_files_and_standard_input(self):
+        room, lamp = ROOM.split("usemtl lamp\n")
+        vertices = [line for line in ROOM.splitlines() if line.startswith(("v ", "mtllib"))]
+        self.write("walls.obj", room)
+        self.write("lamp.obj", "\n".join(vertices) + "\nusemtl lamp\n" + lamp)
+        whole, parts = self.report("room.obj"), self.report("walls.obj", "lamp.obj")
+        for fact in ("polygons", "lamps", "closed_shells", "materials", "problems"):
+            self.assertEqual(parts[fact], whole[fact])
+        piped = run("check", "-", "--json", folder=self.folder, text=ROOM)
+        self.assertEqual(json.loads(piped.stdout)["polygons"], whole["polygons"])
 
     def test_command_line(self):
         for arguments, word in (((), "model"), (("room.obj", "--vtk", "a.vtk"), ".vtp"), (("room.obj", "--jsn"), "--json"),

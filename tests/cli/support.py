@@ -46,10 +46,11 @@ Ke 10 9 8
 """
 
 
-def run(*arguments, folder, timeout=120):
-    """Runs the tool in a folder; its output as text."""
+def run(*arguments, folder, timeout=120, text=""):
+    """Runs the tool in a folder, with a text on its standard input; its output as text."""
     words = [str(argument) for argument in arguments]
-    return subprocess.run([TOOL, *words], cwd=folder, capture_output=True, text=True, timeout=timeout, check=False)
+    return subprocess.run([TOOL, *words], cwd=folder, input=text, capture_output=True, text=True, timeout=timeout,
+                          check=False)
 
 
 def content(folder):

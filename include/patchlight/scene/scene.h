@@ -27,7 +27,7 @@ struct Polygon {
   std::uint32_t group = 0;                       ///< index into Scene::groups
   std::uint32_t line = 0;                        ///< in the model file, from 1; 0 if unknown
   std::uint32_t file = 0;                        ///< index into Scene::files
-  std::uint32_t face = 0;                        ///< number of the face in the model that it comes from, from 0
+  std::uint32_t face = 0;                        ///< number of its face in the model's files, from 0; given by repair()
   std::optional<MaterialIndex> back_material{};  ///< of its back side, when that is a face of its own
 };
 
@@ -78,8 +78,9 @@ bool emits(const Scene& scene, PolygonIndex polygon, Side side);
 /// True when one of the polygon's sides emits.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
 
-/// The axis that points up, guessed: opposite to where the lamps shine on the average, if that is nearer to the y or
-/// the z axis than 30 degrees; z otherwise. For models whose files do not say.
+/// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
+/// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
+/// whose files do not say.
 Vector upright_axis(const Scene& scene);
 
 /// Where a polygon stands, for messages: "room.obj:12", or the file alone when the line is not known.

@@ -11,6 +11,7 @@ inline Scene tiny_scene() {
   Scene scene;
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 2}};
   scene.polygons = {{{0, 1, 2, 3}, 0}, {{1, 0, 4}, 1}, {{2, 1, 4}, 1}};
+  for (PolygonIndex p = 0; p < 3; ++p) scene.polygons[p].face = 10 + p;
   scene.materials = {{"floor", rgb(0.5, 0.25, 0.125), rgb(0, 0, 0)}, {"lamp", rgb(0.1, 0.2, 0.3), rgb(8, 4, 2)}};
   scene.file = "tiny.obj";
   scene.sha256 = "00ff";

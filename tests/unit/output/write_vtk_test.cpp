@@ -102,7 +102,7 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
                 smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
-    EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), i);
+    EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), 10 + i);
   }
   const auto colours = tone_map(radiance, exposure);
   vtkDataArray* const rgb = cells->GetArray("rgb");

@@ -2,12 +2,16 @@
 
 #include "patchlight/base/error.h"
 
+#include "support/scenes.h"
+
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
 
 namespace patchlight {
 namespace {
+
+using test::empty_scene, test::grey, test::Quad, test::with_box, test::with_quad;
 
 Scene square_scene() {
   Scene scene;
@@ -51,6 +55,21 @@ TEST(Scene, ALampEmitsInAnyBand) {
   EXPECT_FALSE(is_lamp(scene, 0));
   scene.materials[0].exitance = rgb(0, 0, 1e-9);
   EXPECT_TRUE(is_lamp(scene, 0));
+}
+
+TEST(Scene, FloorsAndCeilingsTellWhichAxisIsUp) {
+  // 6 x 4 x 2.5: floor and ceiling 24, the next larger walls 15.
+  EXPECT_EQ(upright_axis(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(6, 4, 2.5), true)),
+            Vector(Vector::UnitZ()));
+  EXPECT_EQ(upright_axis(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(6, 2.5, 4), true)),
+            Vector(Vector::UnitY()));
+}
+
+TEST(Scene, InACubeTheLampTellsWhichAxisIsUp) {
+  const Scene cube = with_box(empty_scene({grey(0.5), grey(0.5, 1)}), Point(0, 0, 0), Point(1, 1, 1), true);
+  EXPECT_EQ(upright_axis(cube), Vector(Vector::UnitZ()));
+  const Quad under_y = {Point(0.4, 0.9, 0.4), Point(0.6, 0.9, 0.4), Point(0.6, 0.9, 0.6), Point(0.4, 0.9, 0.6)};
+  EXPECT_EQ(upright_axis(with_quad(cube, under_y, 1)), Vector(Vector::UnitY()));
 }
 
 TEST(CheckScene, AcceptsReflectancesFromZeroToOne) {

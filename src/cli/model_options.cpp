@@ -1,0 +1,66 @@
+#include "cli/model_options.h"
+
+#include "cli/arguments.h"
+#include "cli/parse_value.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patchlight::cli {
+namespace {
+
+// The formats that can be read, as one word or list.
+std::string formats(const std::string& separator) {
+  std::string list;
+  for (const std::string& format : readable_formats()) list += (list.empty() ? "" : separator) + format;
+  return list;
+}
+
+}  // namespace
+
+void add_model_options(CLI::App& command, ModelOptions& options) {
+  command
+      .add_option(
+          "MODEL", options.models,
+          "the model, or several files that together are one\nscene: " + formats(", ") + "; - is the\nstandard input")
+      ->option_text("...");
+  command
+      .add_option_function<std::string>(
+          "--format",
+          [&options](const std::string& text) {
+            std::vector<std::pair<std::string, std::string>> allowed;
+            for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
+            options.format = choice<std::string>("--format", text, allowed);
+          },
+          "format of the model files; default: from the extension,\nobj for -")
+      ->option_text(formats("|"));
+  command
+      .add_option_function<std::string>(
+          "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); },
+          "length of one model unit; default m")
+      ->option_text("m|cm|mm|in|ft");
+  command
+      .add_option("--set", options.settings,
+                  "changes a material: reflectance (0 to 1), exitance (W/m^2)\nor radiance (W/(m^2 sr)); may be "
+                  "repeated; default: as in\nthe model")
+      ->allow_extra_args(false)
+      ->option_text("MATERIAL.reflectance|exitance|radiance=R,G,B");
+}
+
+std::vector<std::filesystem::path> model_files(const ModelOptions& options) {
+  for (auto model = options.models.begin(); model != options.models.end(); ++model) {
+    if (std::find(options.models.begin(), model, *model) == model) continue;
+    throw UsageError("MODEL: found '" + *model + "' twice; expected every model once");
+  }
+  return {options.models.begin(), options.models.end()};
+}
+
+ReadOptions read_options(const ModelOptions& options) {
+  ReadOptions read;
+  read.metres_per_unit = options.metres_per_unit;
+  read.format = options.format;
+  for (const std::string& setting : options.settings) read.settings.push_back(parse_material_setting(setting));
+  return read;
+}
+
+}  // namespace patchlight::cli
