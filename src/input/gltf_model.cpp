@@ -34,19 +34,27 @@ void require_known_extensions(const tinygltf::Model& model, const std::string& f
   }
 }
 
-// sRGB to linear, IEC 61966-2-1.
-double linear(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
+// The 256 values of sRGB to linear, IEC 61966-2-1.
+std::array<double, 256> linear_values() {
+  std::array<double, 256> values{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double srgb = static_cast<double>(k) / 255.0;
+    values[k] = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+  }
+  return values;
+}
 
 Spectrum mean_color(const tinygltf::Image& image) {
   const std::size_t bytes_per_value = image.bits == 16 ? 2 : 1;
   const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const auto channels = static_cast<std::size_t>(image.component);
+  const std::array<double, 256> linear = linear_values();
   Spectrum sum = rgb(0, 0, 0);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     for (std::size_t k = 0; k < 3; ++k) {
       // Of 16 bits the upper eight are enough for a mean.
       const std::size_t value = (pixel * channels + std::min(k, channels - 1)) * bytes_per_value + bytes_per_value - 1;
-      sum[static_cast<Eigen::Index>(k)] += linear(image.image[value] / 255.0);
+      sum[static_cast<Eigen::Index>(k)] += linear[image.image[value]];
     }
   }
   return sum / static_cast<double>(pixels);

@@ -21,15 +21,13 @@
 namespace patchlight {
 namespace {
 
-constexpr rlim_t most_seconds = 60;  // of processor time; a house of 2 MB takes 0.1
-
 // The first byte of what the child sends.
 constexpr char sends_scene = 'S';
 constexpr char sends_refusal = 'R';  // the text of an InputError
 constexpr char sends_failure = 'F';  // any other exception's
 
 // A child ends with its parent, without a trace on the terminal or the disk.
-void prepare_child() {
+void prepare_child(unsigned most_seconds) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
     std::signal(signal, SIG_DFL);
@@ -106,14 +104,14 @@ Scene scene_from(const std::string& message, int status, const std::string& file
 
 }  // namespace
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read) {
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, unsigned most_seconds) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t child = fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (child == 0) {
     ::close(ends[0]);
-    prepare_child();
+    prepare_child(most_seconds);
     _exit(write_all(ends[1], message_from(read)) ? 0 : 1);
   }
   ::close(ends[1]);

@@ -4,6 +4,7 @@
 
 #include "input/gltf_material.h"
 #include "input/gltf_model.h"
+#include "input/isolated.h"
 #include "input/materials.h"
 #include "input/sha256.h"
 
@@ -174,9 +175,7 @@ std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
   return notes;
 }
 
-}  // namespace
-
-Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
+Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
   // 1. The file, its buffers and pictures, and the materials.
   const GltfModel gltf = read_gltf_model(file);
   Scene scene;
@@ -198,6 +197,15 @@ Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
   // 3. What is not simulated.
   for (std::string& note : notes_on_materials(gltf)) scene.notes.push_back(std::move(note));
   return scene;
+}
+
+}  // namespace
+
+Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
+  // tinygltf calls itself for each level of the JSON, and large pictures take long to decode.
+  constexpr unsigned most_seconds = 600;
+  return read_isolated(
+      file.string(), [&] { return scene_of(file, metres_per_unit); }, most_seconds);
 }
 
 }  // namespace patchlight

@@ -14,9 +14,12 @@ Polygon with_corners(Polygon polygon, std::vector<std::uint32_t> corners) {
   return polygon;
 }
 
-std::vector<Polygon> in_triangles(const Polygon& polygon, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+// Those triangles of a polygon that are not narrow.
+std::vector<Polygon> in_triangles(const Polygon& polygon, const std::vector<Point>& points,
+                                  const std::vector<std::array<std::uint32_t, 3>>& triangles, double width) {
   std::vector<Polygon> pieces;
   for (const auto& [a, b, c] : triangles) {
+    if (is_narrow(std::array{points[a], points[b], points[c]}, width)) continue;
     pieces.push_back(with_corners(polygon, {polygon.corners[a], polygon.corners[b], polygon.corners[c]}));
   }
   return pieces;
@@ -33,14 +36,15 @@ std::vector<std::array<std::uint32_t, 3>> folded(const std::vector<Point>& point
 }
 
 // A polygon that does not cross itself: whole when it is planar, else in triangles.
-Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points) {
+Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points, double width) {
   if (polygon.corners.size() == 3) return {{polygon}, {}, {}};
   const bool planar = is_planar(points);
-  if (!planar && points.size() == 4) return {in_triangles(polygon, folded(points)), {}, ProblemKind::non_planar};
+  if (!planar && points.size() == 4)
+    return {in_triangles(polygon, points, folded(points), width), {}, ProblemKind::non_planar};
   const auto triangles = proper_triangles(points);
   if (!triangles) return {{}, {}, ProblemKind::self_intersecting};
   if (planar) return {{polygon}, {}, {}};
-  return {in_triangles(polygon, *triangles), {}, ProblemKind::non_planar};
+  return {in_triangles(polygon, points, *triangles, width), {}, ProblemKind::non_planar};
 }
 
 // A polygon that crosses itself, cut at the crossings.
@@ -53,7 +57,7 @@ Pieces cut_pieces(const Scene& scene, const Polygon& polygon, const std::vector<
       cut.new_vertices.push_back(point);
     }
     Polygon piece = with_corners(polygon, corners);
-    for (Polygon& simple : simple_pieces(piece, loop).polygons) cut.polygons.push_back(std::move(simple));
+    for (Polygon& simple : simple_pieces(piece, loop, width).polygons) cut.polygons.push_back(std::move(simple));
   }
   return cut;
 }
@@ -66,13 +70,7 @@ Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width) {
   if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, ProblemKind::zero_area};
   const bool is_bent_quadrilateral = points.size() == 4 && !is_planar(points);
   if (!is_bent_quadrilateral && crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
-  Pieces pieces = simple_pieces(polygon, points);
-  std::erase_if(pieces.polygons, [&](const Polygon& piece) {
-    std::vector<Point> corners;
-    for (const std::uint32_t corner : piece.corners) corners.push_back(scene.vertices[corner]);
-    return is_narrow(corners, width);
-  });
-  return pieces;
+  return simple_pieces(polygon, points, width);
 }
 
 }  // namespace patchlight

@@ -89,8 +89,9 @@ Vector plane_normal(std::span<const Point> polygon) {
 }
 
 bool is_narrow(std::span<const Point> polygon, double width) {
-  const auto [from, to] = far_apart(polygon);
-  const Vector along = (to - from).normalized();
+  const std::array<Point, 2> ends = far_apart(polygon);
+  const Point& from = ends[0];
+  const Vector along = (ends[1] - from).normalized();
   return std::all_of(polygon.begin(), polygon.end(),
                      [&](const Point& corner) { return (corner - from).cross(along).norm() <= width; });
 }

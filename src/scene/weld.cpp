@@ -44,7 +44,8 @@ std::vector<std::uint32_t> welded(std::span<const Point> points, double distance
   constexpr std::uint32_t none = ~std::uint32_t{0};
   std::vector<std::uint32_t> stands_for(points.size());
   if (points.empty()) return stands_for;
-  const double scale = distance > 0 ? cells_per_distance / distance : 0;
+  // Of a model whose size is near the smallest double the quotient would be infinite.
+  const double scale = distance > 0 ? std::min(cells_per_distance / distance, std::numeric_limits<double>::max()) : 0;
   const Vector reach = Vector::Constant(cells_per_distance);
 
   std::unordered_map<Cell, std::uint32_t, CellHash> last_in_cell;  // the head of a list, linked by `previous`

@@ -1,8 +1,9 @@
-// Any few polygons on a coarse grid that pass the check of a scene can be meshed, and their exchange areas are those of
-// a radiosity problem: finite, not negative, symmetric, and never more than the smaller patch.
-#include "patchlight/base/error.h"
+// What repair() leaves of any few polygons on a coarse grid passes the check of a scene and can be meshed, and the
+// exchange areas are those of a radiosity problem: finite, not negative, symmetric, and never more than the smaller
+// patch.
 #include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/scene/repair.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/visibility/occluder.h"
@@ -18,7 +19,7 @@ using namespace patchlight;
 namespace {
 
 constexpr std::size_t most_polygons = 8;
-constexpr std::size_t most_patches = 150;
+constexpr std::size_t most_patches = 40;
 
 // Takes one byte after the other; zeros when they are used up.
 class Bytes {
@@ -88,12 +89,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes({data, size});
   const double max_edge = 0.25 + bytes.next() / 64.0;
   const auto wanted = static_cast<Sides>(bytes.next() % 3);
-  const Scene scene = scene_from(bytes);
-  try {
-    check(scene);
-  } catch (const InputError&) {
-    return 0;
-  }
+  const Scene scene = repair(scene_from(bytes));
+  if (scene.polygons.empty()) return 0;
+  check(scene);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, wanted), max_edge);
   require_good(mesh, max_edge);
   if (mesh.size() > most_patches) return 0;

@@ -304,6 +304,19 @@ TEST_F(Formats, DamagedFilesAreRefusedByName) {
   EXPECT_NE(refusal(write("room.gltf", files.back().second)).find("absent.bin"), std::string::npos);
 }
 
+TEST_F(Formats, GltfNestedDeeperThanTheStackIsRefused) {
+  constexpr int depth = 200000;
+  std::string lists = std::string(depth, '[') + std::string(depth, ']');
+  std::string nodes;
+  for (int k = 1; k < depth; ++k) nodes += R"({"children": [)" + std::to_string(k) + "]}, ";
+  for (const std::string& deep :
+       {R"("extras": )" + lists, R"("scenes": [{"nodes": [0]}], "nodes": [)" + nodes + "{}]"}) {
+    const auto file = write("deep.gltf", R"({"asset": {"version": "2.0"}, )" + deep + "}");
+    const std::string message = refusal(file);
+    EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0U) << message;
+  }
+}
+
 TEST_F(Formats, TheFormatCanBeGiven) {
   ReadOptions options;
   options.format = "off";

@@ -252,6 +252,21 @@ TEST(Repair, MakesRandomPolygonsMeshable) {
   }
 }
 
+TEST(Repair, MakesPolygonsThatPassCornersTwiceMeshable) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    // Of few points, so that the outline passes most of them twice; every other trial in one plane.
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) points.emplace_back(uniform(random), uniform(random), trial % 2 * uniform(random));
+    std::vector<Point> corners;
+    for (int k = 0; k < 4 + trial % 6; ++k) corners.push_back(points[random() % points.size()]);
+    const Scene repaired = repair(one_polygon(corners));
+    if (!repaired.polygons.empty()) expect_meshable(repaired);
+    ASSERT_FALSE(::testing::Test::HasFailure()) << "trial " << trial;
+  }
+}
+
 TEST(Repair, CountsTurnedFacesAndBranchedEdges) {
   Scene scene = numbered(cube_room(0.5, 0));
   std::reverse(scene.polygons[4].corners.begin(), scene.polygons[4].corners.end());

@@ -1,6 +1,7 @@
 #include "patchlight/scene/weld.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 namespace patchlight {
@@ -37,6 +38,12 @@ TEST(Welded, EqualPointsAreOneAtAnyDistanceAndPlace) {
     }
   }
   EXPECT_TRUE(welded({}, 1).empty());
+}
+
+TEST(Welded, ADistanceWhoseInverseIsInfiniteIsADistance) {
+  const double distance = std::numeric_limits<double>::denorm_min();
+  const std::vector<Point> points = {Point(0, 0, 0), Point(1e-150, 0, 0), Point(0, 0, 0)};
+  EXPECT_EQ(welded(points, distance), (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
 TEST(WeldDistance, IsAMillionthOfTheExtentUnlessTheOriginIsFar) {
