@@ -52,8 +52,9 @@ struct ThreadLimit::Limit {
 };
 
 ThreadLimit::ThreadLimit(int threads)
-    : limit_(std::make_unique<Limit>(
-          static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))) {}
+    : limit_(
+          std::make_unique<Limit>(static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))) {
+}
 
 ThreadLimit::~ThreadLimit() = default;
 

@@ -44,6 +44,7 @@ struct Pair {
 struct ClusterFacts {
   Slabs slabs;
   std::optional<HalfSpace> behind;  // of a planar cluster
+  std::vector<Point> hull;          // points whose convex hull holds all patches
 };
 
 struct Assembler {
@@ -209,6 +210,10 @@ AssemblyCounts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
       });
       continue;
     }
+    if (occluder.hides(facts[row].hull, facts[column].hull)) {
+      counts.hidden_pairs += static_cast<std::uint64_t>(a.size) * static_cast<std::uint64_t>(b.size);
+      continue;
+    }
     pairs.clear();
     for_facing_pairs(a, b, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
       pairs.push_back(new_pair(i, j, unoccluded));
@@ -219,6 +224,22 @@ AssemblyCounts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
   return counts;
 }
 
+// The corners of the box around some points that has one side across `axis`: four when they lie in one plane across it.
+std::vector<Point> box_around(std::span<const Point> points, const Vector& axis, const Point& origin) {
+  Eigen::Matrix3d axes;
+  axes.col(2) = axis;
+  axes.col(0) = axis.unitOrthogonal();
+  axes.col(1) = axis.cross(axes.col(0));
+  Box box;
+  for (const Point& point : points) box.extend(axes.transpose() * (point - origin));
+  const bool is_flat = box.sizes().z() < 1e-9 * box.sizes().norm();
+  std::vector<Point> corners;
+  for (int k = 0; k < (is_flat ? 4 : 8); ++k) {
+    corners.push_back(origin + axes * box.corner(static_cast<Box::CornerType>(k)));
+  }
+  return corners;
+}
+
 ClusterFacts facts_of(const PatchCluster& cluster, const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
                       const ShaftCuller& culler) {
   std::vector<Point> corners;
@@ -226,10 +247,11 @@ ClusterFacts facts_of(const PatchCluster& cluster, const PatchMesh& mesh, const 
     const std::span<const Point> patch = shapes[cluster.patches[static_cast<std::size_t>(lane)]].corners;
     corners.insert(corners.end(), patch.begin(), patch.end());
   }
-  ClusterFacts facts{culler.slabs(corners), {}};
+  ClusterFacts facts{culler.slabs(corners), {}, {}};
   const PatchIndex first = cluster.patches[0];
   const Vector& normal = mesh.normal[first];
   if (cluster.is_planar) facts.behind = HalfSpace{normal, normal.dot(mesh.centroid[first])};
+  facts.hull = box_around(corners, cluster.is_planar ? normal : Vector(Vector::UnitZ()), mesh.centroid[first]);
   return facts;
 }
 
@@ -271,6 +293,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
   for (const AssemblyCounts& count : counts) {
     result.counts.facing_pairs += count.facing_pairs;
     result.counts.near_pairs += count.near_pairs;
+    result.counts.hidden_pairs += count.hidden_pairs;
     result.counts.free_pairs += count.free_pairs;
     result.counts.partial_pairs += count.partial_pairs;
     result.counts.blocked_pairs += count.blocked_pairs;

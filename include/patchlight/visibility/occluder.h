@@ -79,8 +79,13 @@ class Occluder {
 
   TracingFrame frame() const;
 
-  /// Tells where shadow rays are not needed.
+  /// Tells where shadow rays are not needed, as nothing is in the way.
   const ShaftCuller& shafts() const;
+
+  /// True when one polygon hides the convex hulls of two groups of points from each other: it cuts every segment
+  /// between them. May be false when they are hidden by several. The polygons tried are those that a ray between the
+  /// middles meets first from either end.
+  bool hides(std::span<const Point> first, std::span<const Point> second) const;
 
   /// The first polygon that each ray meets, if any.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
