@@ -30,7 +30,7 @@ struct Pair {
   PatchIndex first = 0;  // rays are sampled from here
   PatchIndex second = 0;
   SampleSet set;
-  float unoccluded = 0;      // exchange area without occluders, m^2
+  float unoccluded = 0;      // exchange area without occluders, m^2; -1 when not yet computed
   float free_weight = 0;     // summed weights of the samples whose shadow ray is free: geometry terms, 1/m^2
   float blocked_weight = 0;  // and of those whose ray is blocked
   std::uint16_t free_rays = 0;
@@ -65,13 +65,15 @@ struct Assembler {
   void for_facing_pairs(const PatchCluster& a, const PatchCluster& b, AssemblyCounts& counts, Use use) const;
   Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
-  void trace_adjacent(std::span<Pair> pairs) const;
+  void trace_adjacent(std::span<Pair> pairs, std::size_t begin, std::size_t end) const;
+  float exact(PatchIndex i, PatchIndex j) const;
   void sample(std::vector<Pair>& pairs, AssemblyCounts& counts) const;
   double exchange_area(const Pair& pair) const;
   AssemblyCounts fill_row(std::size_t row, ExchangeAreas& S) const;
 };
 
-// Calls use(i, j, unoccluded exchange area) for the pairs of two clusters that face each other.
+// Calls use(i, j, unoccluded exchange area) for the pairs of two clusters that face each other; the area is -1 where it
+// takes exact() to find it.
 template <typename Use>
 void Assembler::for_facing_pairs(const PatchCluster& a, const PatchCluster& b, AssemblyCounts& counts, Use use) const {
   for (int lane = 0; lane < a.size; ++lane) {
@@ -84,14 +86,18 @@ void Assembler::for_facing_pairs(const PatchCluster& a, const PatchCluster& b, A
       float unoccluded = row.unoccluded.at[k];
       if ((row.exact >> k & 1) != 0) {
         if (orientation(shapes[i], shapes[j]) == Orientation::averted) continue;
-        unoccluded = narrow_toward_zero(unoccluded_exchange_area(shapes[i], shapes[j]));
+        unoccluded = -1;
         counts.near_pairs += is_near(shapes[i], shapes[j]) ? 1 : 0;
       }
-      if (!(unoccluded > 0)) continue;
+      if (unoccluded == 0) continue;
       ++counts.facing_pairs;
       use(i, j, unoccluded);
     }
   }
+}
+
+float Assembler::exact(PatchIndex i, PatchIndex j) const {
+  return narrow_toward_zero(unoccluded_exchange_area(shapes[i], shapes[j]));
 }
 
 // The two patches come in an order that does not depend on their numbers: of adjacent pairs the smaller first, else by
@@ -140,9 +146,9 @@ void Assembler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t 
   }
 }
 
-// Traces all samples of adjacent pairs: by solid angle, as the geometry term has no finite variance there.
-void Assembler::trace_adjacent(std::span<Pair> pairs) const {
-  const std::size_t count = std::size_t{adjacent_factor} * samples;
+// The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
+void Assembler::trace_adjacent(std::span<Pair> pairs, std::size_t begin, std::size_t end) const {
+  const std::size_t count = end - begin;
   std::vector<Segment> segments;
   std::vector<float> weights;
   segments.reserve(pairs.size() * count);
@@ -150,7 +156,7 @@ void Assembler::trace_adjacent(std::span<Pair> pairs) const {
   for (const Pair& pair : pairs) {
     const PatchShape& a = shapes[pair.first];
     const PatchShape& b = shapes[pair.second];
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = begin; k < end; ++k) {
       const auto at = [&](std::size_t d) { return static_cast<double>(pair.set.square[d * pair.set.stride + k]); };
       const Point x = square_to_quad(a.corners.points, at(0), at(1));
       const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, at(2), at(3));
@@ -162,21 +168,25 @@ void Assembler::trace_adjacent(std::span<Pair> pairs) const {
   for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0);
 }
 
-// Traces all shadow rays of some pairs.
+// Traces the shadow rays of some pairs.
 void Assembler::sample(std::vector<Pair>& pairs, AssemblyCounts& counts) const {
-  // 1. A few probes for every pair, all samples for adjacent pairs.
+  // 1. A few probes for every pair.
   const auto others = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_adjacent; });
-  trace_adjacent({pairs.begin(), others});
+  trace_adjacent({pairs.begin(), others}, 0, adjacent_factor * probes);
   trace({others, pairs.end()}, 0, probes);
 
   // 2. The remaining samples where the probes disagree.
-  const auto unanimous = std::partition(others, pairs.end(), [](const Pair& p) { return p.is_partial(); });
+  const auto is_partial = [](const Pair& pair) { return pair.is_partial(); };
+  const auto adjacent = std::partition(pairs.begin(), others, is_partial);
+  trace_adjacent({pairs.begin(), adjacent}, adjacent_factor * probes, adjacent_factor * samples);
+  const auto unanimous = std::partition(others, pairs.end(), is_partial);
   trace({others, unanimous}, probes, samples);
 
-  for (const Pair& pair : pairs) {
+  for (Pair& pair : pairs) {
     counts.shadow_rays += static_cast<std::uint64_t>(pair.free_rays + pair.blocked_rays);
     counts.partial_pairs += pair.is_partial() ? 1 : 0;
     counts.blocked_pairs += pair.free_rays == 0 ? 1 : 0;
+    if (pair.unoccluded < 0 && pair.free_rays > 0) pair.unoccluded = exact(pair.first, pair.second);
   }
 }
 
@@ -205,7 +215,7 @@ AssemblyCounts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
     if (!occluder.can_occlude() ||
         occluder.shafts().is_empty(facts[row].slabs, facts[column].slabs, facts[row].behind, facts[column].behind)) {
       for_facing_pairs(a, b, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
-        S.set(i, j, unoccluded);
+        S.set(i, j, unoccluded < 0 ? exact(i, j) : unoccluded);
         ++counts.free_pairs;
       });
       continue;
