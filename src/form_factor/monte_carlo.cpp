@@ -2,21 +2,23 @@
 
 #include "patchlight/base/sampling.h"
 
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace patchlight {
 namespace {
 
-constexpr std::uint32_t scrambles = 256;
+constexpr std::uint32_t most_scrambles = 256;
+constexpr std::uint32_t most_entries = 1U << 22;  // of the table, so that it stays below 150 MB
 constexpr std::size_t coordinates = 8;
 
 }  // namespace
 
-SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed) : samples_(samples), seed_(seed) {
-  table_.resize(std::size_t{scrambles} * coordinates * samples);
-  for (std::uint32_t scramble = 0; scramble < scrambles; ++scramble) {
+SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
+    : samples_(samples), scrambles_(std::clamp(most_entries / samples, 16U, most_scrambles)), seed_(seed) {
+  table_.resize(std::size_t{scrambles_} * coordinates * samples);
+  for (std::uint32_t scramble = 0; scramble < scrambles_; ++scramble) {
     const auto points = scrambled_sobol(samples, hash({seed, scramble}));
     float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples;
     for (std::size_t k = 0; k < samples; ++k) {
@@ -31,7 +33,7 @@ SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed) : samples_(s
 
 SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key) const {
   const std::uint32_t scramble =
-      hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles;
+      hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles_;
   const float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples_;
   return {rows, rows + 4 * std::size_t{samples_}, samples_};
 }

@@ -27,6 +27,7 @@ class SampleTable {
 
  private:
   std::uint32_t samples_;
+  std::uint32_t scrambles_;
   std::uint64_t seed_;
   std::vector<float> table_;
 };

@@ -3,9 +3,11 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/sampling_error.h"
 #include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace patchlight {
 
@@ -13,6 +15,7 @@ struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
   int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; near pairs take four times as many
   std::uint64_t seed = 1;
+  bool keep_sampled = false;  ///< fill Assembly::sampled: 16 bytes for each pair that shadow rays decided
 };
 
 /// How the entries of a matrix came about.
@@ -27,9 +30,19 @@ struct AssemblyCounts {
   std::uint64_t shadow_rays = 0;
 };
 
+/// A pair that shadow rays decided.
+struct SampledEntry {
+  PatchIndex first = 0;
+  PatchIndex second = 0;
+  float unoccluded = 0;  ///< exchange area without occluders, m^2; -1 where all rays were blocked and it was not found
+  bool is_partial = false;  ///< the probes disagreed: an estimate, else fully visible or fully occluded as far as seen
+};
+
 struct Assembly {
   ExchangeAreas exchange_areas;
   AssemblyCounts counts;
+  SamplingError error;
+  std::vector<SampledEntry> sampled;  ///< when asked for
 };
 
 /// Exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal and between

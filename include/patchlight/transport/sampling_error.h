@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace patchlight {
+
+/// How far the sampled entries of a matrix of exchange areas are off, found from a random share of the pairs that are
+/// sampled a second time, independently. Variances are relative to the square of the unoccluded exchange area U, and
+/// pooled over pairs of about the same visible share, as the spread of one pair's samples alone tells too little.
+struct SamplingError {
+  static constexpr std::size_t bins = 8;  ///< of the visible share, from 0 to 1
+
+  /// Pairs whose probes disagreed, so that all samples were taken.
+  std::array<std::uint64_t, bins> partial_pairs{};
+  std::array<double, bins> squares{};  ///< summed squares of half the difference of both estimates over U, times 2
+
+  /// Pairs whose probes agreed: counted as fully visible, or as fully occluded.
+  struct Unanimous {
+    static constexpr std::size_t steps = 64;
+    std::uint64_t pairs = 0;                      ///< those sampled a second time
+    std::uint64_t missed = 0;                     ///< of these, those where not all samples agreed with the probes
+    std::array<std::uint64_t, steps> by_share{};  ///< how many by the share of U that the probes had wrong, from 0 to 1
+  };
+  Unanimous visible;
+  Unanimous occluded;
+
+  SamplingError& operator+=(const SamplingError& other);
+};
+
+/// Standard error of an entry whose probes disagreed, as a share of U; that of all such pairs where fewer than 30 have
+/// about this visible share.
+double standard_error(const SamplingError& error, double visible_share);
+
+/// An upper bound, more than 95 % sure for a pair chosen at random, of what probes that agreed had wrong, as a share of
+/// U: what 97 % of the pairs that were sampled again stayed below. 1 when fewer than 30 were.
+double bound_on_miss(const SamplingError::Unanimous& unanimous);
+
+}  // namespace patchlight

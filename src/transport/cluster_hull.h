@@ -1,0 +1,20 @@
+#pragma once
+
+#include "patchlight/form_factor/patch_cluster.h"
+#include "patchlight/visibility/shaft.h"
+
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// What decides on the shafts of a cluster.
+struct ClusterHull {
+  Slabs slabs;
+  std::optional<HalfSpace> behind;  ///< of a planar cluster
+  std::vector<Point> corners;       ///< points whose convex hull holds all patches
+};
+
+ClusterHull hull_of(const PatchCluster& cluster, const std::vector<PatchShape>& shapes, const ShaftCuller& culler);
+
+}  // namespace patchlight

@@ -1,0 +1,171 @@
+#include "transport/pair_sampler.h"
+
+#include "patchlight/base/sampling.h"
+#include "patchlight/form_factor/patch_keys.h"
+#include "patchlight/form_factor/solid_angle.h"
+
+#include "transport/narrow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Adjacent pairs are few and weigh much: they get this many times the samples of others.
+constexpr std::uint32_t adjacent_factor = 4;
+
+constexpr std::size_t packet = ShadowPacket::size;
+
+// Numbers of samples that fill packets: 2, 4, 8 or a multiple of 16.
+std::uint32_t in_packets(int count) {
+  const auto wanted = static_cast<std::uint32_t>(count);
+  return wanted <= 2 ? 2 : wanted <= 4 ? 4 : wanted <= 8 ? 8 : (wanted + 15) / 16 * 16;
+}
+
+void add(Pair& pair, float weight, bool blocked) {
+  (blocked ? pair.blocked_weight : pair.free_weight) += weight;
+  ++(blocked ? pair.blocked_rays : pair.free_rays);
+}
+
+std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
+                                          const TracingFrame& frame) {
+  std::vector<SampledPatch> patches;
+  patches.reserve(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) patches.push_back(sampled_patch(shapes[i], mesh.polygon[i], frame));
+  return patches;
+}
+
+}  // namespace
+
+PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& shapes, const Occluder& occluder,
+                         const AssemblyOptions& options)
+    : mesh_(mesh),
+      shapes_(shapes),
+      occluder_(occluder),
+      probes_(in_packets(options.probes)),
+      samples_(in_packets(options.samples)),
+      scale_(occluder.frame().scale),
+      keys_(patch_keys(mesh)),
+      patches_(sampled_patches(mesh, shapes, occluder.frame())),
+      table_(adjacent_factor * samples_, options.seed) {}
+
+float PairSampler::exact(PatchIndex i, PatchIndex j) const {
+  return narrow_toward_zero(unoccluded_exchange_area(shapes_[i], shapes_[j]));
+}
+
+// The two patches come in an order that does not depend on their numbers: of adjacent pairs the smaller first, else by
+// key.
+Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
+  const bool adjacent = is_adjacent(shapes_[i], shapes_[j]);
+  const double first = shapes_[i].area;
+  const double second = shapes_[j].area;
+  const bool sizes_differ = std::abs(first - second) > 1e-9 * (first + second);
+  if (adjacent && sizes_differ ? second < first : keys_[j] < keys_[i]) std::swap(i, j);
+  return {.first = i,
+          .second = j,
+          .set = table_.of_pair(keys_[i], keys_[j]),
+          .unoccluded = unoccluded,
+          .is_adjacent = adjacent};
+}
+
+// Traces samples [begin, end) of every pair and adds up their weights. A packet holds 2, 4, 8 or 16 rays of each of its
+// pairs, so that its rays are coherent.
+void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
+  PairSamples next;
+  for (std::uint32_t k = begin; k < end;) {
+    const std::size_t step = k % 16 == 0 && end - k >= 16 ? 16
+                             : k % 8 == 0 && end - k >= 8 ? 8
+                             : k % 4 == 0 && end - k >= 4 ? 4
+                                                          : 2;
+    const std::size_t at_once = packet / step;
+    for (std::size_t p = 0; p < pairs.size(); p += at_once) {
+      for (std::size_t n = 0; n < at_once; ++n) {
+        // Lanes beyond the last pair repeat it.
+        const Pair& pair = pairs[std::min(p + n, pairs.size() - 1)];
+        add_samples(next, static_cast<int>(n * step), static_cast<int>(step), patches_[pair.first],
+                    patches_[pair.second], pair.set, k, scale_);
+      }
+      const unsigned blocked = occluder_.occluded(next.rays);
+      for (std::size_t lane = 0; lane < packet && p + lane / step < pairs.size(); ++lane) {
+        add(pairs[p + lane / step], next.weight[lane], (blocked >> lane & 1) != 0);
+      }
+    }
+    k += static_cast<std::uint32_t>(step);
+  }
+}
+
+// The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
+void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
+  const std::size_t count = end - begin;
+  std::vector<Segment> segments;
+  std::vector<float> weights;
+  segments.reserve(pairs.size() * count);
+  weights.reserve(pairs.size() * count);
+  for (const Pair& pair : pairs) {
+    const PatchShape& a = shapes_[pair.first];
+    const PatchShape& b = shapes_[pair.second];
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto at = [&](std::size_t d) { return static_cast<double>(pair.set.square[d * pair.set.stride + k]); };
+      const Point x = square_to_quad(a.corners.points, at(0), at(1));
+      const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, at(2), at(3));
+      segments.push_back(
+          {x, y.weight > 0 ? y.point : b.centroid, mesh_.polygon[pair.first], mesh_.polygon[pair.second]});
+      weights.push_back(static_cast<float>(y.weight / b.area));
+    }
+  }
+  const std::vector<std::uint8_t> blocked = occluder_.occluded(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0);
+}
+
+std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
+  // 1. A few probes for every pair.
+  const auto others = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_adjacent; });
+  trace_adjacent({pairs.begin(), others}, 0, adjacent_factor * probes_);
+  trace({others, pairs.end()}, 0, probes_);
+
+  // 2. The remaining samples where the probes disagree.
+  const auto is_partial = [](const Pair& pair) { return pair.is_partial(); };
+  const auto adjacent = std::partition(pairs.begin(), others, is_partial);
+  trace_adjacent({pairs.begin(), adjacent}, adjacent_factor * probes_, adjacent_factor * samples_);
+  const auto unanimous = std::partition(others, pairs.end(), is_partial);
+  trace({others, unanimous}, probes_, samples_);
+
+  // 3. What was not worth computing for pairs that see nothing of each other.
+  for (Pair& pair : pairs) {
+    if (pair.unoccluded < 0 && pair.free_rays > 0) pair.unoccluded = exact(pair.first, pair.second);
+  }
+  return pairs;
+}
+
+Pair PairSampler::sampled_again(const Pair& pair) const {
+  constexpr std::uint32_t another = 0x9e3779b9U;
+  Pair again = pair;
+  again.set = table_.of_pair(keys_[pair.first] ^ another, keys_[pair.second]);
+  again.free_weight = again.blocked_weight = 0;
+  again.free_rays = again.blocked_rays = 0;
+  if (pair.is_adjacent) {
+    trace_adjacent({&again, 1}, 0, adjacent_factor * samples_);
+  } else {
+    trace({&again, 1}, 0, samples_);
+  }
+  if (again.unoccluded < 0) again.unoccluded = exact(pair.first, pair.second);
+  return again;
+}
+
+double PairSampler::exchange_area(const Pair& pair) const {
+  if (pair.blocked_rays == 0) return pair.unoccluded;
+  if (pair.free_rays == 0) return 0;
+  const double count = static_cast<double>(pair.free_rays) + pair.blocked_rays;
+  const double areas = shapes_[pair.first].area * shapes_[pair.second].area;
+  // Of patches that see each other in a small part only, no sample may lie in it: then all rays count alike.
+  if (pair.free_weight + pair.blocked_weight == 0) return static_cast<double>(pair.unoccluded) * pair.free_rays / count;
+  // What is mostly hidden is estimated directly; what is mostly seen by the control variate, the exact unoccluded value
+  // less the mean of what is blocked. Either way the error is that of the smaller part.
+  if (pair.free_weight < pair.blocked_weight)
+    return std::min<double>(pair.unoccluded, areas * pair.free_weight / count);
+  return std::max(0.0, pair.unoccluded - areas * pair.blocked_weight / count);
+}
+
+}  // namespace patchlight

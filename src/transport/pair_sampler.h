@@ -1,0 +1,66 @@
+#pragma once
+
+#include "patchlight/form_factor/pair_samples.h"
+#include "patchlight/form_factor/patch_shape.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// A pair of patches that face each other, and what its shadow rays have met so far.
+struct Pair {
+  PatchIndex first = 0;  ///< rays are sampled from here
+  PatchIndex second = 0;
+  SampleSet set;
+  float unoccluded = 0;      ///< exchange area without occluders, m^2; -1 when not yet computed
+  float free_weight = 0;     ///< summed weights of the samples whose shadow ray is free: geometry terms, 1/m^2
+  float blocked_weight = 0;  ///< and of those whose ray is blocked
+  std::uint32_t free_rays = 0;
+  std::uint32_t blocked_rays = 0;
+  bool is_adjacent = false;  ///< sampled by solid angle
+
+  bool is_partial() const { return free_rays > 0 && blocked_rays > 0; }
+};
+
+/// Finds by shadow rays how much of each other the patches of pairs see.
+class PairSampler {
+ public:
+  PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& shapes, const Occluder& occluder,
+              const AssemblyOptions& options);
+
+  /// `unoccluded` is -1 where it takes exact() to find it, which happens when a ray is free.
+  Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
+
+  /// The exchange area without occluders, by closed form or quadrature in double precision.
+  float exact(PatchIndex i, PatchIndex j) const;
+
+  /// Traces a few probes for every pair, and all samples where they disagree. The pairs come out in another order.
+  std::vector<Pair> sampled(std::vector<Pair> pairs) const;
+
+  /// All samples of one pair anew, independent of those before.
+  Pair sampled_again(const Pair& pair) const;
+
+  /// The estimate from the pair's rays, m^2.
+  double exchange_area(const Pair& pair) const;
+
+ private:
+  void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
+  void trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
+
+  const PatchMesh& mesh_;
+  const std::vector<PatchShape>& shapes_;
+  const Occluder& occluder_;
+  std::uint32_t probes_;
+  std::uint32_t samples_;
+  double scale_;
+  std::vector<std::uint32_t> keys_;
+  std::vector<SampledPatch> patches_;
+  SampleTable table_;
+};
+
+}  // namespace patchlight

@@ -1,0 +1,95 @@
+// The errors that are stated for sampled exchange areas are those that they have.
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/transport/assemble.h"
+
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// A room with rows of boxes: many pairs see each other in part.
+Scene cluttered_room() {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (int k = 0; k < 6; ++k) {
+    const Point corner(0.4 + 0.6 * k, 0.5 + 0.3 * (k % 3), 0.2);
+    scene = with_box(std::move(scene), corner, corner + Vector(0.3, 1.1, 1.3), false);
+  }
+  return scene;
+}
+
+// Every sampled pair against a reference of a hundred times the samples, whose own error is a tenth or less.
+class Calibration : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const Scene scene = cluttered_room();
+    const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
+    const Occluder occluder(scene);
+    assembly = new Assembly(assemble_exchange_areas(mesh, occluder, {4, 16, 1, true}));
+    reference = new Assembly(assemble_exchange_areas(mesh, occluder, {1600, 1600, 7}));
+  }
+  static void TearDownTestSuite() {
+    delete assembly;
+    delete reference;
+  }
+  static double difference(const SampledEntry& entry) {
+    return assembly->exchange_areas.at(entry.first, entry.second) -
+           reference->exchange_areas.at(entry.first, entry.second);
+  }
+  static inline Assembly* assembly = nullptr;
+  static inline Assembly* reference = nullptr;
+};
+
+TEST_F(Calibration, StandardErrorsOfPartlyVisiblePairsHold) {
+  double pairs = 0;
+  double within = 0;
+  double squares = 0;
+  for (const SampledEntry& entry : assembly->sampled) {
+    if (!entry.is_partial) continue;
+    const double share = assembly->exchange_areas.at(entry.first, entry.second) / entry.unoccluded;
+    const double z = difference(entry) / (standard_error(assembly->error, share) * entry.unoccluded);
+    ++pairs;
+    within += std::abs(z) <= 1.96 ? 1 : 0;
+    squares += z * z;
+  }
+  ASSERT_GT(pairs, 2000);
+  // Errors are not quite normal, and those of pairs with few blocked rays are estimated from other pairs.
+  EXPECT_GT(within / pairs, 0.90);
+  EXPECT_LT(within / pairs, 0.99);
+  EXPECT_GT(std::sqrt(squares / pairs), 0.8);
+  EXPECT_LT(std::sqrt(squares / pairs), 1.25);
+}
+
+TEST_F(Calibration, BoundsOfUnanimousPairsHold) {
+  for (const bool visible : {true, false}) {
+    const SamplingError::Unanimous& kind = visible ? assembly->error.visible : assembly->error.occluded;
+    EXPECT_GT(kind.pairs, 100U);
+    double pairs = 0;
+    double within = 0;
+    for (const SampledEntry& entry : assembly->sampled) {
+      const bool is_visible = assembly->exchange_areas.at(entry.first, entry.second) > 0;
+      if (entry.is_partial || is_visible != visible) continue;
+      // Of a pair that counts as hidden the unoccluded value may be unknown: then the reference is at most that.
+      const double unoccluded =
+          std::max<double>(entry.unoccluded, reference->exchange_areas.at(entry.first, entry.second));
+      ++pairs;
+      within += std::abs(difference(entry)) <= bound_on_miss(kind) * unoccluded ? 1 : 0;
+    }
+    ASSERT_GT(pairs, 2000);
+    EXPECT_GT(within / pairs, 0.95);
+  }
+}
+
+// Probes do miss something, and the audit sees it: its rate of misses is that of the reference.
+TEST_F(Calibration, TheAuditFindsWhatProbesMiss) {
+  const SamplingError::Unanimous& kind = assembly->error.visible;
+  EXPECT_GT(kind.missed, 0U);
+  EXPECT_LT(kind.missed, kind.pairs / 3);
+}
+
+}  // namespace
+}  // namespace patchlight
