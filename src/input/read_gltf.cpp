@@ -202,10 +202,10 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
-  // tinygltf calls itself for each level of the JSON, and large pictures take long to decode.
-  constexpr unsigned most_seconds = 600;
+  // tinygltf calls itself for each level of the JSON. Pictures, in files of their own, take time and memory to decode.
+  constexpr ChildLimits limits = {.seconds = 600, .bytes = std::uint64_t{8} << 30U};
   return read_isolated(
-      file.string(), [&] { return scene_of(file, metres_per_unit); }, most_seconds);
+      file.string(), [&] { return scene_of(file, metres_per_unit); }, limits);
 }
 
 }  // namespace patchlight

@@ -16,7 +16,7 @@ namespace {
 
 std::string refusal(const std::function<Scene()>& read) {
   try {
-    read_isolated("room.dae", read, 1);
+    read_isolated("room.dae", read, {.seconds = 1});
   } catch (const InputError& error) {
     return error.what();
   }
@@ -58,12 +58,12 @@ TEST(ReadIsolated, WhateverElseHappensIsARefusalOfTheFile) {
 
 // assimp reads on without an end at some damaged numbers, and would take all memory of the machine.
 TEST(ReadIsolated, MemoryIsLimited) {
-  const auto take_six_gigabytes = [] {
+  const auto take_three_gigabytes = [] {
     std::vector<std::unique_ptr<char[]>> taken;
-    while (taken.size() < 6) taken.push_back(std::make_unique_for_overwrite<char[]>(std::size_t{1} << 30U));
+    while (taken.size() < 3) taken.push_back(std::make_unique_for_overwrite<char[]>(std::size_t{1} << 30U));
     return Scene();
   };
-  EXPECT_EQ(refusal(take_six_gigabytes).rfind("room.dae: ", 0), 0U);
+  EXPECT_EQ(refusal(take_three_gigabytes).rfind("room.dae: ", 0), 0U);
 }
 
 }  // namespace
