@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache git
   libeigen3-dev libembree-dev libopenmesh-dev libvtk9-dev libtbb-dev libboost-dev
   libtinyobjloader-dev libassimp-dev libtinygltf-dev libcli11-dev nlohmann-json3-dev libssl-dev
-  libgtest-dev python3 clang-format dpkg-dev file
+  libgtest-dev python3 clang-format clang-14 libclang-rt-14-dev dpkg-dev file
 )
 
 missing=()
@@ -24,7 +24,7 @@ if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo: ${missing[*]}" >&2; exit 1; }
   as_root=(sudo)
 fi
-echo "packages: installing ${missing[*]} (about 180 MB to download)"
+echo "packages: installing ${missing[*]} (about 190 MB to download)"
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 echo "packages: done"

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <exception>
 #include <fcntl.h>
+#include <filesystem>
+#include <fstream>
 #include <new>
 #include <string_view>
 #include <sys/prctl.h>
@@ -26,16 +28,34 @@ constexpr char sends_scene = 'S';
 constexpr char sends_refusal = 'R';  // the text of an InputError
 constexpr char sends_failure = 'F';  // any other exception's
 
+constexpr rlim_t bytes_per_byte_of_file = 300;
+
+// Limits the memory that this process takes beyond what it has.
+void limit_memory(const std::string& file, rlim_t most_bytes) {
+  // proc(5): the sizes, in pages, of the program, what is resident, shared, text, lib, data and stack
+  std::ifstream statm("/proc/self/statm");
+  rlim_t pages = 0;
+  for (int field = 0; field < 6; ++field) statm >> pages;
+  if (!statm) return;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  const rlim_t more = most_bytes + (error ? 0 : bytes_per_byte_of_file * size);
+  const rlim_t bytes = pages * static_cast<rlim_t>(sysconf(_SC_PAGE_SIZE)) + more;
+  const rlimit limit = {bytes, bytes};
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
 // A child ends with its parent, without a trace on the terminal or the disk.
-void prepare_child(unsigned most_seconds) {
+void prepare_child(const std::string& file, const ChildLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
     std::signal(signal, SIG_DFL);
   }
-  const rlimit seconds = {most_seconds, most_seconds};
+  const rlimit seconds = {limits.seconds, limits.seconds};
   setrlimit(RLIMIT_CPU, &seconds);
   const rlimit no_core_dump = {0, 0};
   setrlimit(RLIMIT_CORE, &no_core_dump);
+  limit_memory(file, limits.bytes);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
@@ -104,14 +124,14 @@ Scene scene_from(const std::string& message, int status, const std::string& file
 
 }  // namespace
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, unsigned most_seconds) {
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t child = fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (child == 0) {
     ::close(ends[0]);
-    prepare_child(most_seconds);
+    prepare_child(file, limits);
     _exit(write_all(ends[1], message_from(read)) ? 0 : 1);
   }
   ::close(ends[1]);

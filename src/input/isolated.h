@@ -2,14 +2,22 @@
 
 #include "patchlight/scene/scene.h"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
 namespace patchlight {
 
+/// What a child process may take. A house of 2 MB takes 0.1 s and 0.1 GB; after a damaged number assimp may read on
+/// without an end.
+struct ChildLimits {
+  unsigned seconds = 60;                          ///< of processor time
+  std::uint64_t bytes = std::uint64_t{1} << 30U;  ///< of memory, besides 300 for each byte of the file
+};
+
 /// What `read` returns, found in a child process: libraries that read rich formats can crash on damaged files, and then
 /// only the child ends. \throws InputError as `read` does, and naming `file` when the child crashed, threw anything
-/// else, ran out of memory or took more than `most_seconds` of processor time; a house of 2 MB takes 0.1.
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, unsigned most_seconds = 60);
+/// else or exceeded a limit.
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits = {});
 
 }  // namespace patchlight

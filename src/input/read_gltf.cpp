@@ -46,23 +46,23 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::ui
 class Collector {
  public:
   Collector(const tinygltf::Model& model, Scene scene)
-      : model_(model), scene_(std::move(scene)), is_above_(model.nodes.size(), 0) {
+      : model_(model), scene_(std::move(scene)), is_added_(model.nodes.size(), 0) {
     // The last material is the one of primitives without a material.
     scene_.materials.push_back(default_material());
   }
 
   void add_node(int index, const Eigen::Matrix4d& above) {
     const bool exists = index >= 0 && static_cast<std::size_t>(index) < model_.nodes.size();
-    if (!exists || is_above_[static_cast<std::size_t>(index)]) {
+    // Section 3.5.2: no node is below two others. A few that are, below each other, would be added millions of times.
+    if (!exists || is_added_[static_cast<std::size_t>(index)]) {
       throw InputError(scene_.file, "node " + std::to_string(index) +
-                                        " is missing, or below itself, in the tree of nodes; export the model anew");
+                                        " is missing, or there twice, in the tree of nodes; export the model anew");
     }
+    is_added_[static_cast<std::size_t>(index)] = 1;
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
     const Eigen::Matrix4d to_scene = above * transformation(node);
     if (node.mesh >= 0) add_mesh(node, index, to_scene);
-    is_above_[static_cast<std::size_t>(index)] = 1;
     for (const int child : node.children) add_node(child, to_scene);
-    is_above_[static_cast<std::size_t>(index)] = 0;
   }
 
   Scene scene() && {
@@ -140,7 +140,7 @@ class Collector {
 
   const tinygltf::Model& model_;
   Scene scene_;
-  std::vector<std::uint8_t> is_above_;  // per node: it is being added, or one below it
+  std::vector<std::uint8_t> is_added_;  // per node
   std::size_t without_material_ = 0;
   std::size_t other_primitives_ = 0;
   std::size_t colored_ = 0;
@@ -202,10 +202,10 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
-  // tinygltf calls itself for each level of the JSON, and large pictures take long to decode.
-  constexpr unsigned most_seconds = 600;
+  // tinygltf calls itself for each level of the JSON. Pictures, in files of their own, take time and memory to decode.
+  constexpr ChildLimits limits = {.seconds = 600, .bytes = std::uint64_t{8} << 30U};
   return read_isolated(
-      file.string(), [&] { return scene_of(file, metres_per_unit); }, most_seconds);
+      file.string(), [&] { return scene_of(file, metres_per_unit); }, limits);
 }
 
 }  // namespace patchlight

@@ -116,6 +116,7 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
       const std::size_t face = scene.polygons.size();
       Polygon polygon;
       for (int k = 0; k < count; ++k) polygon.corners.push_back(static_cast<std::uint32_t>((corner++)->vertex_index));
+      if (!scan.faces[face].corners.empty()) polygon.corners = scan.faces[face].corners;
       polygon.material = materials[face];
       polygon.group = group->second;
       polygon.line = scan.faces[face].line;
@@ -133,6 +134,7 @@ std::vector<std::string> notes_on(const ObjScan& scan, const Palette& palette) {
   note("lines (l), ignored", scan.polylines);
   note("points (p), ignored", scan.points);
   note("free-form surfaces (surf), ignored", scan.free_form_surfaces);
+  note("colours of vertices, ignored", scan.colored_vertices);
   for (std::string& sentence : notes_on_ignored(palette.materials)) notes.push_back(std::move(sentence));
   return notes;
 }
@@ -147,9 +149,14 @@ std::string first_few(const std::vector<std::string>& texts) {
 
 std::vector<Problem> problems_with_names(const std::string& file, const ObjScan& scan,
                                          std::span<const MtlMaterial> defined) {
+  std::vector<std::uint8_t> has_face(scan.materials.size(), 0);
+  for (const ObjFace& face : scan.faces) {
+    if (face.material != no_material) has_face[face.material] = 1;
+  }
   std::vector<std::string> unknown;
-  for (const ObjName& used : scan.materials) {
-    if (find_material(defined, used.name) == defined.size() && used.name != default_name) {
+  for (std::size_t m = 0; m < scan.materials.size(); ++m) {
+    const ObjName& used = scan.materials[m];
+    if (has_face[m] && find_material(defined, used.name) == defined.size() && used.name != default_name) {
       unknown.push_back("'" + used.name + "' (" + at(file, used.line) + ")");
     }
   }

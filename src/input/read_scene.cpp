@@ -95,8 +95,10 @@ std::vector<Material> changed(std::vector<Material> materials, const std::vector
     if (problem.kind != ProblemKind::zero_area && problem.kind != ProblemKind::self_intersecting) continue;
     reasons += (reasons.empty() ? "" : "; ") + problem.what;
   }
-  throw InputError(scene.file, reasons.empty() ? "found no faces; expected at least one polygon"
-                                               : "none of its faces can be used: " + reasons);
+  if (!reasons.empty()) throw InputError(scene.file, "none of its faces can be used: " + reasons);
+  std::string others;
+  for (const std::string& note : scene.notes) others += "; " + note;
+  throw InputError(scene.file, "found no faces; expected at least one polygon" + others);
 }
 
 // The extension in lower case, without its dot; the standard input is OBJ.

@@ -6,12 +6,14 @@
 
 #include <charconv>
 #include <map>
+#include <span>
+#include <utility>
 
 namespace patchlight {
 namespace {
 
 // tinyobjloader counts the corners of a face in one byte.
-constexpr std::size_t most_corners = 255;
+constexpr std::size_t most_counted_corners = 255;
 
 // The largest vertex number a face uses, to be compared with the number of vertices when the file has been read: a face
 // may stand above its vertices.
@@ -63,20 +65,28 @@ std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, 
 // The vertex numbers of a face.
 std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& statement, std::size_t vertices_above,
                                        const std::string& where) {
-  const std::size_t count = statement.size() - 1;
-  if (count > most_corners) {
-    throw InputError(where, "this face has " + std::to_string(count) + " corners; expected at most " +
-                                std::to_string(most_corners) + ". Cut it into smaller faces");
-  }
   std::vector<std::int64_t> corners;
-  for (std::size_t k = 1; k <= count; ++k) corners.push_back(vertex_number(statement[k], vertices_above, where));
+  for (std::size_t k = 1; k < statement.size(); ++k)
+    corners.push_back(vertex_number(statement[k], vertices_above, where));
   return corners;
 }
 
-std::string face_statement(const std::vector<std::int64_t>& corners) {
+std::string face_statement(std::span<const std::int64_t> corners) {
   std::string statement = "f";
   for (const std::int64_t corner : corners) statement.append(" ").append(std::to_string(corner));
-  return statement;
+  return statement + "\n";
+}
+
+// The scan with one more face of at least three corners.
+ObjScan with_face(ObjScan scan, ObjFace face, std::span<const std::int64_t> corners) {
+  if (corners.size() <= most_counted_corners) {
+    scan.geometry += face_statement(corners);
+  } else {
+    scan.geometry += face_statement(corners.first(3));
+    for (const std::int64_t corner : corners) face.corners.push_back(static_cast<std::uint32_t>(corner - 1));
+  }
+  scan.faces.push_back(std::move(face));
+  return scan;
 }
 
 void check_vertices_exist(const HighestVertex& highest, std::size_t vertices, const std::string& file) {
@@ -100,6 +110,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
     if (keyword == "v") {
       scan.vertices.push_back(vertex(statement, at(file, line.number)));
       scan.geometry += line.text + "\n";
+      scan.colored_vertices += statement.size() == 7;  // x y z r g b
     } else if (keyword == "f") {
       const auto corners = face_corners(statement, scan.vertices.size(), at(file, line.number));
       for (const std::int64_t corner : corners) {
@@ -109,8 +120,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
         scan.short_faces.push_back(line.number);
         continue;
       }
-      scan.faces.push_back({line.number, material});
-      scan.geometry += face_statement(corners) + "\n";
+      scan = with_face(std::move(scan), {line.number, material, {}}, corners);
     } else if (keyword == "g" || keyword == "o") {
       scan.geometry += line.text + "\n";
     } else if (keyword == "usemtl") {

@@ -22,6 +22,7 @@ inline constexpr std::uint32_t no_material = ~std::uint32_t{0};
 struct ObjFace {
   std::uint32_t line = 0;
   std::uint32_t material = no_material;  ///< index into ObjScan::materials
+  std::vector<std::uint32_t> corners;    ///< from 0, when there are more than tinyobjloader can count; else empty
 };
 
 /// An OBJ file whose numbers and indices are known to be good.
@@ -30,16 +31,18 @@ struct ObjScan {
   std::vector<ObjFace> faces;      ///< in the file's order
   std::vector<ObjName> materials;  ///< the names after usemtl, each once
   std::vector<ObjName> libraries;  ///< what follows each mtllib
-  std::string geometry;            ///< the v, f, g and o statements alone, one per line; faces with vertices only
+  std::string geometry;            ///< the v, f, g and o statements alone, one per line; faces with vertices only, and
+                                   ///< with the first three alone where ObjFace::corners has them all
   std::vector<std::uint32_t> short_faces;  ///< lines of faces with fewer than 3 corners, which are left out
   std::size_t polylines = 0;               ///< l statements
   std::size_t points = 0;                  ///< p statements
+  std::size_t colored_vertices = 0;        ///< v statements with a colour after the coordinates
   std::size_t free_form_surfaces = 0;      ///< surf statements
 };
 
 /// Checks the statements of an OBJ file that tinyobjloader takes on trust, and records where they stand.
-/// \throws InputError naming `file` and the line: a coordinate that is not a finite number, a face with more than
-/// 255 corners, a corner that names no vertex.
+/// \throws InputError naming `file` and the line: a coordinate that is not a finite number, a corner that names no
+/// vertex.
 ObjScan scan_obj(std::string_view text, const std::string& file);
 
 }  // namespace patchlight

@@ -17,6 +17,9 @@ constexpr double relative_area_tolerance = 1e-12;
 // Farther away, squares of areas would come near the largest double. Metres.
 constexpr double farthest_vertex = 1e15;
 
+// The checks of a polygon's outline take a time that goes as the square of this: a second for so many.
+constexpr std::size_t most_corners = 10000;
+
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
@@ -128,6 +131,11 @@ void check_vertices(const Scene& scene) {
     throw InputError(scene.file, "a vertex lies over 1e15 m from the origin; expected a model of earthly size");
   }
   for (const Polygon& polygon : scene.polygons) {
+    if (polygon.corners.size() > most_corners) {
+      throw InputError(place_of(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
+                                                     " corners; expected at most " + std::to_string(most_corners) +
+                                                     ". Cut it into smaller faces");
+    }
     for (const std::uint32_t corner : polygon.corners) {
       if (corner < scene.vertices.size()) continue;
       throw InputError(place_of(scene, polygon), "this face uses vertex " + std::to_string(corner + 1) + " of " +

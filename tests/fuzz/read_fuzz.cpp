@@ -1,5 +1,5 @@
 // Any bytes read as a model of the format PATCHLIGHT_FUZZ_FORMAT give a scene that passes its own check, or an
-// InputError of one line that names the file.
+// InputError of one line that names the file. For mtl they are the material file of an OBJ file of one face.
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
@@ -8,33 +8,49 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 
 using namespace patchlight;
 
 namespace {
 
-// In memory, so that the disk is left alone; removed when the process ends.
-const std::string& model_file() {
-  static const std::string file =
-      "/dev/shm/patchlight_fuzz_" + std::to_string(::getpid()) + "." + PATCHLIGHT_FUZZ_FORMAT;
-  static const int registered = std::atexit([] { std::remove(file.c_str()); });
-  static_cast<void>(registered);
-  return file;
+constexpr std::string_view format = PATCHLIGHT_FUZZ_FORMAT;
+
+// Files in memory, so that the disk is left alone.
+std::string file_named(std::string_view extension) {
+  return "/dev/shm/patchlight_fuzz_" + std::to_string(::getpid()) + "." + std::string(extension);
+}
+
+const std::string fuzzed = file_named(format);
+const std::string model = file_named(format == "mtl" ? "obj" : format);
+
+void remove_files() {
+  std::remove(fuzzed.c_str());
+  std::remove(model.c_str());
 }
 
 }  // namespace
 
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  if (format == "mtl") {
+    std::ofstream(model) << "mtllib " << fuzzed.substr(fuzzed.rfind('/') + 1)
+                         << "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+  }
+  return std::atexit(remove_files);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  std::ofstream(model_file(), std::ios::binary)
+  std::ofstream(fuzzed, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
   try {
-    const Scene scene = read_scene(model_file());
+    const Scene scene = read_scene(model);
     check(scene);
-    if (scene.sha256.empty() || scene.file != model_file()) std::abort();
+    if (scene.sha256.empty() || scene.file != model) std::abort();
   } catch (const InputError& error) {
     const std::string message = error.what();
-    if (message.find(model_file()) != 0 || message.find('\n') != std::string::npos) std::abort();
+    const bool is_named = message.find(fuzzed) == 0 || message.find(model) == 0;
+    if (!is_named || message.find('\n') != std::string::npos) std::abort();
   }
   return 0;
 }

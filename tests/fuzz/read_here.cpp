@@ -5,7 +5,7 @@
 
 namespace patchlight {
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, unsigned) {
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits&) {
   try {
     return read();
   } catch (const InputError&) {

@@ -89,10 +89,11 @@ std::string place_of(const Scene& scene, const Polygon& polygon);
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
 
-/// Checks what repair() relies on: finite vertices, corners in range. \throws InputError naming the file and line.
+/// Checks what repair() relies on: finite vertices, corners in range, at most 10,000 corners per polygon.
+/// \throws InputError naming the file and line.
 void check_vertices(const Scene& scene);
 
-/// Checks what every later step relies on: finite vertices, corners in range, at least one polygon, planar polygons
+/// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
 /// with area, reflectance in [0, 1], exitance finite and not negative. \throws InputError naming the file and line, or
 /// the material.
 void check(const Scene& scene);

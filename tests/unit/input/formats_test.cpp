@@ -333,6 +333,17 @@ TEST_F(Formats, GltfNestedDeeperThanTheStackIsRefused) {
   }
 }
 
+TEST_F(Formats, AGltfNodeIsInTheTreeOnce) {
+  // Each of 60 nodes twice below the one before would be 2^60; and a node below itself.
+  std::string nodes;
+  for (int k = 1; k < 60; ++k) nodes += R"({"children": [)" + std::to_string(k) + ", " + std::to_string(k) + "]}, ";
+  for (const std::string& tree : {nodes + "{}", std::string(R"({"children": [0]})")}) {
+    const auto file =
+        write("tree.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [)" + tree + "]}");
+    EXPECT_NE(refusal(file).find(" is missing, or there twice, in the tree"), std::string::npos);
+  }
+}
+
 TEST_F(Formats, TheFormatCanBeGiven) {
   ReadOptions options;
   options.format = "off";

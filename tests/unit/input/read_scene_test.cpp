@@ -5,6 +5,7 @@
 #include "model_files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 #include <numbers>
@@ -186,13 +187,14 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
         "newmtl film\nKd .5 .5 .5\nTr 0.5\n"
         "newmtl mirror\nKd .5 .5 .5\nillum 3\n"
         "newmtl bare\nKa 2 2 2\n");
-  std::string text = "mtllib m.mtl\n" + square + "l 1 2\nl 2 3\np 4\n";
+  std::string text = "mtllib m.mtl\n" + square + "v 0 0 1 1 0 0\nl 1 2\nl 2 3\np 4\n";
   for (const char* name : {"plain", "glossy", "painted", "veil", "film", "mirror", "bare"}) {
     text += std::string("usemtl ") + name + "\nf 1 2 3\n";
   }
   const Scene scene = read_scene(write("m.obj", text));
-  for (const char* note : {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted", "opaque: veil, film",
-                           "matt: mirror", "texture): bare", "lines (l), ignored: 2", "points (p), ignored: 1"}) {
+  for (const char* note :
+       {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted", "opaque: veil, film", "matt: mirror",
+        "texture): bare", "lines (l), ignored: 2", "points (p), ignored: 1", "colours of vertices, ignored: 1"}) {
     EXPECT_TRUE(any_contains(scene.notes, note)) << note;
   }
   EXPECT_FALSE(any_contains(scene.notes, "plain"));
@@ -253,6 +255,8 @@ TEST_F(ReadScene, RefusesUnusableFilesNamingThem) {
            {folder_, "folder"},
            {write("empty.obj", ""), "empty"},
            {write("comment.obj", "# nothing\n"), "no faces"},
+           {write("lines.obj", square + "l 1 2\nl 2 3\n"),
+            "no faces; expected at least one polygon; lines (l), ignored: 2"},
            {write("m.md", "solid"), "'.md' is not known; expected one of .obj, .ply"},
            {write("plain", "solid"), "expected one of .obj"},
            {"/dev/null", "extension"}}) {
@@ -265,8 +269,8 @@ TEST_F(ReadScene, RefusesUnusableFilesNamingThem) {
 TEST_F(ReadScene, RefusesBadStatementsNamingTheLine) {
   write("m.mtl", materials);
   const std::string head = "mtllib m.mtl\n" + square + "usemtl white\n";  // lines 1 to 6
-  std::string polygon_of_256 = "f";
-  for (int k = 0; k < 64; ++k) polygon_of_256 += " 1 2 3 4";
+  std::string many_corners = "f 1";
+  for (int k = 0; k < 2500; ++k) many_corners += " 1 2 3 4";
   for (const auto& [statement, part] :
        std::vector<std::pair<std::string, std::string>>{{"v 0 0 nan", "'nan'"},
                                                         {"v inf 0 0", "'inf'"},
@@ -281,7 +285,7 @@ TEST_F(ReadScene, RefusesBadStatementsNamingTheLine) {
                                                         {"f 1 2 99999999999999999999", "'99999999999999999999'"},
                                                         {"f 1 2 5", "vertex 5"},
                                                         {"f 1 2 -5", "'-5'"},
-                                                        {polygon_of_256, "256 corners"}}) {
+                                                        {many_corners, "10001 corners"}}) {
     const auto file = write("m.obj", head + statement + "\nf 1 2 3 4\n");
     const std::string message = refusal(file);
     EXPECT_EQ(message.rfind(file.string() + ":7: ", 0), 0U) << message;
@@ -333,6 +337,35 @@ TEST_F(ReadScene, UndefinedMaterialsAreGreyKeepTheirNamesAndAreReported) {
   EXPECT_EQ(scene.problems[1].kind, ProblemKind::unknown_material);
   EXPECT_TRUE(contains(scene.problems[1].what, "'brick' (" + scene.file + ":6)")) << scene.problems[1].what;
   EXPECT_EQ(scene.problems[2].kind, ProblemKind::no_material);
+}
+
+TEST_F(ReadScene, AMaterialThatNoFaceUsesNeedNotBeDefined) {
+  const Scene scene = read_scene(write("m.obj", square + "usemtl\nf 1 2 3 4\nusemtl brick\n"));
+  EXPECT_EQ(find(scene, ProblemKind::unknown_material), nullptr);
+}
+
+TEST_F(ReadScene, AFaceMayHaveMoreCornersThanAByteCounts) {
+  // A regular polygon of n corners on the unit circle: its area is n/2 sin(2 pi / n).
+  for (const int n : {255, 256, 257, 2000}) {
+    std::string text = square + "f 1 2 3 4\n";
+    std::string positive = "f";
+    std::string negative = "f";
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2 * std::numbers::pi * k / n;
+      text += "v " + std::to_string(std::cos(angle)) + ' ' + std::to_string(std::sin(angle)) + " 2\n";
+      positive += ' ' + std::to_string(5 + k) + "//1";
+      negative += ' ' + std::to_string(k - n);
+    }
+    for (const std::string& face : {positive, negative}) {
+      const Scene scene = read_scene(write("m.obj", text + face + "\nf 1 2 3\n"));
+      ASSERT_EQ(scene.polygons.size(), 3U);
+      EXPECT_EQ(scene.polygons[1].corners.size(), static_cast<std::size_t>(n));
+      EXPECT_EQ(scene.polygons[2].corners.size(), 3U);
+      // std::to_string gives six digits, and each corner counts for at most 2 pi / n of the area.
+      EXPECT_NEAR(front_normal(scene, 1).z(), 1, 1e-6);
+      EXPECT_NEAR(area_vector(corner_points(scene, 1)).norm(), n / 2.0 * std::sin(2 * std::numbers::pi / n), 1e-5);
+    }
+  }
 }
 
 TEST_F(ReadScene, ShortFacesAreLeftOutAndCounted) {

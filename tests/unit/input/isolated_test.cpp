@@ -1,0 +1,70 @@
+#include "input/isolated.h"
+
+#include "patchlight/base/error.h"
+
+#include "support/scenes.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+std::string refusal(const std::function<Scene()>& read) {
+  try {
+    read_isolated("room.dae", read, {.seconds = 1});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "was read";
+  return {};
+}
+
+TEST(ReadIsolated, GivesWhatIsRead) {
+  Scene scene = test::furnished_room(0.5);
+  scene.file = "room.dae";
+  scene.notes = {"a note"};
+  const Scene read = read_isolated("room.dae", [&] { return scene; });
+  EXPECT_EQ(read.vertices, scene.vertices);
+  EXPECT_EQ(read.polygons.size(), scene.polygons.size());
+  EXPECT_EQ(read.materials.size(), scene.materials.size());
+  EXPECT_EQ(read.notes, scene.notes);
+}
+
+TEST(ReadIsolated, ARefusalKeepsItsWords) {
+  EXPECT_EQ(refusal([]() -> Scene { throw InputError("room.dae", "is odd"); }), "room.dae: is odd");
+}
+
+TEST(ReadIsolated, WhateverElseHappensIsARefusalOfTheFile) {
+  const std::vector<std::function<Scene()>> readers = {
+      []() -> Scene { throw std::runtime_error("odd"); },
+      []() -> Scene { std::abort(); },
+      []() -> Scene {
+        for (std::atomic<bool> forever = true; forever;) {
+        }
+        return {};
+      },
+  };
+  for (const auto& read : readers) {
+    const std::string message = refusal(read);
+    EXPECT_EQ(message.rfind("room.dae: ", 0), 0U) << message;
+    EXPECT_NE(message.find("export it anew"), std::string::npos) << message;
+  }
+}
+
+// assimp reads on without an end at some damaged numbers, and would take all memory of the machine.
+TEST(ReadIsolated, MemoryIsLimited) {
+  const auto take_three_gigabytes = [] {
+    std::vector<std::unique_ptr<char[]>> taken;
+    while (taken.size() < 3) taken.push_back(std::make_unique_for_overwrite<char[]>(std::size_t{1} << 30U));
+    return Scene();
+  };
+  EXPECT_EQ(refusal(take_three_gigabytes).rfind("room.dae: ", 0), 0U);
+}
+
+}  // namespace
+}  // namespace patchlight
