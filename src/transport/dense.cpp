@@ -2,8 +2,12 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "base/target_clones.h"
+
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace patchlight {
@@ -31,7 +35,7 @@ class DenseTransport : public RowTransport {
   Eigen::MatrixXd form_factors(PatchRange from, PatchRange to) const override;
 
  private:
-  // Adds sum over the patches j of block J of S_ij B_j to the receivers' rows of `sum`.
+  // Adds the sum over the patches j of block J of S_ij B_j to the receivers' rows of `sum`.
   void gather_block(PatchRange receivers, PatchIndex J, const FieldView& radiosity, Field& sum) const;
 
   ExchangeAreas S_;
@@ -39,19 +43,37 @@ class DenseTransport : public RowTransport {
   Eigen::VectorXd area_;
 };
 
+// out += T b, with T a tile or, for one left of the diagonal, its transpose. Loops become vector instructions.
+PATCHLIGHT_TARGET_CLONES
+void gather_tile(const float* tile, bool transposed, const double* b, double* out) {
+  for (std::size_t r = 0; r < edge; ++r) {
+    const float* const row = tile + r * edge;
+    if (transposed) {
+      for (std::size_t c = 0; c < edge; ++c) out[c] += static_cast<double>(row[c]) * b[r];
+      continue;
+    }
+    std::array<double, 16> sum{};
+    for (std::size_t c = 0; c < edge; c += 16) {
+      for (std::size_t k = 0; k < 16; ++k) sum[k] += static_cast<double>(row[c + k]) * b[c + k];
+    }
+    out[r] += std::accumulate(sum.begin(), sum.end(), 0.0);
+  }
+}
+
 void DenseTransport::gather_block(PatchRange receivers, PatchIndex J, const FieldView& radiosity, Field& sum) const {
-  const PatchIndex end = std::min(S_.size(), (J + 1) * edge);
-  for (PatchIndex i = receivers.begin; i < receivers.end; ++i) {
-    const PatchIndex I = i / edge;
-    // The row of a tile right of the diagonal, the column of one left of it.
+  const Eigen::Index first = static_cast<Eigen::Index>(J) * edge;
+  const Eigen::Index columns = std::min<Eigen::Index>(edge, size() - first);
+  for (PatchIndex I = receivers.begin / edge; I * edge < receivers.end; ++I) {
     const std::span<const float> tile = I <= J ? S_.tile(I, J) : S_.tile(J, I);
-    const std::size_t first = I <= J ? static_cast<std::size_t>(i % edge) * edge : i % edge;
-    const std::size_t step = I <= J ? 1 : edge;
-    for (PatchIndex j = J * edge; j < end; ++j) {
-      const auto entry = static_cast<double>(tile[first + step * (j % edge)]);
-      for (Eigen::Index band = 0; band < radiosity.cols(); ++band) {
-        sum(i - receivers.begin, band) += entry * radiosity(j, band);
-      }
+    // The receivers' rows of this tile.
+    const Eigen::Index from = std::max<Eigen::Index>(receivers.begin, static_cast<Eigen::Index>(I) * edge);
+    const Eigen::Index to = std::min<Eigen::Index>(receivers.end, static_cast<Eigen::Index>(I + 1) * edge);
+    for (Eigen::Index band = 0; band < radiosity.cols(); ++band) {
+      Eigen::Matrix<double, edge, 1> b = Eigen::Matrix<double, edge, 1>::Zero();
+      Eigen::Matrix<double, edge, 1> out = Eigen::Matrix<double, edge, 1>::Zero();
+      b.head(columns) = radiosity.col(band).segment(first, columns).matrix();
+      gather_tile(tile.data(), I > J, b.data(), out.data());
+      sum.col(band).segment(from - receivers.begin, to - from) += out.segment(from % edge, to - from).array();
     }
   }
 }

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "base/target_clones.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -18,7 +20,9 @@ constexpr std::size_t stripes = 16;
 // Bands side by side in rows padded to whole tiles.
 using Bands = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Written so that the compiler turns the loops into vector instructions.
 // out_I += T b_J and, for J > I, out_J += T^T b_I for one band.
+PATCHLIGHT_TARGET_CLONES
 void multiply_tile(std::span<const float> tile, bool diagonal, const double* b_I, const double* b_J, double* out_I,
                    double* out_J) {
   for (std::size_t r = 0; r < edge; ++r) {

@@ -47,7 +47,7 @@ def main(build, version, cmake, _compiler):
         assert not any(package.endswith("-dev") for package in needed), needed
         wanted = set(re.findall(r"lib[a-z0-9+-]+-dev|nlohmann-json3-dev",
                                 (ROOT / "scripts" / "install_packages.sh").read_text()))
-        missing = wanted - {"libcli11-dev", "libgtest-dev"} - set(dependencies(debs["libpatchlight-dev"]))
+        missing = wanted - {"libcli11-dev", "libgtest-dev", "libclang-rt-14-dev", "libbenchmark-dev"} - set(dependencies(debs["libpatchlight-dev"]))
         assert not missing, f"libpatchlight-dev does not depend on {missing}"
 
         usr = folder / "root" / "usr"
