@@ -81,10 +81,9 @@ TEST(WallWithoutThickness, IsTightHoweverTheRoomIsTurned) {
   }
 }
 
-// Five pieces whose corners lie on each other's edges. In files with single precision, and after any motion in any
-// case, these are not exactly on them: cracks of 1e-7 of the room's size 1000 m from the origin, and rays may slip
-// through. A crack along all of the wall's 6 m of seams passes 6 x 1e-7 of 1 m^2; a ray of 16 of a pair that meets one
-// carries 1 / 16 of a pair's share of 1e-3: 1e-4.
+// Five pieces whose corners lie on each other's edges: turned, and above all in single precision, not exactly. 1000 m
+// from the origin that rounds to 3e-5 m, so that cracks along 6.6 m of seams have some 1e-4 m^2. The wall's 1 m^2 is a
+// tenth of the lit surface: 1e-5 of the flux leaks, which a few rays know to a factor of ten.
 TEST(TJunctions, LeakNoMoreThanATenThousandth) {
   const Scene room = divided_room({wall_piece(0, .37, 0, 1), wall_piece(.37, 1, 0, .21), wall_piece(.37, 1, .21, .613),
                                    wall_piece(.37, .71, .613, 1), wall_piece(.71, 1, .613, 1)});
@@ -106,9 +105,8 @@ TEST(TJunctions, LeakNoMoreThanATenThousandth) {
   }
 }
 
-// Two million rays from the floor on one side of a wall to any point of the other side of the room. Single precision
-// tells no position nearer than 1e-7 of the extent: a ray that near to the foot may pass, and the share of these is
-// some 1e-7 x 3.5 m / 2 m.
+// A million rays from the floor on one side of a wall to any point of the other side of the room. Single precision
+// tells no position nearer than 1e-7 of the extent: a ray that near to the foot may pass, which is a share of 1e-7.
 TEST(WallOnAFloor, StopsAMillionRays) {
   const Scene room = with_quad(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(2, 2, 2), true),
                                {Point(1, 0, 0), Point(1, 2, 0), Point(1, 2, 2), Point(1, 0, 2)});

@@ -59,7 +59,6 @@ Scene two_squares(double gap) {
 TEST(ThinGap, SquaresSeeEachOtherBarTheGap) {
   for (const double gap : {1e-3, 1e-4, 1e-6}) {
     for (const Eigen::Affine3d& motion : turns(5)) {
-      // A patch of edge h loses up to 2 g / h: with h = 0.1 and g = 1e-3 more than the 1e-4 that is promised for 1e-6.
       for (const double max_edge : {2.0, 0.1001}) {
         const Assembled result = assembled(moved(two_squares(gap), motion), max_edge);
         const double edge = std::min(1.0, max_edge);
@@ -73,8 +72,8 @@ TEST(ThinGap, SquaresSeeEachOtherBarTheGap) {
   }
 }
 
-// A closed box of this height: its rows add up to 1, those of the plates within 1e-4 and no row beyond 1.001. Its walls
-// are slivers of aspect 1 / height; the next test but one has those thinner than here.
+// A closed box of this height: its rows add up to 1, those of the plates within 1e-4, and no row exceeds 1.001. Its
+// walls are slivers of aspect 1 / height, which go no farther than the slivers below.
 TEST(ThinGap, NoRowOfAThinBoxExceedsOne) {
   for (const double height : {1e-3, 1e-4, 1e-5}) {
     const Scene box = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 1, height), true);
