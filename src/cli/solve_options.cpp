@@ -116,7 +116,9 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       [&options](const std::string& text) {
         options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
       });
-  add(command, "--patches", "N", "number of patches, met within 10 %; default " + std::to_string(default_patches),
+  add(command, "--patches", "N",
+      "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
+          std::to_string(default_patches),
       [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
   add(command, "--solver", "jacobi|gauss-seidel|progressive",
       "how the equations are solved; default gauss-seidel, with\n--series jacobi",

@@ -124,10 +124,10 @@ TEST(Slivers, RowsOfARoomAddUpToOne) {
   }
 }
 
-// Aspect 1e6, and with a box that hides some: still finite, and no row is off by more than a pair's sampling error of a
-// few per cent, the sliver's no more than others.
-TEST(Slivers, AreFiniteAndBoundedAtAnyAspectBehindAnything) {
-  for (const double width : {1e-4, 1e-6, 1e-7}) {
+// Aspect 1e6, thinner ones are left out by repair, and with a box that hides some: still finite, and no row is off by
+// more than a pair's sampling error of a few per cent, the sliver's no more than others.
+TEST(Slivers, AreFiniteAndBoundedBesideABox) {
+  for (const double width : {1e-4, 1e-6}) {
     for (const Scene& room : rooms_with_sliver(width)) {
       const Scene furnished = with_box(room, Point(0.3, 0.3, 0.2), Point(0.7, 0.6, 0.5), false);
       for (const Eigen::Affine3d& motion : turns(3)) {
