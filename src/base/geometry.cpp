@@ -3,6 +3,12 @@
 #include <cmath>
 
 namespace patchlight {
+namespace {
+
+// A point that is lower over a plane than this share of its distance from a point on it lies on the plane.
+constexpr double on_plane_tolerance = 1e-9;
+
+}  // namespace
 
 Vector area_vector(std::span<const Point> polygon) {
   // 1/2 sum_k (p_k - p_0) x (p_k+1 - p_0); taken about p_0 so that nothing cancels far from the origin.
@@ -32,14 +38,21 @@ Point area_centroid(std::span<const Point> polygon) {
 }
 
 std::vector<Point> clip_to_half_space(std::span<const Point> polygon, const Point& on_plane, const Vector& normal) {
+  // Corners on the plane are kept whichever way rounding moves them, so that a turned scene gives the same polygon.
+  const double length = normal.norm();
+  const auto height = [&](const Point& corner) {
+    const Vector offset = corner - on_plane;
+    const double along = normal.dot(offset);
+    return std::abs(along) <= on_plane_tolerance * length * offset.norm() ? 0 : along;
+  };
   // Sutherland and Hodgman 1974, one plane.
   std::vector<Point> kept;
   kept.reserve(polygon.size() + 1);
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Point& here = polygon[k];
     const Point& next = polygon[(k + 1) % polygon.size()];
-    const double height_here = normal.dot(here - on_plane);
-    const double height_next = normal.dot(next - on_plane);
+    const double height_here = height(here);
+    const double height_next = height(next);
     if (height_here >= 0) kept.push_back(here);
     if ((height_here > 0 && height_next < 0) || (height_here < 0 && height_next > 0)) {
       kept.push_back(here + height_here / (height_here - height_next) * (next - here));

@@ -85,7 +85,9 @@ Vector plane_normal(std::span<const Point> polygon) {
   const double size = spread.trace();
   if (!(size > 0)) return Vector::Zero();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / size);
-  return axes.eigenvectors().col(0);
+  // The sign of an eigenvector is arbitrary; the vector area of a strip is small, but it tells the front.
+  const Vector normal = axes.eigenvectors().col(0);
+  return normal.dot(area) < 0 ? Vector(-normal) : normal;
 }
 
 bool is_narrow(std::span<const Point> polygon, double width) {

@@ -24,7 +24,8 @@ Vector area_vector(std::span<const Point> polygon);
 /// Area centroid of a planar polygon; the mean of the corners when the polygon has no area.
 Point area_centroid(std::span<const Point> polygon);
 
-/// The part of a convex polygon where normal . (x - on_plane) >= 0. Empty when nothing is left.
+/// The part of a convex polygon where normal . (x - on_plane) >= 0, up to 1e-9 of the distance from `on_plane`. Empty
+/// when nothing is left.
 std::vector<Point> clip_to_half_space(std::span<const Point> polygon, const Point& on_plane, const Vector& normal);
 
 /// Solid angle in steradian, signed, of triangle (a, b, c) seen from `eye`: positive when `eye` is behind the triangle,

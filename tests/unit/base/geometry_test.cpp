@@ -38,6 +38,19 @@ TEST(ClipToHalfSpace, KeepsAllOrNothing) {
   EXPECT_TRUE(clip_to_half_space(ell, Point(0, 0, 6), Vector::UnitZ()).empty());
 }
 
+// A square standing on the plane, turned so that rounding lifts or lowers its lower corners: all four stay.
+TEST(ClipToHalfSpace, CornersOnThePlaneStayHoweverItIsTurned) {
+  const std::array<Point, 4> square{Point(0, 1, 0), Point(0, 2, 0), Point(0, 2, 1), Point(0, 1, 1)};
+  for (int k = 0; k < 100; ++k) {
+    const Eigen::AngleAxisd turn(0.1 * k, Vector(1, 2, 3).normalized());
+    std::array<Point, 4> turned;
+    for (std::size_t c = 0; c < 4; ++c) turned[c] = turn * square[c];
+    const auto kept = clip_to_half_space(turned, turn * Point(0.3, 0.4, 0), turn * Vector::UnitZ());
+    ASSERT_EQ(kept.size(), 4U);
+    for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(kept[c], turned[c]);
+  }
+}
+
 TEST(SignedSolidAngle, OfAnOctantAndOfAClosedTetrahedron) {
   const Point x(1, 0, 0);
   const Point y(0, 1, 0);

@@ -1,0 +1,156 @@
+// Models as they come: tiny, huge and far away; with faces that are no faces, and with faces turned around.
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/scene/repair.h"
+#include "patchlight/simulate.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+Request coarse(double scale = 1) {
+  Request request;
+  request.max_edge = 0.5001 * scale;
+  return request;
+}
+
+// A room turned; of 4e-6 m and of 4000 km; 1e6 m from the origin.
+struct Placing {
+  double scale;
+  double shift;  // metres
+};
+
+class Placings : public testing::TestWithParam<Placing> {};
+
+// F_ij does not depend on where, how large and how turned. Random points lie in frames of the scene's own, so each pair
+// gets the same rays, and the largest of all differences is that of rounding: 6e-8 F in single precision.
+TEST_P(Placings, FormFactorsAreTheSame) {
+  const Placing placing = GetParam();
+  Eigen::Affine3d motion(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
+  motion = Eigen::Translation3d(placing.shift, -placing.shift, placing.shift) * motion * Eigen::Scaling(placing.scale);
+  const auto form_factors = [](const Scene& scene, double max_edge) -> Eigen::MatrixXd {
+    const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), max_edge);
+    const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+    Eigen::MatrixXd F(mesh.size(), mesh.size());
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      for (PatchIndex j = 0; j < mesh.size(); ++j) F(i, j) = static_cast<double>(S.at(i, j)) / mesh.area[i];
+    }
+    return F;
+  };
+  const Scene room = repair(furnished_room(0.6));
+  const Scene there = repair(moved(furnished_room(0.6), motion));
+  const Eigen::MatrixXd expected = form_factors(room, 0.5001);
+  const Eigen::MatrixXd F = form_factors(there, 0.5001 * placing.scale);
+  ASSERT_EQ(F.rows(), expected.rows());
+  EXPECT_GT(expected.maxCoeff(), 0.05);
+  EXPECT_LT((F - expected).cwiseAbs().maxCoeff(), 1e-6);
+
+  const Simulation one = simulate(room, coarse());
+  const Simulation other = simulate(there, coarse(placing.scale));
+  EXPECT_EQ(other.solution.history.size(), one.solution.history.size());
+  EXPECT_EQ(other.transport.counts.near_pairs, one.transport.counts.near_pairs);
+  EXPECT_EQ(other.transport.closure, one.transport.closure);
+}
+
+INSTANTIATE_TEST_SUITE_P(SizesAndPlaces, Placings,
+                         testing::Values(Placing{1, 0}, Placing{1e-6, 0}, Placing{1e6, 0}, Placing{1, 1e6},
+                                         Placing{1e-6, 1}),
+                         [](const auto& parameter) { return "placing_" + std::to_string(parameter.index); });
+
+// Faces without area of every kind, a repeated corner in every sound face: dropped and counted, and the answer is the
+// same to the bit but for the order of operations.
+TEST(FacesWithoutArea, ChangeNothing) {
+  const Scene sound = furnished_room(0.6);
+  Scene scene = sound;
+  for (Polygon& polygon : scene.polygons) polygon.corners.insert(polygon.corners.begin() + 1, polygon.corners[1]);
+  scene = with_polygon(std::move(scene), {Point(1, 1, 1), Point(1, 1, 1), Point(1, 1, 1)});
+  scene = with_polygon(std::move(scene), {Point(3, 1, 1), Point(3, 2, 1), Point(3, 1, 1)});
+  scene = with_polygon(std::move(scene), {Point(0, 1, 1), Point(2, 1, 1), Point(4, 1, 1)});
+  scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(4, 3, 0), Point(4, 3, 0), Point(2, 1.5, 0)});
+  scene = with_polygon(std::move(scene), {Point(2, 2, 2), Point(2 + 1e-9, 2, 2), Point(2, 2 + 1e-9, 2)}, 1);
+  scene = repair(std::move(scene));
+  const auto count = [&](ProblemKind kind) {
+    for (const Problem& problem : scene.problems) {
+      if (problem.kind == kind) return problem.count;
+    }
+    return std::size_t{0};
+  };
+  EXPECT_EQ(count(ProblemKind::zero_area), 5U);
+  EXPECT_EQ(count(ProblemKind::repeated_corners), sound.polygons.size());
+  const Field expected = simulate(repair(sound), coarse()).solution.radiosity;
+  const Field radiosity = simulate(scene, coarse()).solution.radiosity;
+  ASSERT_EQ(radiosity.rows(), expected.rows());
+  EXPECT_LE((radiosity - expected).abs().maxCoeff(), 1e-12 * expected.maxCoeff());
+}
+
+// In a closed room with a box, any wall or box face turned around is found by its neighbours and reported; the light is
+// that of the sound room, except for the rounding of what a turned face's corners come in another order do.
+TEST(TurnedFaces, OfClosedShellsChangeNothing) {
+  const Scene sound = furnished_room(0.6);
+  const Simulation expected = simulate(repair(sound), coarse());
+  for (PolygonIndex turned = 0; turned < 12; ++turned) {
+    Scene scene = sound;
+    std::reverse(scene.polygons[turned].corners.begin() + 1, scene.polygons[turned].corners.end());
+    scene = repair(std::move(scene));
+    ASSERT_EQ(scene.problems.size(), 1U) << turned;
+    EXPECT_EQ(scene.problems[0].kind, ProblemKind::turned_faces);
+    const Simulation simulation = simulate(scene, coarse());
+    ASSERT_EQ(simulation.mesh.size(), expected.mesh.size()) << turned;
+    EXPECT_NEAR(simulation.balance.absorbed[0], expected.balance.absorbed[0], 1e-6 * expected.balance.absorbed[0]);
+    const double mean = expected.solution.irradiance.mean();
+    EXPECT_NEAR(simulation.solution.irradiance.mean(), mean, 1e-2 * mean) << turned;
+  }
+}
+
+// Three walls on one edge, a Moebius band, and a face turned in an open shell: solved with both sides.
+TEST(TurnedFaces, OfOpenShellsTakePartWithBothSides) {
+  Scene fins = with_quad(empty_scene({grey(0.5), grey(0.2, 3)}),
+                         {Point(-2, -2, 3), Point(-2, 2, 3), Point(2, 2, 3), Point(2, -2, 3)}, 1);
+  Scene band = fins;
+  for (int k = 0; k < 3; ++k) {
+    const double angle = 2 * M_PI * k / 3 + 0.1;
+    const Vector out(std::cos(angle), std::sin(angle), 0);
+    fins = with_quad(std::move(fins), {Point(0, 0, 0), Point(out), Point(out + Vector(0, 0, 1)), Point(0, 0, 1)});
+  }
+  const auto at = [](int k, double across) {
+    const double angle = 2 * M_PI * k / 12;
+    const Vector out(std::cos(angle), std::sin(angle), 0);
+    return Point((1 + across * std::cos(angle / 2)) * out + across * std::sin(angle / 2) * Vector::UnitZ());
+  };
+  for (int k = 0; k < 12; ++k) {
+    band = with_polygon(std::move(band), {at(k, -.3), at(k + 1, -.3), at(k + 1, .3)});
+    band = with_polygon(std::move(band), {at(k, -.3), at(k + 1, .3), at(k, .3)});
+  }
+  for (const Scene& scene : {repair(fins), repair(band)}) {
+    ASSERT_FALSE(scene.problems.empty());
+    const bool is_band = scene.polygons.size() > 4;
+    EXPECT_EQ(scene.problems[0].kind, is_band ? ProblemKind::turned_faces : ProblemKind::non_manifold_edges);
+    for (const Sides sides : {Sides::automatic, Sides::both}) {
+      Request request = coarse();
+      request.sides = sides;
+      const Simulation simulation = simulate(scene, request);
+      ASSERT_TRUE(simulation.solution.converged);
+      EXPECT_LT(simulation.balance.imbalance, 1e-5);
+      for (PolygonIndex p = 1; p < scene.polygons.size(); ++p) {
+        for (const Side side : {Side::front, Side::back}) {
+          const PatchRange range = simulation.mesh.patches_on(p, side);
+          EXPECT_LT(range.begin, range.end) << "both sides of face " << p;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace patchlight

@@ -1,0 +1,145 @@
+// Hard systems: reflectances of nearly 1 and of 1, patches that see nothing.
+#include "patchlight/input/read_scene.h"
+#include "patchlight/plan/survey.h"
+#include "patchlight/scene/repair.h"
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+Request coarse(double tolerance, int max_iterations) {
+  Request request;
+  request.max_edge = 0.7501;
+  request.tolerance = tolerance;
+  request.max_iterations = max_iterations;
+  return request;
+}
+
+// A closed 4 x 3 x 2.5 m room of one material with a box in it.
+Scene uniform_room(double reflectance, double exitance) {
+  Scene scene = with_box(empty_scene({grey(reflectance, exitance)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  return with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false);
+}
+
+class Furnace : public testing::TestWithParam<double> {};
+
+// E = 1 - rho in a closed room has B = 1. The solver's bound is on ||B - B_k|| / ||B - E|| in the area norm: 1e-10 of
+// that. Row sums are met to 1e-10 of the area, so that B is off by as much: (I - rho F) 1 = 1 - rho (1 + d) gives |B -
+// 1| <= rho d / (1 - rho) if all d have one sign, which CG's residuals have not; 1e-8 holds up to rho = 0.99 even then.
+TEST_P(Furnace, RadiosityIsOneToOneInAHundredMillion) {
+  const double rho = GetParam();
+  Request request = coarse(1e-10, 100'000);
+  request.sides = Sides::front;
+  const Simulation simulation = simulate(uniform_room(rho, 1 - rho), request);
+  ASSERT_TRUE(simulation.solution.converged);
+  EXPECT_EQ(simulation.transport.closure, "least squares");
+  EXPECT_LT((simulation.solution.radiosity - 1).abs().maxCoeff(), 1e-8);
+  EXPECT_LT(simulation.balance.imbalance, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reflectances, Furnace, testing::Values(0.01, 0.5, 0.9, 0.99, 0.999));
+
+// A lamp in a room of rho = 0.999: every ray is reflected a thousand times. All that is emitted is found again.
+TEST(NearlyPerfectReflection, BalancesEnergyToABillionth) {
+  Request request = coarse(1e-9, 100'000);
+  const Simulation simulation = simulate(furnished_room(0.999, 10), request);
+  ASSERT_TRUE(simulation.solution.converged);
+  EXPECT_LT(simulation.balance.imbalance, 1e-9);
+  // The room is closed: what its black lamp and its walls absorb is what is emitted, to the exactness of row sums.
+  EXPECT_EQ(simulation.transport.closure, "least squares");
+  EXPECT_NEAR(simulation.balance.absorbed[0], simulation.balance.emitted[0], 1e-8 * simulation.balance.emitted[0]);
+}
+
+// No light is ever absorbed: there is no answer. The survey says so beforehand; the solver ends after the iterations it
+// is given, says that it has not converged and claims no bound; every iteration has added the emitted flux.
+TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
+  const Scene scene = uniform_room(1, 1);
+  const std::vector<Problem> problems = survey(scene).problems;
+  EXPECT_TRUE(std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
+    return problem.kind == ProblemKind::full_reflectance &&
+           problem.what.find("a closed room of reflectance 1 has no answer") != std::string::npos;
+  }));
+  for (const Solver solver : {Solver::jacobi, Solver::gauss_seidel, Solver::progressive}) {
+    Request request = coarse(1e-6, 30);
+    request.sides = Sides::front;
+    request.solver = solver;
+    const Solution solution = simulate(scene, request).solution;
+    EXPECT_FALSE(solution.converged);
+    EXPECT_EQ(solution.history.back().number, 30);
+    EXPECT_EQ(solution.history.back().error_bound, std::numeric_limits<double>::infinity());
+    ASSERT_TRUE(solution.radiosity.allFinite());
+    EXPECT_GT(solution.radiosity.minCoeff(), 20);
+  }
+}
+
+// The Cornell box with its white at Kd = 1, as some files have it, is open: light leaves, and there is an answer. The
+// red and green walls absorb, the opening lets through; the balance closes to the tolerance.
+TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
+  const ReadOptions white{.settings = {parse_material_setting("white.reflectance=1")}};
+  const Scene scene = repair(read_scene(std::filesystem::path(PATCHLIGHT_MESHES) / "cornell_box.obj", white));
+  const std::vector<Problem> problems = survey(scene).problems;
+  EXPECT_TRUE(std::any_of(problems.begin(), problems.end(),
+                          [](const Problem& problem) { return problem.kind == ProblemKind::full_reflectance; }));
+  Request request;
+  request.patches = 500;
+  request.tolerance = 1e-8;
+  for (const Solver solver : {Solver::jacobi, Solver::gauss_seidel, Solver::progressive}) {
+    request.solver = solver;
+    const Simulation simulation = simulate(scene, request);
+    ASSERT_TRUE(simulation.solution.converged) << name_of(solver);
+    EXPECT_GT((simulation.balance.escaped / simulation.balance.emitted).minCoeff(), 0.1);
+    // The residual is 1e-8 of the first one; what is left over is that, summed over some ten bounces.
+    EXPECT_LT(simulation.balance.imbalance, 1e-6);
+  }
+}
+
+// A lamp alone, two lamps back to back, and a lamp beside one in its plane: B = E to the bit, with no iteration.
+TEST(IsolatedPatches, KeepTheirExitance) {
+  const Quad square{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
+  const Quad behind{Point(0, 0, -1), Point(0, 1, -1), Point(1, 1, -1), Point(1, 0, -1)};
+  const Quad beside{Point(2, 0, 0), Point(3, 0, 0), Point(3, 1, 0), Point(2, 1, 0)};
+  const Scene alone = with_quad(empty_scene({grey(0.5, 3)}), square);
+  for (const Scene& scene : {alone, with_quad(alone, behind), with_quad(alone, beside)}) {
+    Request request = coarse(1e-6, 100);
+    request.sides = Sides::front;
+    const Simulation simulation = simulate(scene, request);
+    EXPECT_TRUE(simulation.solution.converged);
+    EXPECT_EQ(simulation.solution.history.size(), 1U);
+    EXPECT_TRUE((simulation.solution.radiosity == 3).all());
+    EXPECT_TRUE((simulation.solution.irradiance == 0).all());
+    EXPECT_DOUBLE_EQ(simulation.balance.escaped[0], simulation.balance.emitted[0]);
+  }
+}
+
+// Beside a lit room, too: a lamp outside that looks away from it.
+TEST(IsolatedPatches, KeepTheirExitanceBesideALitRoom) {
+  Scene scene = furnished_room(0.6);
+  const auto lamp = static_cast<PolygonIndex>(scene.polygons.size());
+  scene.materials.push_back(grey(0.7, 5));
+  scene = with_quad(std::move(scene), {Point(9, 0, 0), Point(9, 1, 0), Point(9, 1, 1), Point(9, 0, 1)}, 2);
+  Request request = coarse(1e-6, 100);
+  request.sides = Sides::front;
+  const Simulation simulation = simulate(scene, request);
+  EXPECT_TRUE(simulation.solution.converged);
+  const PatchRange patches = simulation.mesh.patches_on(lamp, Side::front);
+  ASSERT_LT(patches.begin, patches.end);
+  for (PatchIndex i = patches.begin; i < patches.end; ++i) {
+    EXPECT_EQ(simulation.solution.radiosity(i, 0), 5);
+    EXPECT_EQ(simulation.solution.irradiance(i, 0), 0);
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
