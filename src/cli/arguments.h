@@ -53,12 +53,19 @@ struct CheckArguments {
   bool json_on_stdout = false;     ///< instead of the text
 };
 
+/// What `patchlight validate` is asked to do.
+struct ValidateArguments {
+  std::filesystem::path json;   ///< .json; empty when it is not wanted
+  bool json_on_stdout = false;  ///< instead of the table
+  int threads = 0;              ///< 0: all processors
+};
+
 /// A text that the user asked for: --help or --version.
 struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments, CheckArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -6,6 +6,7 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/solve.h"
+#include "cli/validate.h"
 
 #include <csignal>
 #include <exception>
@@ -25,6 +26,9 @@ ExitCode run(int count, const char* const* values) {
     return good;
   }
   if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
+  if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
+    return validate(*to_validate, validation_cases());
+  }
   return solve(std::get<SolveArguments>(arguments));
 }
 
