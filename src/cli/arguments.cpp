@@ -4,6 +4,7 @@
 #include "patchlight/output/provenance.h"
 
 #include "cli/check_options.h"
+#include "cli/form_factor_options.h"
 #include "cli/solve_options.h"
 #include "cli/validate_options.h"
 
@@ -110,6 +111,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   tool.footer(std::string("patchlight COMMAND --help lists the options of a command.\n\n") + exit_codes);
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
+  const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
   for (CLI::App* command : tool.get_subcommands({})) {
@@ -125,6 +127,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     require_nothing_left(command, command.get_name(), tool.remaining(true));
     if (command.get_name() == "check") return finish_check(*check_options);
     if (command.get_name() == "validate") return finish_validate(*validate_options);
+    if (command.get_name() == "form-factors") {
+      FormFactorArguments arguments = finish_form_factors(*form_factor_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
     SolveArguments arguments = finish_solve(*solve_options);
     arguments.command_line = joined(count, values);
     return arguments;

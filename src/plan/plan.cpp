@@ -11,13 +11,6 @@
 namespace patchlight {
 namespace {
 
-bool has_lamp(const Scene& scene) {
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_lamp(scene, p)) return true;
-  }
-  return false;
-}
-
 void require_lamp(const Scene& scene) {
   if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
 }
@@ -43,8 +36,14 @@ Decision decide_interreflection(const Scene& scene) {
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
-  assert(!request.max_edge || *request.max_edge > 0);
   require_lamp(scene);
+  Plan plan = plan_form_factors(scene, request);
+  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  return plan;
+}
+
+Plan plan_form_factors(const Scene& scene, const Request& request) {
+  assert(!request.max_edge || *request.max_edge > 0);
   Plan plan;
   plan.sides = kept_sides(scene, request.sides);
   plan.max_edge =
@@ -54,7 +53,6 @@ Plan make_plan(const Scene& scene, const Request& request) {
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
   plan.solver = {request.solver, request.tolerance, request.max_iterations};
-  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
   return plan;
 }
 
