@@ -101,14 +101,19 @@ std::string joined(int count, const char* const* values) {
   return line;
 }
 
-}  // namespace
-
-Arguments parse_arguments(int count, const char* const* values) {
-  CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
+// What the tool says about itself.
+void add_information(CLI::App& tool) {
   tool.get_formatter()->column_width(30);
   tool.set_version_flag("--version", std::string("patchlight ") + version(), "prints the version");
   tool.set_help_flag("-h,--help", "prints this help");
   tool.footer(std::string("patchlight COMMAND --help lists the options of a command.\n\n") + exit_codes);
+}
+
+}  // namespace
+
+Arguments parse_arguments(int count, const char* const* values) {
+  CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
+  add_information(tool);
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);

@@ -82,9 +82,8 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   // 2. Solve
   const KnownFormFactors known = known_form_factors(arguments);
   const auto keep_iterates = [&](const Progress& progress) {
-    if (progress.irradiance != nullptr && !arguments.series.empty()) {
+    if (progress.irradiance && !arguments.series.empty())
       results.iterates.emplace_back(progress.irradiance->cast<float>());
-    }
     return observer(progress);
   };
   simulation = simulate(results.scene, known.request, keep_iterates, known.exchange);
