@@ -3,13 +3,15 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/whole_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <optional>
-#include <regex>
+#include <string_view>
 
 namespace patchlight {
 namespace {
@@ -19,7 +21,6 @@ static_assert(std::endian::native == std::endian::little, "the arrays are little
 constexpr std::string_view magic = "\x93NUMPY";
 constexpr std::size_t alignment = 64;  // of the first value, as the format asks
 constexpr std::size_t longest_header = 65536;
-constexpr std::size_t most_values = std::size_t{1} << 60;
 
 std::string header(const std::string& type, const std::string& shape) {
   std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
@@ -57,9 +58,27 @@ std::optional<std::string> read_header(std::ifstream& stream) {
   return stream ? std::optional(text) : std::nullopt;
 }
 
-// A count in a shape; too large a number, which no file can hold, becomes most_values.
-std::size_t count_of(const std::string& digits) {
-  return digits.size() > 12 ? most_values : static_cast<std::size_t>(std::stoull(digits));
+// What follows a key of the dictionary; nothing when it has no such key.
+std::string_view value_of(std::string_view dictionary, std::string_view key) {
+  const std::size_t place = dictionary.find(key);
+  if (place == std::string_view::npos) return {};
+  const std::string_view rest = dictionary.substr(place + key.size());
+  return rest.substr(std::min(rest.size(), rest.find_first_not_of(' ')));
+}
+
+// The numbers of a shape "(12, 34)" or "(12,)"; nothing when it is none.
+std::vector<std::size_t> shape_of(std::string_view text) {
+  const std::size_t end = text.find(')');
+  if (!text.starts_with('(') || end == std::string_view::npos) return {};
+  std::vector<std::size_t> shape;
+  for (std::size_t begin = 1; begin < end; begin = text.find_first_not_of(", ", begin)) {
+    std::size_t count = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, count);
+    if (error != std::errc()) return {};
+    shape.push_back(count);
+    begin = static_cast<std::size_t>(rest - text.data());
+  }
+  return shape;
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
@@ -100,17 +119,15 @@ NpyReader::NpyReader(const std::filesystem::path& file) : file_(file), stream_(f
   if (!stream_) throw InputError(file.string(), "cannot be read; is it there?");
   const std::string text = read_header(stream_).value_or("");
   if (text.empty()) refuse(file, "no header");
-  static const std::regex type("'descr': *'<f([48])'");
-  static const std::regex order("'fortran_order': *False");
-  static const std::regex shape(R"('shape': *\((\d+), *(\d*),? *\))");
-  std::smatch of_type, of_shape;
-  if (!std::regex_search(text, of_type, type) || !std::regex_search(text, order) ||
-      !std::regex_search(text, of_shape, shape)) {
+  const std::string_view type = value_of(text, "'descr':");
+  const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
+  if (!(type.starts_with("'<f4'") || type.starts_with("'<f8'")) ||
+      !value_of(text, "'fortran_order':").starts_with("False") || shape.empty() || shape.size() > 2) {
     refuse(file, "the header " + text.substr(0, text.find('\n')));
   }
-  bytes_per_value_ = of_type.str(1) == "4" ? 4 : 8;
-  rows_ = count_of(of_shape.str(1));
-  columns_ = of_shape.length(2) == 0 ? 1 : count_of(of_shape.str(2));
+  bytes_per_value_ = type[3] == '4' ? 4 : 8;
+  rows_ = shape[0];
+  columns_ = shape.size() == 2 ? shape[1] : 1;
 
   // No product of counts is formed: it might not fit.
   const auto bytes = std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream_.tellg());
