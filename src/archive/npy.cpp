@@ -106,8 +106,9 @@ void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t 
 void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values) {
   write_whole_file(file, [&](const std::filesystem::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    const bool vector = values.cols() == 1;
-    stream << header("<f8", std::to_string(values.rows()) + "," + (vector ? "" : " " + std::to_string(values.cols())));
+    std::string shape = std::to_string(values.rows()) + ',';
+    if (values.cols() > 1) shape.append(1, ' ').append(std::to_string(values.cols()));
+    stream << header("<f8", shape);
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> in_rows = values;
     stream.write(reinterpret_cast<const char*>(in_rows.data()),
                  static_cast<std::streamsize>(in_rows.size() * static_cast<Eigen::Index>(sizeof(double))));
