@@ -45,6 +45,8 @@ FormFactorInfo info_of(const Json& json) {
   const Json& counts = json.at("counts");
   info.counts.facing_pairs = counts.at("facing_pairs").get<std::uint64_t>();
   info.counts.near_pairs = counts.at("near_pairs").get<std::uint64_t>();
+  info.counts.hidden_pairs = counts.at("hidden_pairs").get<std::uint64_t>();
+  info.counts.free_pairs = counts.at("free_pairs").get<std::uint64_t>();
   info.counts.partial_pairs = counts.at("partly_occluded_pairs").get<std::uint64_t>();
   info.counts.blocked_pairs = counts.at("blocked_pairs").get<std::uint64_t>();
   info.counts.shadow_rays = counts.at("shadow_rays").get<std::uint64_t>();

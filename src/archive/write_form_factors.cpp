@@ -81,6 +81,8 @@ Json files_part(const FormFactorResult& result) {
 Json counts_part(const AssemblyCounts& counts) {
   return {{"facing_pairs", counts.facing_pairs},
           {"near_pairs", counts.near_pairs},
+          {"hidden_pairs", counts.hidden_pairs},
+          {"free_pairs", counts.free_pairs},
           {"partly_occluded_pairs", counts.partial_pairs},
           {"blocked_pairs", counts.blocked_pairs},
           {"shadow_rays", counts.shadow_rays}};

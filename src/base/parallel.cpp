@@ -45,15 +45,16 @@ void parallel_for(std::size_t count, Stage stage, const Observer& observer,
   if (stopped || !observer({.stage = stage, .fraction = 1})) throw Cancelled();
 }
 
+// Built in place: a copy of a global_control would end the limit of its original.
 struct ThreadLimit::Limit {
+  explicit Limit(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads)
-    : limit_(std::make_unique<Limit>(
-          Limit{tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                    threads > 0 ? static_cast<std::size_t>(threads)
-                                                : static_cast<std::size_t>(tbb::info::default_concurrency()))})) {}
+    : limit_(
+          std::make_unique<Limit>(static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))) {
+}
 
 ThreadLimit::~ThreadLimit() = default;
 

@@ -85,6 +85,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   line.hide();
   for (const std::string& note : scene.notes) print_message("note", note);
   for (const std::string& note : found.plan.sides.notes) print_message("note", note);
+  for (const std::string& note : found.plan.notes) print_message("note", note);
   if (found.request.sides != arguments.request.sides) {
     print_message("note", "without a lamp --sides auto cannot tell where light gets to: the front sides are used");
   }

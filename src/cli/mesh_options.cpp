@@ -30,7 +30,9 @@ void add_patch_options(CLI::App& command, MeshOptions& options) {
       [&options](const std::string& text) {
         options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
       });
-  add(command, "--patches", "N", "number of patches, met within 10 %; default " + std::to_string(default_patches),
+  add(command, "--patches", "N",
+      "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
+          std::to_string(default_patches),
       [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
 }
 

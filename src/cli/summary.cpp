@@ -82,6 +82,7 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
   std::vector<std::string> all = scene.notes;
   const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
   all.insert(all.end(), of_sides.begin(), of_sides.end());
+  all.insert(all.end(), simulation.plan.notes.begin(), simulation.plan.notes.end());
   return all;
 }
 

@@ -10,23 +10,30 @@ namespace patchlight {
 namespace {
 
 constexpr std::uint32_t scrambles = 256;
+constexpr std::size_t coordinates = 8;
 
 }  // namespace
 
-SamplePairs::SamplePairs(std::uint32_t samples, std::uint64_t seed) : samples_(samples), seed_(seed) {
-  table_.reserve(static_cast<std::size_t>(scrambles) * samples);
-  for (std::uint32_t k = 0; k < scrambles; ++k) {
-    const auto points = scrambled_sobol(samples, hash({seed, k}));
-    table_.insert(table_.end(), points.begin(), points.end());
+SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed) : samples_(samples), seed_(seed) {
+  table_.resize(std::size_t{scrambles} * coordinates * samples);
+  for (std::uint32_t scramble = 0; scramble < scrambles; ++scramble) {
+    const auto points = scrambled_sobol(samples, hash({seed, scramble}));
+    float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples;
+    for (std::size_t k = 0; k < samples; ++k) {
+      const auto& [u, v, s, t] = points[k];
+      const Eigen::Vector2d b = square_to_triangle(u, v);
+      const Eigen::Vector2d c = square_to_triangle(s, t);
+      const std::array<double, coordinates> values{u, v, s, t, b[0], b[1], c[0], c[1]};
+      for (std::size_t d = 0; d < coordinates; ++d) rows[d * samples + k] = static_cast<float>(values[d]);
+    }
   }
 }
 
-const std::array<double, 4>& SamplePairs::at(std::uint32_t first_key, std::uint32_t second_key,
-                                             std::uint32_t sample) const {
-  assert(sample < samples_);
+SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key) const {
   const std::uint32_t scramble =
       hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles;
-  return table_[static_cast<std::size_t>(scramble) * samples_ + sample];
+  const float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples_;
+  return {rows, rows + 4 * std::size_t{samples_}, samples_};
 }
 
 double geometry_term(const Point& x, const Vector& normal_x, const Point& y, const Vector& normal_y) {

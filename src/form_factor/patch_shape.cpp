@@ -12,6 +12,7 @@ namespace {
 // Heights below this share of the two radii count as zero: coplanar patches do not see each other.
 constexpr double height_tolerance = 1e-7;
 
+constexpr double adjacent_diameters = 1;
 constexpr double near_diameters = 2;
 constexpr double middle_diameters = 4;
 
@@ -163,6 +164,10 @@ Orientation orientation(const PatchShape& first, const PatchShape& second) {
 }
 
 bool is_near(const PatchShape& first, const PatchShape& second) { return closer_than(first, second, near_diameters); }
+
+bool is_adjacent(const PatchShape& first, const PatchShape& second) {
+  return closer_than(first, second, adjacent_diameters);
+}
 
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second) {
   if (is_near(first, second)) return contour_exchange_area(first.corners, second.corners);

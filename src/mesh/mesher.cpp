@@ -237,6 +237,10 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
   return mesh;
 }
 
+std::size_t least_patches(const Scene& scene, const KeptSides& sides) {
+  return count_patches(scene, sides, diameter(scene));
+}
+
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
   constexpr double close_enough = 0.005;
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));

@@ -61,6 +61,7 @@ Json plan_part(const Plan& plan) {
   part["max_iterations"] = plan.solver.max_iterations;
   part["emit_from_back"] = plan.sides.emit_from_back;
   part["sides_notes"] = plan.sides.notes;
+  part["notes"] = plan.notes;
   part["decisions"] = Json::array();
   for (const Decision& decision : plan.decisions) {
     part["decisions"].push_back(

@@ -33,6 +33,19 @@ Decision decide_interreflection(const Scene& scene) {
   return {"interreflection", true, "the highest reflectance is " + std::to_string(highest)};
 }
 
+// Every kept side takes a patch at least. Of a model with many small faces the large ones have to be cut as well, as
+// the light varies over them: a quarter more patches than the least goes to these.
+std::size_t enough_patches(std::size_t asked, std::size_t least) {
+  constexpr std::size_t few = 1000;  // for so few a quarter is not worth a word
+  return least > few ? std::max(asked, least + least / 4) : asked;
+}
+
+std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t wanted) {
+  return "the model's " + std::to_string(scene.polygons.size()) + " faces take " + std::to_string(wanted) +
+         " patches, not " + std::to_string(asked) +
+         ", for its large ones to be cut as well; a simpler model takes fewer";
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
@@ -46,8 +59,14 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   assert(!request.max_edge || *request.max_edge > 0);
   Plan plan;
   plan.sides = kept_sides(scene, request.sides);
-  plan.max_edge =
-      request.max_edge ? *request.max_edge : max_edge_for(scene, plan.sides, request.patches.value_or(default_patches));
+  if (request.max_edge) {
+    plan.max_edge = *request.max_edge;
+  } else {
+    const std::size_t asked = request.patches.value_or(default_patches);
+    const std::size_t wanted = enough_patches(asked, least_patches(scene, plan.sides));
+    if (wanted > asked) plan.notes.push_back(note_on_patches(scene, asked, wanted));
+    plan.max_edge = max_edge_for(scene, plan.sides, wanted);
+  }
   // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
   plan.probes = std::max(plan.probes, request.samples / 4);
   plan.samples = std::max(request.samples, plan.probes);

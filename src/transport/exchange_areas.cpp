@@ -68,6 +68,15 @@ float ExchangeAreas::at(PatchIndex i, PatchIndex j) const {
   return tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge];
 }
 
+void ExchangeAreas::set(PatchIndex i, PatchIndex j, float value) {
+  if (i / edge > j / edge) std::swap(i, j);
+  const std::span<float> entries = tile(i / edge, j / edge);
+  const std::size_t r = i % edge;
+  const std::size_t c = j % edge;
+  entries[r * edge + c] = value;
+  if (i / edge == j / edge) entries[c * edge + r] = value;
+}
+
 Field multiply(const ExchangeAreas& S, const FieldView& B, int power) {
   assert(B.rows() == static_cast<Eigen::Index>(S.size()) && (power == 1 || power == 2));
   const Eigen::Index padded = static_cast<Eigen::Index>(S.blocks()) * edge;

@@ -67,6 +67,8 @@ ValidationCase cylinders_case(double r1, double r2, double h) {
 }
 
 // The inner sphere sees the outer only. The polyhedra are alike, so the ratio of their areas is that of the spheres.
+// Shadow rays decide here, too: outer faces that cross the horizon of an inner one are hidden in part by the inner
+// sphere.
 Scene concentric_spheres(std::uint32_t outer_group) {
   constexpr int halvings = 2;
   const Scene outer = with_polygons(empty_scene(), sphere_triangles(halvings, 2), outer_group, true);
@@ -75,9 +77,9 @@ Scene concentric_spheres(std::uint32_t outer_group) {
 
 std::vector<ValidationCase> concentric_sphere_cases() {
   return {{"concentric spheres of radius 1 and 2, inner to outer", 1, "closure",
-           [](const Observer& observer) { return unoccluded_form_factor(concentric_spheres(1), uncut, 1, observer); }},
+           [](const Observer& observer) { return sampled_form_factor(concentric_spheres(1), uncut, 1, observer); }},
           {"concentric spheres of radius 1 and 2, outer to inner", 0.25, "reciprocity, A_1 / A_2",
-           [](const Observer& observer) { return unoccluded_form_factor(concentric_spheres(0), uncut, 1, observer); }},
+           [](const Observer& observer) { return sampled_form_factor(concentric_spheres(0), uncut, 1, observer); }},
           {"concentric spheres of radius 1 and 2, outer to itself", 0.75, "closure, 1 - A_1 / A_2",
            [](const Observer& observer) { return sampled_form_factor(concentric_spheres(0), uncut, 0, observer); }}};
 }

@@ -3,10 +3,14 @@
 #include "patchlight/scene/triangulate.h"
 #include "patchlight/visibility/convex_hull.h"
 
+#include "base/target_clones.h"
+
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <embree3/rtcore.h>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -16,10 +20,13 @@ namespace {
 // A point nearer to a plane than this share of the scene's extent lies on it.
 constexpr double on_plane_tolerance = 1e-9;
 
+// The same for rays whose ends are given in single precision: what rounding a point of the scene leaves of its height.
+constexpr double on_plane_tolerance_of_packets = 3e-7;
+
 // Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
 constexpr double beyond = 1e6;
 
-constexpr unsigned packet = 16;
+constexpr unsigned packet_size = ShadowPacket::size;
 
 // The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
 struct Plane {
@@ -41,27 +48,58 @@ struct ExactRay {
 // What the filter needs beside Embree's own context.
 struct Context {
   RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to the whole
-  const ExactRay* rays;
+  const ExactRay* rays = nullptr;
+  const ShadowPacket* packet = nullptr;  // in place of rays
 };
 
 // A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
 // ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
-bool separates(const Plane& plane, const ExactRay& ray) {
+bool separates(const Plane& plane, const ExactRay& ray, double tolerance) {
   if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);
-  return (from > on_plane_tolerance && to < -on_plane_tolerance) ||
-         (from < -on_plane_tolerance && to > on_plane_tolerance);
+  return (from > tolerance && to < -tolerance) || (from < -tolerance && to > tolerance);
 }
 
+ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
+  const Point from(rays.from_x[k], rays.from_y[k], rays.from_z[k]);
+  const Vector toward(rays.toward_x[k], rays.toward_y[k], rays.toward_z[k]);
+  return {from, from + toward, rays.from_polygon[k], rays.to_polygon[k]};
+}
+
+// Marks the hits that are beyond doubt: the ray's ends are so far on either side of the triangle's plane, by
+// t |n . d| and (1 - t) |n . d|, that single precision tells them apart.
+template <unsigned N>
+PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, unsigned char* clear) {
+  constexpr float clear_height = 1e-4F;
+  for (unsigned k = 0; k < N; ++k) {
+    const float x = RTCHitN_Ng_x(hits.hit, N, k);
+    const float y = RTCHitN_Ng_y(hits.hit, N, k);
+    const float z = RTCHitN_Ng_z(hits.hit, N, k);
+    const float t = RTCRayN_tfar(hits.ray, N, k);
+    const float nearer = std::min(t, 1 - t);
+    const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
+                                   z * RTCRayN_dir_z(hits.ray, N, k));
+    const float least = clear_height * clear_height * (x * x + y * y + z * z);
+    clear[k] = static_cast<unsigned char>(static_cast<int>(height * height > least) & static_cast<int>(nearer > 0));
+  }
+}
+
+PATCHLIGHT_TARGET_CLONES
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
   const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
+  std::array<unsigned char, packet_size> clear{};
+  if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
   for (unsigned k = 0; k < arguments->N; ++k) {
-    if (arguments->valid[k] != -1) continue;
+    if (arguments->valid[k] != -1 || clear[k] != 0) continue;
     const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
     const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
-    if (!separates(planes[triangle], context->rays[ray])) arguments->valid[k] = 0;
+    const bool blocks =
+        context->packet != nullptr
+            ? separates(planes[triangle], exact_ray(*context->packet, ray), on_plane_tolerance_of_packets)
+            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
+    if (!blocks) arguments->valid[k] = 0;
   }
 }
 
@@ -75,10 +113,53 @@ RTCIntersectContext new_context() {
   return context;
 }
 
+std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
+
+// A polygon in the coordinates of its plane.
+struct Outline {
+  Point origin;
+  Vector u, v, normal;
+  std::vector<Eigen::Vector2d> corners;
+
+  double height(const Point& point) const { return normal.dot(point - origin); }
+  Eigen::Vector2d in_plane(const Point& point) const { return {u.dot(point - origin), v.dot(point - origin)}; }
+};
+
+Outline outline_of(std::span<const Point> corners) {
+  const Vector normal = area_vector(corners).normalized();
+  const Vector u = normal.unitOrthogonal();
+  Outline outline{corners[0], u, normal.cross(u), normal, {}};
+  for (const Point& corner : corners) outline.corners.push_back(outline.in_plane(corner));
+  return outline;
+}
+
+bool touches(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (!box.intersects(Eigen::AlignedBox2d(a.cwiseMin(b), a.cwiseMax(b)))) return false;
+  // The box's corners on both sides of the line: its half width across the line reaches the middle's distance.
+  const Eigen::Vector2d across(a.y() - b.y(), b.x() - a.x());
+  return std::abs(across.dot(box.center() - a)) <= across.cwiseAbs().dot(box.sizes()) / 2;
+}
+
+// Whether a rectangle lies in a polygon: no edge touches it, and its middle lies inside. A hole's seam counts as an
+// edge.
+bool holds(const Outline& outline, const Eigen::AlignedBox2d& box) {
+  bool inside = false;
+  const Eigen::Vector2d middle = box.center();
+  for (std::size_t k = 0; k < outline.corners.size(); ++k) {
+    const Eigen::Vector2d& a = outline.corners[k];
+    const Eigen::Vector2d& b = outline.corners[(k + 1) % outline.corners.size()];
+    if (touches(box, a, b)) return false;
+    if ((a.y() > middle.y()) == (b.y() > middle.y())) continue;
+    if (middle.x() < a.x() + (middle.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
 // The triangles of some polygons, ready to be traced.
 struct TriangleScene {
   RTCScene scene = nullptr;
-  std::vector<Plane> planes;  // per triangle
+  std::vector<Plane> planes;      // per triangle
+  std::vector<Outline> outlines;  // per polygon of the scene
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -88,6 +169,26 @@ struct TriangleScene {
   }
 };
 
+// Whether a polygon cuts every segment from the hull of some points to that of others. With heights h > 0 of the points
+// a and h' < 0 of the points b over its plane, segments from a to b cross it at (h b - h' a) / (h - h'): for points of
+// the hulls that is a mean, with positive weights, of the crossings between their corners. So all crossings lie in the
+// polygon when it holds a rectangle around those of the corners.
+bool cuts_all(const Outline& outline, std::span<const Point> from, std::span<const Point> to) {
+  const double sign = outline.height(from[0]) > 0 ? 1 : -1;
+  const double tolerance = on_plane_tolerance_of_packets;
+  Eigen::AlignedBox2d crossings;
+  for (const Point& a : from) {
+    const double above = sign * outline.height(a);
+    if (above <= tolerance) return false;
+    for (const Point& b : to) {
+      const double below = sign * outline.height(b);
+      if (below >= -tolerance) return false;
+      crossings.extend(outline.in_plane((above * b - below * a) / (above - below)));
+    }
+  }
+  return holds(outline, crossings);
+}
+
 }  // namespace
 
 struct Occluder::Tracer {
@@ -96,6 +197,8 @@ struct Occluder::Tracer {
   double scale = 1;  // 1 / extent: rays are traced in a scene of about unit size
   TriangleScene everything;
   TriangleScene blockers;  // those that can block a segment
+  std::vector<std::uint8_t> left_out;
+  ShaftCuller shafts;
 
   Tracer(const Scene& scene, Blockers blockers);
   ~Tracer() { rtcReleaseDevice(device); }
@@ -103,27 +206,32 @@ struct Occluder::Tracer {
   Tracer& operator=(const Tracer&) = delete;
 
   Point recentred(const Point& point) const { return scale * (point - centre); }
-  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& left_out) const;
+  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without) const;
+  std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
   void trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene, Blockers which) : device(rtcNewDevice(nullptr)) {
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which)
+    : device(rtcNewDevice(nullptr)),
+      left_out(which == Blockers::all ? none_of(scene) : on_convex_hull(scene)),
+      shafts(scene, left_out) {
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  const std::vector<std::uint8_t> none(scene.polygons.size(), 0);
-  build(everything, scene, none);
-  build(blockers, scene, which == Blockers::all ? none : on_convex_hull(scene));
+  build(everything, scene, none_of(scene));
+  build(blockers, scene, left_out);
 }
 
 void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
-                             const std::vector<std::uint8_t>& left_out) const {
+                             const std::vector<std::uint8_t>& without) const {
   std::vector<Eigen::Vector3f> corners;
+  target.outlines.resize(scene.polygons.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (left_out[p]) continue;
+    if (without[p]) continue;
     std::vector<Point> points = corner_points(scene, p);
     for (Point& point : points) point = recentred(point);
+    target.outlines[p] = outline_of(points);
     for (const auto& [a, b, c] : triangulate(points)) {
       for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
       const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
@@ -156,9 +264,9 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
 
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const {
   alignas(64) RTCRay16 rays;
-  alignas(64) int valid[packet];
-  ExactRay exact[packet];
-  for (unsigned k = 0; k < packet; ++k) {
+  alignas(64) int valid[packet_size];
+  ExactRay exact[packet_size];
+  for (unsigned k = 0; k < packet_size; ++k) {
     // Lanes beyond the last segment repeat it, so that every field of every ray is set.
     const Segment& segment = segments[std::min<std::size_t>(k, segments.size() - 1)];
     exact[k] = {recentred(segment.from), recentred(segment.to), segment.from_polygon, segment.to_polygon};
@@ -178,11 +286,72 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint
     rays.flags[k] = 0;
     valid[k] = k < segments.size() ? -1 : 0;
   }
-  Context context{new_context(), exact};
+  Context context{new_context(), exact, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k) blocked[k] = rays.tfar[k] < 0;
 }
+
+std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
+  alignas(64) RTCRay16 rays;
+  alignas(64) int valid[ShadowPacket::size];
+  for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
+    rays.org_x[k] = packet.from_x[k];
+    rays.org_y[k] = packet.from_y[k];
+    rays.org_z[k] = packet.from_z[k];
+    rays.dir_x[k] = packet.toward_x[k];
+    rays.dir_y[k] = packet.toward_y[k];
+    rays.dir_z[k] = packet.toward_z[k];
+    rays.tnear[k] = 0;
+    rays.tfar[k] = 1;
+    rays.time[k] = 0;
+    rays.mask[k] = ~0U;
+    rays.id[k] = static_cast<unsigned>(k);
+    rays.flags[k] = 0;
+    valid[k] = -1;
+  }
+  Context context{new_context(), nullptr, &packet};
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, tracer_->blockers.scene, &context.embree, &rays);
+  unsigned blocked = 0;
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) blocked |= static_cast<unsigned>(rays.tfar[k] < 0) << k;
+  return static_cast<std::uint16_t>(blocked);
+}
+
+// The first polygon that can block between two points, in recentred coordinates.
+std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, const Point& to) const {
+  const Eigen::Vector3f origin = from.cast<float>();
+  const Eigen::Vector3f direction = (to - from).cast<float>();
+  RTCRayHit query{};
+  query.ray = {origin.x(), origin.y(), origin.z(), 0, direction.x(), direction.y(), direction.z(), 0, 1, ~0U, 0, 0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  const ExactRay exact{from, to, no_polygon, no_polygon};
+  Context context{new_context(), &exact, nullptr};
+  rtcIntersect1(blockers.scene, &context.embree, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return blockers.planes[query.hit.primID].polygon;
+}
+
+bool Occluder::hides(std::span<const Point> first, std::span<const Point> second) const {
+  std::vector<Point> from;
+  std::vector<Point> to;
+  for (const Point& point : first) from.push_back(tracer_->recentred(point));
+  for (const Point& point : second) to.push_back(tracer_->recentred(point));
+  const auto middle = [](const std::vector<Point>& points) {
+    return Point(std::accumulate(points.begin(), points.end(), Point(Point::Zero())) /
+                 static_cast<double>(points.size()));
+  };
+  const auto& outlines = tracer_->blockers.outlines;
+  const auto met = tracer_->first_polygon(middle(from), middle(to));
+  if (!met) return false;
+  if (cuts_all(outlines[*met], from, to)) return true;
+  const auto other = tracer_->first_polygon(middle(to), middle(from));
+  return other && *other != *met && cuts_all(outlines[*other], from, to);
+}
+
+const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }
+
+TracingFrame Occluder::frame() const { return {tracer_->centre, tracer_->scale}; }
 
 Occluder::Occluder(const Scene& scene, Blockers blockers) : tracer_(std::make_unique<Tracer>(scene, blockers)) {}
 Occluder::~Occluder() = default;
@@ -194,8 +363,8 @@ bool Occluder::can_occlude() const { return !tracer_->blockers.planes.empty(); }
 std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) const {
   std::vector<std::uint8_t> blocked(segments.size(), 0);
   if (!can_occlude()) return blocked;
-  for (std::size_t k = 0; k < segments.size(); k += packet) {
-    const std::size_t count = std::min<std::size_t>(packet, segments.size() - k);
+  for (std::size_t k = 0; k < segments.size(); k += packet_size) {
+    const std::size_t count = std::min<std::size_t>(packet_size, segments.size() - k);
     tracer_->trace_packet(segments.subspan(k, count), blocked.data() + k);
   }
   return blocked;
@@ -223,7 +392,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
                  0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
-    Context context{new_context(), &exact};
+    Context context{new_context(), &exact, nullptr};
     rtcIntersect1(tracer_->everything.scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 

@@ -92,13 +92,15 @@ std::vector<Placing> placings() {
   return {{turned, 1}, {quarter, 1}, {far, 1}, {far * turned, 1}, {small, 1e-3}, {large, 1e3}};
 }
 
-// The random points lie in the frames of the patches, so a moved room gets the same rays. What remains is the rounding
-// of a position, 1e-10 m at 1e6 m from the origin, and that of the exchange areas to single precision, 6e-8.
+// The random points lie in the frames of the patches, so a moved room gets the same rays. What remains is rounding: of
+// positions, 1e-10 m at 1e6 m from the origin, of exchange areas, 6e-8, and of the ends of shadow rays to single
+// precision, 6e-8 of the extent, which tips about one in a million rays at an edge. One of the 16 rays of an entry
+// shifts its patches' irradiance by up to 1e-3, the mean square over the 500 patches by less than 1e-4.
 TEST(Invariance, MotionAndScaleChangeNothing) {
   for (const Scene& scene : {room_with_ceiling_lamp(), furnished_room(0.6)}) {
     const Solved here = solved(with_lines(scene), 1);
     for (const auto& [motion, scale] : placings()) {
-      expect_same(here, solved(with_lines(moved(scene, motion)), scale), 1e-6);
+      expect_same(here, solved(with_lines(moved(scene, motion)), scale), 1e-4);
     }
   }
 }

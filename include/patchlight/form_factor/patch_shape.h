@@ -41,6 +41,9 @@ Orientation orientation(const PatchShape& first, const PatchShape& second);
 /// Closer than two diameters of the larger patch: the geometry term varies too much for quadrature or area sampling.
 bool is_near(const PatchShape& first, const PatchShape& second);
 
+/// Closer than one diameter of the larger patch: even the visible part is sampled by solid angle.
+bool is_adjacent(const PatchShape& first, const PatchShape& second);
+
 /// Unoccluded exchange area A_i F_ij in m^2 of two patches that are not averted: the contour integral for near patches,
 /// product quadrature for others; relative error below 1e-3.
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second);

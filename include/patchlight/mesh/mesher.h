@@ -18,6 +18,9 @@ namespace patchlight {
 /// \throws MemoryError when more than 2^31 patches would be needed.
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
 
+/// The number of patches when no edge is cut: the least there can be.
+std::size_t least_patches(const Scene& scene, const KeptSides& sides);
+
 /// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
 /// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for
 /// more than 2^31 patches.

@@ -43,6 +43,7 @@ struct Plan {
   std::uint64_t seed = 1;
   SolverOptions solver;
   std::vector<Decision> decisions;
+  std::vector<std::string> notes;  ///< what was asked and cannot be
 };
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.

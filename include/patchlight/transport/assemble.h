@@ -19,6 +19,9 @@ struct AssemblyOptions {
 struct AssemblyCounts {
   std::uint64_t facing_pairs = 0;   ///< pairs that face each other: the entries that are not zero by orientation
   std::uint64_t near_pairs = 0;     ///< of these, closer than two diameters: closed form
+  std::uint64_t hidden_pairs = 0;   ///< pairs of patches that one polygon hides from each other with all around them: 0
+                                    ///< without a look at them; not among the others
+  std::uint64_t free_pairs = 0;     ///< of these, those between which nothing can stand: no shadow ray
   std::uint64_t partial_pairs = 0;  ///< of these, partly occluded: Monte Carlo
   std::uint64_t blocked_pairs = 0;  ///< of these, fully occluded
   std::uint64_t shadow_rays = 0;

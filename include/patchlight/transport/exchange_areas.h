@@ -25,6 +25,8 @@ class ExchangeAreas {
   std::span<float> tile(PatchIndex I, PatchIndex J);
   std::span<const float> tile(PatchIndex I, PatchIndex J) const;
   float at(PatchIndex i, PatchIndex j) const;
+  /// Sets S_ij = S_ji. Different pairs may be set by different threads at once.
+  void set(PatchIndex i, PatchIndex j, float value);
 
   /// Bytes that a matrix of this size takes.
   static std::size_t bytes(PatchIndex size);

@@ -2,7 +2,10 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/scene/scene.h"
+#include "patchlight/visibility/shaft.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -18,6 +21,20 @@ struct Segment {
   Point to;
   PolygonIndex from_polygon = no_polygon;
   PolygonIndex to_polygon = no_polygon;
+};
+
+/// Sixteen shadow rays in the occluder's frame (Occluder::frame), in single precision.
+struct alignas(64) ShadowPacket {
+  static constexpr std::size_t size = 16;
+  std::array<float, size> from_x, from_y, from_z;
+  std::array<float, size> toward_x, toward_y, toward_z;  ///< from one end to the other
+  std::array<PolygonIndex, size> from_polygon, to_polygon;
+};
+
+/// Positions as an occluder traces them: scale * (point - centre).
+struct TracingFrame {
+  Point centre;
+  double scale = 1;  ///< 1 / extent of the scene, 1/m
 };
 
 struct Ray {
@@ -55,6 +72,20 @@ class Occluder {
   /// 1 for each segment that some polygon blocks, 0 for each that is free. Embree works in packets: pass hundreds at
   /// once.
   std::vector<std::uint8_t> occluded(std::span<const Segment> segments) const;
+
+  /// Bit k is set when some polygon blocks ray k. For speed: the ends are given in single precision, so that the rule
+  /// above holds with 3e-7 of the extent instead of 1e-9.
+  std::uint16_t occluded(const ShadowPacket& packet) const;
+
+  TracingFrame frame() const;
+
+  /// Tells where shadow rays are not needed, as nothing is in the way.
+  const ShaftCuller& shafts() const;
+
+  /// True when one polygon hides the convex hulls of two groups of points from each other: it cuts every segment
+  /// between them. May be false when they are hidden by several. The polygons tried are those that a ray between the
+  /// middles meets first from either end.
+  bool hides(std::span<const Point> first, std::span<const Point> second) const;
 
   /// The first polygon that each ray meets, if any.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
+#include <mutex>
 #include <numeric>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -16,6 +18,18 @@ TEST(ParallelFor, CallsEveryIndexOnce) {
   std::vector<int> calls(10000, 0);
   parallel_for(calls.size(), [&](std::size_t k) { ++calls[k]; });
   EXPECT_EQ(calls, std::vector<int>(10000, 1));
+}
+
+TEST(ThreadLimit, HoldsWhileItLives) {
+  const ThreadLimit limit(1);
+  std::mutex writing;
+  std::set<std::thread::id> threads;
+  parallel_for(200, [&](std::size_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // long enough for another thread to take part
+    const std::scoped_lock lock(writing);
+    threads.insert(std::this_thread::get_id());
+  });
+  EXPECT_EQ(threads.size(), 1U);
 }
 
 TEST(ParallelFor, ReportsProgressUpToTheEnd) {

@@ -39,6 +39,24 @@ TEST(MakePlan, InterreflectionOnlyWhereSomethingReflects) {
   EXPECT_TRUE(decision(make_plan(cube_room(0.1, 1), {}), "interreflection").simulate);
 }
 
+// 2,000 small faces in a room of six large ones: these have to be cut as well.
+TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
+  Scene scene = cube_room(0.5, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const Point corner(0.1 + 0.0004 * k, 0.5, 0.5);
+    scene = with_quad(std::move(scene), {corner, corner + Vector(0.0002, 0, 0), corner + Vector(0.0002, 0.0002, 0),
+                                         corner + Vector(0, 0.0002, 0)});
+  }
+  Request request;
+  request.patches = 500;
+  request.sides = Sides::front;
+  const Plan plan = make_plan(scene, request);
+  EXPECT_EQ(plan.notes.size(), 1U);
+  const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  EXPECT_GT(mesh.patches_on(0, Side::front).end - mesh.patches_on(0, Side::front).begin, 30U);
+  EXPECT_NEAR(static_cast<double>(mesh.size()), 2006 * 1.25, 250);
+}
+
 TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
   const Scene scene = furnished_room(0.5);
   for (const std::size_t patches : {1000U, 4000U}) {

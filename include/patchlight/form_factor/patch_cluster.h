@@ -1,0 +1,68 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/form_factor/patch_shape.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// One number for each patch of a cluster: as many as one AVX-512 register holds.
+struct alignas(64) Lanes {
+  static constexpr int count = 16;
+  std::array<float, count> at{};
+};
+
+/// One vector for each patch of a cluster.
+struct LaneVectors {
+  Lanes x, y, z;
+};
+
+/// A quadrature rule for each patch of a cluster; unused points have weight 0.
+template <int capacity>
+struct LaneRules {
+  std::array<LaneVectors, capacity> point;
+  std::array<Lanes, capacity> weight;
+  int count = 0;
+};
+
+/// Some patches that lie near each other, arranged so that form factors with all of them are computed at once, in
+/// single precision. Lengths are divided by `unit`, positions are relative to `centre`, so that rounding is small
+/// against the cluster's size.
+struct PatchCluster {
+  int size = 0;
+  std::array<PatchIndex, Lanes::count> patches{};
+  bool is_planar = false;  ///< all patches lie in one plane and face the same side of it: that of the first patch
+  Point centre;            ///< metres
+  double unit = 1;         ///< metres; the extent of the mesh
+  std::array<LaneVectors, 4> corner;
+  LaneVectors centroid;
+  LaneVectors normal;
+  Lanes radius;  ///< of the circle around the centroid that holds the corners
+  LaneRules<4> coarse;
+  LaneRules<9> fine;
+};
+
+/// All patches in clusters: patches of one plane together where there are enough of them, others by place.
+/// O(size log size).
+std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vector<PatchShape>& shapes);
+
+/// One patch against all patches of a cluster. Bit k of a mask stands for the cluster's patch k.
+struct ClusterRow {
+  Lanes unoccluded;          ///< exchange areas without occluders, m^2; for facing pairs that are not in `exact`
+  std::uint16_t facing = 0;  ///< pairs whose form factor is not 0 by orientation
+  std::uint16_t exact = 0;   ///< of these, those that need unoccluded_exchange_area(): near or straddling
+};
+
+/// The exchange areas of patch `lane` of cluster `first` with the patches of `second`. Relative error below 1e-3: that
+/// of the quadrature of unoccluded_exchange_area(), and rounding of 1e-6.
+ClusterRow cluster_row(const PatchCluster& first, int lane, const PatchCluster& second);
+
+/// True when no patch of one of the clusters can see any of the other: all of one lie behind or in the plane of the
+/// other. Says so for planar clusters alone.
+bool averted(const PatchCluster& first, const PatchCluster& second);
+
+}  // namespace patchlight

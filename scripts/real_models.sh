@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Checks and solves the real models that docs/models.md describes, and makes its pictures.
+# usage: scripts/real_models.sh MODELS OUT [NAME...]    MODELS: folder of the models; names: veach-ajar radiator duplex
+# kitchen. PATCHLIGHT_TOOL is the tool, build/src/patchlight if not set.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+models=${1:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
+out=${2:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
+shift 2
+names=("$@")
+[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen)
+tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
+if [ ! -d "$models" ]; then
+  echo "real models: $models is not there; left out"
+  exit 0
+fi
+mkdir -p "$out"
+
+for name in "${names[@]}"; do
+  echo "real models: $name"
+  case $name in
+    veach-ajar)
+      python3 scripts/mitsuba_to_obj.py "$models/veach-ajar/scene.xml" "$out/veach-ajar.obj" 2>/dev/null
+      files=("$out/veach-ajar.obj")
+      options=(--patches 20000 --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
+      ;;
+    radiator)
+      # A room of 3 x 2.5 x 2.6 m around the radiator, which is modelled in centimetres, and a lamp under its ceiling.
+      printf '%s\n' 'newmtl wall' 'Kd 0.7 0.68 0.62' 'newmtl lamp' 'Kd 0.5 0.5 0.5' 'Ke 10 10 10' >"$out/radiator_room.mtl"
+      printf '%s\n' 'mtllib radiator_room.mtl' 'v -150 0 -12.5' 'v 150 0 -12.5' 'v 150 0 250' 'v -150 0 250' \
+        'v -150 250 -12.5' 'v 150 250 -12.5' 'v 150 250 250' 'v -150 250 250' 'v -30 249 100' 'v 30 249 100' \
+        'v 30 249 160' 'v -30 249 160' 'usemtl wall' 'f 1 4 3 2' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' \
+        'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
+      files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
+      options=(--unit cm --patches 15000 --camera 60,140,240 -10,40,0 55)
+      ;;
+    duplex)
+      files=("$models/duplex-ifc/Duplex_A.ifc")
+      options=(--set Glass.radiance=100 --patches 25000 --camera 1,-1,1.6 7.5,-4.5,1 60)
+      ;;
+    kitchen)
+      python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
+      files=("$out/kitchen.obj")
+      options=()
+      ;;
+  esac
+  # A model without a lamp is reported, and ends with exit code 2.
+  "$tool" check "${files[@]}" $([ "$name" = radiator ] && echo --unit cm) >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
+  [ ${#options[@]} -gt 0 ] || continue
+  "$tool" solve "${files[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+    --verbose >"$out/$name.solve.txt" 2>&1
+done

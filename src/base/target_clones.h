@@ -1,0 +1,13 @@
+#pragma once
+
+/// A function that is compiled for several instruction sets; the machine chooses when the program starts. Sanitizers
+/// and clang take the plain version.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define PATCHLIGHT_TARGET_CLONES __attribute__((target_clones("default", "arch=haswell", "arch=skylake-avx512")))
+#else
+#define PATCHLIGHT_TARGET_CLONES
+#endif
+
+/// What such a function calls has to become part of it.
+#define PATCHLIGHT_INLINE [[gnu::always_inline]] inline

@@ -1,0 +1,102 @@
+#include "patchlight/form_factor/pair_samples.h"
+
+#include "base/target_clones.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+std::array<float, 3> narrow(const Vector& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+// Loops over `count` lanes, which is known to the compiler, so that they become vector instructions.
+template <std::size_t count>
+PATCHLIGHT_INLINE void fill(PairSamples& samples, std::ptrdiff_t lane, const SampledPatch& from, const SampledPatch& to,
+                            const SampleSet& set, std::size_t first, float factor) {
+  const float* const from_set = (from.is_triangle ? set.triangle : set.square) + first;
+  const float* const to_set = (to.is_triangle ? set.triangle : set.square) + first + 2 * set.stride;
+  const float* const u = from_set;
+  const float* const v = from_set + set.stride;
+  const float* const s = to_set;
+  const float* const t = to_set + set.stride;
+  std::array<std::array<float, count>, 3> x;
+  std::array<std::array<float, count>, 3> toward;
+  std::array<float, count> squared{};
+  std::array<float, count> cosine{};
+  std::array<float, count> other{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t k = 0; k < count; ++k) {
+      x[d][k] = from.origin[d] + u[k] * from.along_u[d] + v[k] * (from.along_v[d] + u[k] * from.twist[d]);
+      const float y = to.origin[d] + s[k] * to.along_u[d] + t[k] * (to.along_v[d] + s[k] * to.twist[d]);
+      toward[d][k] = y - x[d][k];
+      squared[k] += toward[d][k] * toward[d][k];
+      cosine[k] += toward[d][k] * from.normal[d];
+      other[k] -= toward[d][k] * to.normal[d];
+    }
+  }
+  std::array<float, count> weight;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float density = (from.density[0] + u[k] * from.density[1] + v[k] * from.density[2]) *
+                          (to.density[0] + s[k] * to.density[1] + t[k] * to.density[2]);
+    weight[k] = factor * density * std::max(0.0F, cosine[k]) * std::max(0.0F, other[k]) / (squared[k] * squared[k]);
+  }
+  ShadowPacket& rays = samples.rays;
+  std::copy(x[0].begin(), x[0].end(), rays.from_x.begin() + lane);
+  std::copy(x[1].begin(), x[1].end(), rays.from_y.begin() + lane);
+  std::copy(x[2].begin(), x[2].end(), rays.from_z.begin() + lane);
+  std::copy(toward[0].begin(), toward[0].end(), rays.toward_x.begin() + lane);
+  std::copy(toward[1].begin(), toward[1].end(), rays.toward_y.begin() + lane);
+  std::copy(toward[2].begin(), toward[2].end(), rays.toward_z.begin() + lane);
+  std::copy(weight.begin(), weight.end(), samples.weight.begin() + lane);
+  std::fill_n(rays.from_polygon.begin() + lane, count, from.polygon);
+  std::fill_n(rays.to_polygon.begin() + lane, count, to.polygon);
+}
+
+}  // namespace
+
+SampledPatch sampled_patch(const PatchShape& shape, PolygonIndex polygon, const TracingFrame& frame) {
+  SampledPatch patch;
+  const auto& p = shape.corners.points;
+  patch.is_triangle = shape.corners.count == 3;
+  const Vector along_u = p[1] - p[0];
+  const Vector along_v = p[patch.is_triangle ? 2 : 3] - p[0];
+  const Vector twist = patch.is_triangle ? Vector(Vector::Zero()) : Vector(p[2] - p[1] - p[3] + p[0]);
+  patch.origin = narrow(frame.scale * (p[0] - frame.centre));
+  patch.along_u = narrow(frame.scale * along_u);
+  patch.along_v = narrow(frame.scale * along_v);
+  patch.twist = narrow(frame.scale * twist);
+  patch.normal = narrow(shape.normal);
+  patch.density = {1, 0, 0};
+  if (!patch.is_triangle) {
+    // |dx/du x dx/dv| over the area, linear in u and v for a planar quadrilateral.
+    patch.density = narrow(Vector(along_u.cross(along_v).dot(shape.normal), along_u.cross(twist).dot(shape.normal),
+                                  twist.cross(along_v).dot(shape.normal)) /
+                           shape.area);
+  }
+  patch.polygon = polygon;
+  return patch;
+}
+
+PATCHLIGHT_TARGET_CLONES
+void add_samples(PairSamples& samples, int lane, int count, const SampledPatch& from, const SampledPatch& to,
+                 const SampleSet& set, std::uint32_t first, double scale) {
+  assert(lane + count <= static_cast<int>(ShadowPacket::size));
+  const auto factor = static_cast<float>(scale * scale / std::numbers::pi);
+  const std::ptrdiff_t at = lane;
+  switch (count) {
+    case 2:
+      return fill<2>(samples, at, from, to, set, first, factor);
+    case 4:
+      return fill<4>(samples, at, from, to, set, first, factor);
+    case 8:
+      return fill<8>(samples, at, from, to, set, first, factor);
+    default:
+      return fill<16>(samples, at, from, to, set, first, factor);
+  }
+}
+
+}  // namespace patchlight
