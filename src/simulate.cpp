@@ -3,7 +3,6 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/solve/energy.h"
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/dense.h"
 #include "patchlight/visibility/occluder.h"
 
@@ -13,7 +12,8 @@
 
 namespace patchlight {
 
-Simulation simulate(const Scene& scene, const Request& request, const Observer& observer) {
+Simulation simulate(const Scene& scene, const Request& request, const Observer& observer,
+                    const ExchangeOf& known_exchange) {
   const ThreadLimit threads(request.threads);
   StageClock clock;
   Simulation result;
@@ -31,18 +31,18 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
 
   // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays; and the share of each patch's
   //    hemisphere from which no patch is seen.
-  const Occluder occluder(scene);
-  Assembly raw = assemble_exchange_areas(mesh, occluder, {plan.probes, plan.samples, plan.seed}, observer);
+  const AssemblyOptions sampling{plan.probes, plan.samples, plan.seed};
+  Exchange exchange = known_exchange ? known_exchange(mesh)
+                                     : trace_exchange(mesh, Occluder(scene), sampling, plan.lost_share_rays, observer);
+  const Eigen::VectorXd area = exchange.area;
   TransportFacts& facts = result.transport;
-  facts.lost = measure_lost_share(mesh, occluder, plan.lost_share_rays, plan.seed, observer);
-  facts.counts = raw.counts;
+  facts.raw_row_sum = exchange.raw_row_sum;
+  facts.lost = exchange.lost;
+  facts.counts = exchange.counts;
   clock.finish(Stage::form_factors);
 
   // 4. Closure: each row sums up to what its patch sees.
-  const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
-  const Eigen::VectorXd area = exposed_area(mesh, facts.lost, seen);
-  facts.raw_row_sum = seen.cwiseQuotient(area);
-  ClosedExchangeAreas closed = close_exchange_areas(std::move(raw.exchange_areas), area, facts.lost, observer);
+  ClosedExchangeAreas closed = close_exchange(std::move(exchange), observer);
   facts.closure = closed.method;
   const auto transport = dense_transport(std::move(closed), area);
   facts.row_sum = transport->apply(Field::Ones(mesh.size(), 1)).matrix();

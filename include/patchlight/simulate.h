@@ -4,9 +4,9 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/solve/problem.h"
-#include "patchlight/transport/assemble.h"
-#include "patchlight/transport/lost_share.h"
+#include "patchlight/transport/exchange.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,7 +39,12 @@ struct Simulation {
   std::vector<StageCost> costs;
 };
 
-/// From a scene to converged radiosities: the whole program. \throws InputError, MemoryError, Cancelled.
-Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {});
+/// The exchange between the patches of a mesh where it is known already.
+using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
+
+/// From a scene to converged radiosities: the whole program. With `known_exchange` no form factor is computed.
+/// \throws InputError, MemoryError, Cancelled, and what `known_exchange` throws.
+Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {},
+                    const ExchangeOf& known_exchange = {});
 
 }  // namespace patchlight

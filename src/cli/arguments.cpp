@@ -4,7 +4,9 @@
 #include "patchlight/output/provenance.h"
 
 #include "cli/check_options.h"
+#include "cli/form_factor_options.h"
 #include "cli/solve_options.h"
+#include "cli/validate_options.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -16,7 +18,7 @@ namespace {
 
 constexpr const char* exit_codes =
     "Exit codes: 0 good, 1 usage, 2 input, 3 not converged (results are written), 4 out of memory,\n"
-    "5 a check failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
+    "5 a validation failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
 
 // Number of insertions, removals and replacements that turn one word into the other (Levenshtein 1966), row by row.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -62,14 +64,23 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
+// "solve, check"
+std::string commands(const CLI::App& tool) {
+  std::string list;
+  for (const CLI::App* command : tool.get_subcommands([](const CLI::App*) { return true; })) {
+    list += (list.empty() ? "" : ", ") + command->get_name();
+  }
+  return list;
+}
+
 void require_one_command(const CLI::App& tool) {
   if (tool.get_subcommands().size() == 1) return;
   const std::vector<std::string> left = tool.remaining();
   if (!left.empty() && left.front()[0] == '-') {
-    throw UsageError("unknown option " + left.front() + "; expected a command: solve or check");
+    throw UsageError("unknown option " + left.front() + "; expected a command: " + commands(tool));
   }
-  if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected: solve or check");
-  throw UsageError("found no command; expected: solve or check. patchlight --help tells more");
+  if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected one of " + commands(tool));
+  throw UsageError("found no command; expected one of " + commands(tool) + ". patchlight --help tells more");
 }
 
 // The command line as one would type it again.
@@ -90,16 +101,23 @@ std::string joined(int count, const char* const* values) {
   return line;
 }
 
-}  // namespace
-
-Arguments parse_arguments(int count, const char* const* values) {
-  CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
+// What the tool says about itself.
+void add_information(CLI::App& tool) {
   tool.get_formatter()->column_width(30);
   tool.set_version_flag("--version", std::string("patchlight ") + version(), "prints the version");
   tool.set_help_flag("-h,--help", "prints this help");
   tool.footer(std::string("patchlight COMMAND --help lists the options of a command.\n\n") + exit_codes);
+}
+
+}  // namespace
+
+Arguments parse_arguments(int count, const char* const* values) {
+  CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
+  add_information(tool);
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
+  const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
+  const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
   for (CLI::App* command : tool.get_subcommands({})) {
     command->footer(exit_codes);
@@ -113,6 +131,12 @@ Arguments parse_arguments(int count, const char* const* values) {
     const CLI::App& command = *tool.get_subcommands().front();
     require_nothing_left(command, command.get_name(), tool.remaining(true));
     if (command.get_name() == "check") return finish_check(*check_options);
+    if (command.get_name() == "validate") return finish_validate(*validate_options);
+    if (command.get_name() == "form-factors") {
+      FormFactorArguments arguments = finish_form_factors(*form_factor_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
     SolveArguments arguments = finish_solve(*solve_options);
     arguments.command_line = joined(count, values);
     return arguments;

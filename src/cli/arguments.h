@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
@@ -37,6 +38,8 @@ struct SolveArguments {
   PictureColors colors = PictureColors::natural;
   std::optional<Camera> camera;
 
+  std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
+
   std::filesystem::path points;         ///< input: where irradiance is wanted
   std::filesystem::path points_output;  ///< .csv
 
@@ -53,12 +56,32 @@ struct CheckArguments {
   bool json_on_stdout = false;     ///< instead of the text
 };
 
+/// What `patchlight form-factors` is asked to do.
+struct FormFactorArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  std::filesystem::path output;  ///< a folder, or a file .npy or .mtx for the matrix alone
+  MatrixFormat format = MatrixFormat::npy;
+  bool close = true;
+  std::optional<GroupBy> by;  ///< the table of groups that is wanted
+  bool quiet = false;
+  std::string command_line;  ///< for the record
+};
+
+/// What `patchlight validate` is asked to do.
+struct ValidateArguments {
+  std::filesystem::path json;   ///< .json; empty when it is not wanted
+  bool json_on_stdout = false;  ///< instead of the table
+  int threads = 0;              ///< 0: all processors
+};
+
 /// A text that the user asked for: --help or --version.
 struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments, CheckArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -3,9 +3,11 @@
 #include "cli/arguments.h"
 #include "cli/check.h"
 #include "cli/exit_code.h"
+#include "cli/form_factors.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/solve.h"
+#include "cli/validate.h"
 
 #include <csignal>
 #include <exception>
@@ -25,6 +27,10 @@ ExitCode run(int count, const char* const* values) {
     return good;
   }
   if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
+  if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
+  if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
+    return validate(*to_validate, validation_cases());
+  }
   return solve(std::get<SolveArguments>(arguments));
 }
 

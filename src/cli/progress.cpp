@@ -19,8 +19,11 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { hide(); }
+
+void ProgressLine::hide() {
   if (width_ > 0) std::cerr << '\r' << std::string(width_, ' ') << '\r' << std::flush;
+  width_ = 0;
 }
 
 void ProgressLine::show(const Progress& progress) {

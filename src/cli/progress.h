@@ -17,6 +17,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(const Progress& progress);
+  /// Erases the line, so that something else can be printed.
+  void hide();
 
  private:
   bool visible_;

@@ -1,5 +1,6 @@
 #include "cli/solve.h"
 
+#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/output/whole_file.h"
@@ -46,6 +47,27 @@ void check_outputs(const SolveArguments& arguments) {
   }
 }
 
+// What is asked for, and where form factors come from.
+struct KnownFormFactors {
+  Request request;
+  ExchangeOf exchange;  // empty: they are computed
+};
+
+// Stored form factors bring the options that they were made with.
+KnownFormFactors known_form_factors(const SolveArguments& arguments) {
+  KnownFormFactors known{arguments.request, {}};
+  if (arguments.form_factors.empty()) return known;
+  const FormFactorInfo info = read_form_factor_info(arguments.form_factors);
+  if (!known.request.max_edge && !known.request.patches) known.request.max_edge = info.max_edge;
+  if (known.request.sides == Sides::automatic) known.request.sides = info.sides;
+  known.request.samples = info.samples;
+  known.request.seed = info.seed;
+  known.exchange = [folder = arguments.form_factors, info](const PatchMesh& mesh) {
+    return read_exchange(folder, info, mesh);
+  };
+  return known;
+}
+
 Results compute(const SolveArguments& arguments, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
@@ -58,12 +80,13 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   reading.finish(Stage::read);
 
   // 2. Solve
-  simulation = simulate(results.scene, arguments.request, [&](const Progress& progress) {
-    if (progress.irradiance != nullptr && !arguments.series.empty()) {
+  const KnownFormFactors known = known_form_factors(arguments);
+  const auto keep_iterates = [&](const Progress& progress) {
+    if (progress.irradiance && !arguments.series.empty())
       results.iterates.emplace_back(progress.irradiance->cast<float>());
-    }
     return observer(progress);
-  });
+  };
+  simulation = simulate(results.scene, known.request, keep_iterates, known.exchange);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_result.h"
 
+#include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
 
@@ -26,13 +27,12 @@ struct CameraOption {
 struct SolveOptions {
   ModelOptions model;
   std::vector<std::string> results;
-  std::string series, report, picture, points, points_output;
+  std::string series, report, picture, points, points_output, form_factors;
   bool solver_given = false;
   std::optional<Vector> up;
-  std::optional<double> max_edge;
   std::optional<CameraOption> camera;
   std::optional<PictureColors> colors;
-  Request request;
+  MeshOptions mesh;
   bool quiet = false;
   bool verbose = false;
 };
@@ -102,24 +102,19 @@ void add_model(CLI::App& command, SolveOptions& options) {
       [&options](const std::string& text) {
         options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });
-  add(command, "--sides", "auto|front|both",
-      "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
-      [&options](const std::string& text) {
-        options.request.sides = choice<Sides>(
-            "--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
-      });
+  add_sides_option(command, options.mesh);
 }
 
 void add_accuracy(CLI::App& command, SolveOptions& options) {
-  Request& request = options.request;
-  add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
+  Request& request = options.mesh.request;
+  add_patch_options(command, options.mesh);
+  add(command, "--form-factors", "FOLDER",
+      "what patchlight form-factors has written for this model:\ntaken from there, with the options of then; "
+      "default:\ncomputed",
       [&options](const std::string& text) {
-        options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
+        if (text.empty()) throw refusal("--form-factors", text, "the name of a folder");
+        options.form_factors = text;
       });
-  add(command, "--patches", "N",
-      "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
-          std::to_string(default_patches),
-      [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
   add(command, "--solver", "jacobi|gauss-seidel|progressive",
       "how the equations are solved; default gauss-seidel, with\n--series jacobi",
       [&request, &options](const std::string& text) {
@@ -137,21 +132,7 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
       [&request](const std::string& text) {
         request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
       });
-  add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
-      [&request](const std::string& text) {
-        request.samples = static_cast<int>(whole_number("--samples", text, 4, 65536));
-      });
-  add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
-      [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
-  add(command, "--threads", "N", "number of threads; default 0: one per processor",
-      [&request](const std::string& text) {
-        request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
-      });
-  add(command, "--memory", "SIZE",
-      "memory that may be taken, e.g. 2GB or 500MiB; what needs more is\nrefused before it begins; default: 80 % of "
-      "the "
-      "machine's",
-      [&request](const std::string& text) { request.memory = bytes("--memory", text); });
+  add_sampling_options(command, options.mesh);
 }
 
 void require_extension(const std::string& option, const std::string& file, const std::vector<std::string>& allowed) {
@@ -170,9 +151,6 @@ void require_consistent(const SolveOptions& options) {
       options.points.empty()) {
     throw UsageError(
         "solve: nothing would be written; give at least one of -o, --series, --picture, --report, --points");
-  }
-  if (options.max_edge && options.request.patches) {
-    throw UsageError("--max-edge and --patches both set the size of the patches; give one of them");
   }
   if (options.picture.empty() && (options.camera || options.colors)) {
     throw UsageError(std::string(options.camera ? "--camera" : "--false-color") + " needs --picture FILE");
@@ -236,8 +214,8 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.read.up = options.up;
-  arguments.request = options.request;
-  if (options.max_edge) arguments.request.max_edge = *options.max_edge * metres;
+  arguments.request = mesh_request(options.mesh, metres);
+  arguments.form_factors = options.form_factors;
   if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
   arguments.results.assign(options.results.begin(), options.results.end());
   arguments.series = options.series;

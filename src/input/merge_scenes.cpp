@@ -1,6 +1,6 @@
 #include "input/merge_scenes.h"
 
-#include "input/sha256.h"
+#include "base/sha256.h"
 
 #include <algorithm>
 #include <cassert>

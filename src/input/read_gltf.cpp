@@ -2,11 +2,11 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sha256.h"
 #include "input/gltf_material.h"
 #include "input/gltf_model.h"
 #include "input/isolated.h"
 #include "input/materials.h"
-#include "input/sha256.h"
 
 #include <array>
 

@@ -1,8 +1,8 @@
 #include "input/read_ifc.h"
 
+#include "base/sha256.h"
 #include "input/assimp_scene.h"
 #include "input/isolated.h"
-#include "input/sha256.h"
 #include "input/text.h"
 
 #include <cmath>

@@ -2,10 +2,10 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sha256.h"
 #include "input/obj_libraries.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
-#include "input/sha256.h"
 #include "input/text.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sha256.h"
 #include "input/materials.h"
 #include "input/ply_body.h"
-#include "input/sha256.h"
 #include "input/text.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sha256.h"
 #include "input/materials.h"
-#include "input/sha256.h"
 #include "input/text.h"
 
 #include <array>

@@ -2,7 +2,8 @@
 
 #include "patchlight/base/error.h"
 
-#include <atomic>
+#include "output/temporary.h"
+
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -18,26 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view temporary_prefix = ".patchlight-";
-
-// A name beside `file` that no other process and no other call uses. The extension stays, as writers look at it.
-fs::path temporary_beside(const fs::path& file) {
-  static std::atomic<unsigned> calls{0};
-  const std::string name = std::string(temporary_prefix) + std::to_string(getpid()) + "-" + std::to_string(calls++);
-  return file.parent_path() / (name + file.extension().string());
-}
-
-// The file itself, absolute, where `file` is a symbolic link to it: renaming would replace the link.
-fs::path followed(const fs::path& file) {
-  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
-  std::error_code ignored;
-  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file) : fs::absolute(file);
-}
-
-[[noreturn]] void fail(const fs::path& file, const std::string& message, int error_number) {
-  throw OutputError(file.string(), message + ": " + std::strerror(error_number));
-}
-
 // An empty file, locked as long as this lives: an unlocked one was left by a run that was killed. Gone at the end,
 // unless it was renamed.
 class TemporaryFile {
@@ -46,7 +27,7 @@ class TemporaryFile {
   TemporaryFile(fs::path path, const fs::path& file) : path_(std::move(path)) {
     while (!is_locked()) {
       descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0) fail(file, "cannot write into this folder", errno);
+      if (descriptor_ < 0) fail_writing(file, "cannot write into this folder", errno);
     }
   }
   ~TemporaryFile() {
@@ -87,15 +68,6 @@ void remove_left_files(const fs::path& folder) {
   }
 }
 
-void flush_to_disk(const fs::path& path, const fs::path& file) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(file, "cannot be written", errno);
-  // Some file systems cannot flush a folder: EINVAL.
-  const int error_number = fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
-  close(descriptor);
-  if (error_number != 0) fail(file, "cannot be written to disk", error_number);
-}
-
 void check_target(const fs::path& file, const fs::path& target) {
   const fs::path folder = target.parent_path();
   if (target.filename().empty() || fs::is_directory(target)) {
@@ -108,7 +80,7 @@ void check_target(const fs::path& file, const fs::path& target) {
   if (!fs::is_regular_file(target)) {
     throw OutputError(file.string(), "is a device or a pipe; expected the name of a file to write");
   }
-  if (access(target.c_str(), W_OK) != 0) fail(file, "exists and cannot be replaced", errno);
+  if (access(target.c_str(), W_OK) != 0) fail_writing(file, "exists and cannot be replaced", errno);
 }
 
 }  // namespace

@@ -12,18 +12,6 @@ namespace {
 // Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;
 
-const char* name_of_sides(Sides sides) {
-  switch (sides) {
-    case Sides::automatic:
-      return "auto";
-    case Sides::front:
-      return "front";
-    case Sides::both:
-      return "both";
-  }
-  return "";
-}
-
 template <class Values>
 Json array_of(const Values& values) {
   Json array = Json::array();
@@ -50,7 +38,7 @@ Json request_part(const Request& request) {
   Json part;
   part["max_edge_m"] = json_of(request.max_edge);
   part["patches"] = json_of(request.patches);
-  part["sides"] = name_of_sides(request.sides);
+  part["sides"] = name_of(request.sides);
   part["solver"] = name_of(request.solver);
   part["tolerance"] = request.tolerance;
   part["max_iterations"] = request.max_iterations;

@@ -11,13 +11,6 @@
 namespace patchlight {
 namespace {
 
-bool has_lamp(const Scene& scene) {
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_lamp(scene, p)) return true;
-  }
-  return false;
-}
-
 void require_lamp(const Scene& scene) {
   if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
 }
@@ -56,8 +49,14 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
-  assert(!request.max_edge || *request.max_edge > 0);
   require_lamp(scene);
+  Plan plan = plan_form_factors(scene, request);
+  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  return plan;
+}
+
+Plan plan_form_factors(const Scene& scene, const Request& request) {
+  assert(!request.max_edge || *request.max_edge > 0);
   Plan plan;
   plan.sides = kept_sides(scene, request.sides);
   if (request.max_edge) {
@@ -73,7 +72,6 @@ Plan make_plan(const Scene& scene, const Request& request) {
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
   plan.solver = {request.solver, request.tolerance, request.max_iterations};
-  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
   return plan;
 }
 

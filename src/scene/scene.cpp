@@ -93,6 +93,13 @@ bool is_lamp(const Scene& scene, PolygonIndex polygon) {
   return emits(scene, polygon, Side::front) || emits(scene, polygon, Side::back);
 }
 
+bool has_lamp(const Scene& scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_lamp(scene, p)) return true;
+  }
+  return false;
+}
+
 std::string place_of(const Scene& scene, const Polygon& polygon) {
   const std::string& file = polygon.file < scene.files.size() ? scene.files[polygon.file] : scene.file;
   return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;

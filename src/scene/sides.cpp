@@ -152,6 +152,18 @@ KeptSides automatic_sides(const Scene& scene) {
 
 }  // namespace
 
+const char* name_of(Sides sides) {
+  switch (sides) {
+    case Sides::automatic:
+      return "auto";
+    case Sides::front:
+      return "front";
+    case Sides::both:
+      return "both";
+  }
+  return "";
+}
+
 KeptSides kept_sides(const Scene& scene, Sides sides) {
   if (sides == Sides::automatic) return automatic_sides(scene);
   KeptSides kept;

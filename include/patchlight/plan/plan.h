@@ -53,4 +53,7 @@ inline constexpr std::size_t default_patches = 4000;
 /// \throws InputError when the scene has no lamp.
 Plan make_plan(const Scene& scene, const Request& request);
 
+/// The same for a scene that need not have a lamp, without decisions about light: what form factors take.
+Plan plan_form_factors(const Scene& scene, const Request& request);
+
 }  // namespace patchlight

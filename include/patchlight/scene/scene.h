@@ -78,6 +78,9 @@ bool emits(const Scene& scene, PolygonIndex polygon, Side side);
 /// True when one of the polygon's sides emits.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
 
+/// True when some polygon is a lamp.
+bool has_lamp(const Scene& scene);
+
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
 /// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
 /// whose files do not say.

@@ -16,6 +16,9 @@ enum class Sides {
   both        ///< both sides of every polygon
 };
 
+/// "auto", "front" or "both", as on the command line.
+const char* name_of(Sides sides);
+
 /// The sides that become patches, per polygon.
 struct KeptSides {
   std::vector<std::uint8_t> front;  ///< 1 when the polygon's front side is kept

@@ -1,4 +1,4 @@
-#include "input/sha256.h"
+#include "base/sha256.h"
 
 #include <array>
 #include <memory>

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "patchlight/archive/group_factors.h"
+#include "patchlight/form_factors.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// How a matrix is stored.
+enum class MatrixFormat {
+  npy,           ///< numpy's .npy: dense, 32-bit floats
+  matrix_market  ///< Matrix Market .mtx: coordinates of what is not zero
+};
+
+/// What form factors are made of, for writing.
+struct FormFactorResult {
+  const Scene& scene;
+  const FormFactors& form_factors;
+  std::vector<GroupFactors> groups;  ///< the tables to write, if any
+  std::string command_line;          ///< for the record
+  MatrixFormat format = MatrixFormat::npy;
+};
+
+/// Writes the matrix F_ij = S_ij / A_i alone, rows and columns in the order of the patches. \throws OutputError,
+/// Cancelled.
+void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,
+                  const Observer& observer = {});
+
+/// Writes a folder, whole or not at all: F.npy or F.mtx, area.npy, lost_share.npy, raw_row_sum.npy, mesh.vtp,
+/// info.json and the tables by_material.csv and by_object.csv if there are any. docs/output.md describes them. \throws
+/// OutputError, Cancelled.
+void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result,
+                        const Observer& observer = {});
+
+/// Fails early: \throws OutputError when write_form_factors could not write here.
+void check_form_factors_writable(const std::filesystem::path& folder);
+
+/// How stored form factors were made.
+struct FormFactorInfo {
+  std::string geometry_sha256;  ///< of the patches
+  std::string model;            ///< the model's file
+  PatchIndex patches = 0;
+  MatrixFormat format = MatrixFormat::npy;
+  std::string closure;  ///< the method that closed them; empty if none did
+  double max_edge = 0;  ///< metres
+  Sides sides = Sides::automatic;
+  int samples = 16;
+  std::uint64_t seed = 1;
+  int lost_share_rays = 256;
+  AssemblyCounts counts;
+};
+
+/// Reads info.json of such a folder. \throws InputError.
+FormFactorInfo read_form_factor_info(const std::filesystem::path& folder);
+
+/// Reads the form factors of this mesh. \throws InputError when they belong to another one, or are none.
+Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);
+
+}  // namespace patchlight

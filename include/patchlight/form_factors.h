@@ -1,0 +1,23 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/transport/exchange.h"
+
+namespace patchlight {
+
+/// The form factors between the patches of a scene.
+struct FormFactors {
+  Request request;  ///< as it was carried out
+  Plan plan;
+  PatchMesh mesh;
+  Exchange exchange;
+};
+
+/// The first half of simulate(), for a scene that need not have a lamp: without one Sides::automatic means the front
+/// sides. With `close` the exchange areas are closed; what their storage as floats takes from the rows, below 1e-7 of
+/// the area, is left out. \throws InputError, MemoryError, Cancelled.
+FormFactors find_form_factors(const Scene& scene, const Request& request, bool close, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+namespace patchlight {
+
+/// True for a folder that may be replaced: one with an earlier result.
+using MayReplace = std::function<bool(const std::filesystem::path& folder)>;
+
+/// Lets `write` fill a temporary folder beside `folder` and renames it to `folder`: whoever looks sees the old folder
+/// or the whole new one. When `write` throws, the temporary folder is removed and `folder` stays as it was. \throws
+/// OutputError when the place is not writable, or `folder` is a file or holds what may not be replaced.
+void write_whole_folder(const std::filesystem::path& folder, const MayReplace& may_replace,
+                        const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Fails early: \throws OutputError when write_whole_folder could not write here. Removes what killed runs have left.
+void check_folder_writable(const std::filesystem::path& folder, const MayReplace& may_replace);
+
+}  // namespace patchlight

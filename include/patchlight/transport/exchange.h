@@ -1,0 +1,35 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/closure.h"
+#include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/lost_share.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <Eigen/Core>
+#include <string>
+
+namespace patchlight {
+
+/// What passes between the patches of a mesh. Geometry alone decides it.
+struct Exchange {
+  ExchangeAreas exchange_areas;
+  Eigen::VectorXd area;         ///< m^2, the exposed part of each patch: F_ij = S_ij / A_i
+  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
+  LostShare lost;
+  AssemblyCounts counts;
+  std::string closure;  ///< the method that has closed the exchange areas; empty before closure
+};
+
+/// Exchange areas before closure, and the share of each patch's hemisphere from which no patch is seen.
+/// \throws Cancelled.
+Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                        int lost_share_rays, const Observer& observer = {});
+
+/// Closes what is not closed yet, see close_exchange_areas(). In a closed scene rows are met again, so that floats that
+/// were stored on the way lose nothing. \throws Cancelled.
+ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,19 @@
+#pragma once
+
+// The files of a folder of form factors.
+namespace patchlight::file_name {
+
+inline constexpr const char* dense = "F.npy";
+inline constexpr const char* sparse = "F.mtx";
+inline constexpr const char* area = "area.npy";
+inline constexpr const char* lost_share = "lost_share.npy";
+inline constexpr const char* raw_row_sum = "raw_row_sum.npy";
+inline constexpr const char* mesh = "mesh.vtp";
+inline constexpr const char* info = "info.json";
+inline constexpr const char* by_material = "by_material.csv";
+inline constexpr const char* by_object = "by_object.csv";
+
+/// The value of info.json's key "kind".
+inline constexpr const char* kind = "patchlight form factors";
+
+}  // namespace patchlight::file_name

@@ -1,0 +1,174 @@
+#include "archive/npy.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/whole_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+namespace patchlight {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the arrays are little endian");
+
+constexpr std::string_view magic = "\x93NUMPY";
+constexpr std::size_t alignment = 64;  // of the first value, as the format asks
+constexpr std::size_t longest_header = 65536;
+
+std::string header(const std::string& type, const std::string& shape) {
+  std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  const std::size_t before = magic.size() + 4;
+  text.append(alignment - 1 - (before + text.size()) % alignment, ' ');
+  text += '\n';
+  const auto length = static_cast<unsigned>(text.size());
+  return std::string(magic) + '\1' + '\0' + static_cast<char>(length & 255) + static_cast<char>(length >> 8) + text;
+}
+
+void close_or_fail(std::ofstream& stream, const std::filesystem::path& file) {
+  stream.close();
+  if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+}
+
+// The bytes that tell how long the header is: two in version 1, four later.
+std::size_t header_length(std::ifstream& stream, int version) {
+  std::array<unsigned char, 4> bytes{};
+  const std::size_t count = version == 1 ? 2 : 4;
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+  std::size_t length = 0;
+  for (std::size_t k = 0; k < count; ++k) length |= std::size_t{bytes[k]} << (8 * k);
+  return stream ? length : 0;
+}
+
+// The dictionary at the beginning of the file; nothing when there is none.
+std::optional<std::string> read_header(std::ifstream& stream) {
+  std::array<char, 8> start{};
+  stream.read(start.data(), start.size());
+  if (!stream || std::string_view(start.data(), magic.size()) != magic || start[6] < 1 || start[6] > 3) return {};
+  const std::size_t length = header_length(stream, start[6]);
+  if (length == 0 || length > longest_header) return {};
+  std::string text(length, ' ');
+  stream.read(text.data(), static_cast<std::streamsize>(length));
+  return stream ? std::optional(text) : std::nullopt;
+}
+
+// What follows a key of the dictionary; nothing when it has no such key.
+std::string_view value_of(std::string_view dictionary, std::string_view key) {
+  const std::size_t place = dictionary.find(key);
+  if (place == std::string_view::npos) return {};
+  const std::string_view rest = dictionary.substr(place + key.size());
+  return rest.substr(std::min(rest.size(), rest.find_first_not_of(' ')));
+}
+
+// The numbers of a shape "(12, 34)" or "(12,)"; nothing when it is none.
+std::vector<std::size_t> shape_of(std::string_view text) {
+  const std::size_t end = text.find(')');
+  if (!text.starts_with('(') || end == std::string_view::npos) return {};
+  std::vector<std::size_t> shape;
+  for (std::size_t begin = 1; begin < end; begin = text.find_first_not_of(", ", begin)) {
+    std::size_t count = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, count);
+    if (error != std::errc()) return {};
+    shape.push_back(count);
+    begin = static_cast<std::size_t>(rest - text.data());
+  }
+  return shape;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
+  throw InputError(file.string(), "found " + found +
+                                      "; expected an array of numpy (.npy) of type '<f4' or '<f8', in C order, of one "
+                                      "or two dimensions, and as many values as its header says");
+}
+
+}  // namespace
+
+void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns,
+               const std::function<void(std::size_t row, std::span<float> values)>& fill) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << header("<f4", std::to_string(rows) + ", " + std::to_string(columns));
+    std::vector<float> values(columns);
+    for (std::size_t row = 0; row < rows && stream; ++row) {
+      fill(row, values);
+      stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(columns * sizeof(float)));
+    }
+    close_or_fail(stream, file);
+  });
+}
+
+void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    std::string shape = std::to_string(values.rows()) + ',';
+    if (values.cols() > 1) shape.append(1, ' ').append(std::to_string(values.cols()));
+    stream << header("<f8", shape);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> in_rows = values;
+    stream.write(reinterpret_cast<const char*>(in_rows.data()),
+                 static_cast<std::streamsize>(in_rows.size() * static_cast<Eigen::Index>(sizeof(double))));
+    close_or_fail(stream, file);
+  });
+}
+
+NpyReader::NpyReader(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+  if (!stream_) throw InputError(file.string(), "cannot be read; is it there?");
+  const std::string text = read_header(stream_).value_or("");
+  if (text.empty()) refuse(file, "no header");
+  const std::string_view type = value_of(text, "'descr':");
+  const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
+  if (!(type.starts_with("'<f4'") || type.starts_with("'<f8'")) ||
+      !value_of(text, "'fortran_order':").starts_with("False") || shape.empty() || shape.size() > 2) {
+    refuse(file, "the header " + text.substr(0, text.find('\n')));
+  }
+  bytes_per_value_ = type[3] == '4' ? 4 : 8;
+  rows_ = shape[0];
+  columns_ = shape.size() == 2 ? shape[1] : 1;
+
+  // No product of counts is formed: it might not fit.
+  const auto bytes = std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream_.tellg());
+  const auto values = bytes / bytes_per_value_;
+  const bool empty = rows_ == 0 || columns_ == 0;
+  const bool fits =
+      empty ? bytes == 0 : bytes % bytes_per_value_ == 0 && values % rows_ == 0 && values / rows_ == columns_;
+  if (!fits) refuse(file, std::to_string(bytes) + " bytes after the header " + text.substr(0, text.find('\n')));
+}
+
+std::vector<double> NpyReader::next_row() {
+  std::vector<char> bytes(columns_ * bytes_per_value_);
+  stream_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream_) throw InputError(file_.string(), "cannot be read to its end");
+  std::vector<double> values(columns_);
+  for (std::size_t k = 0; k < columns_; ++k) {
+    if (bytes_per_value_ == sizeof(double)) {
+      std::memcpy(&values[k], &bytes[k * sizeof(double)], sizeof(double));
+    } else {
+      float value = 0;
+      std::memcpy(&value, &bytes[k * sizeof(float)], sizeof(float));
+      values[k] = static_cast<double>(value);
+    }
+  }
+  return values;
+}
+
+Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns) {
+  NpyReader reader(file);
+  if (reader.rows() != rows || reader.columns() != columns) {
+    throw InputError(file.string(), "found " + std::to_string(reader.rows()) + " x " +
+                                        std::to_string(reader.columns()) + " values; expected " + std::to_string(rows) +
+                                        " x " + std::to_string(columns));
+  }
+  Eigen::MatrixXd values(rows, columns);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::vector<double> next = reader.next_row();
+    values.row(static_cast<Eigen::Index>(row)) = Eigen::Map<const Eigen::RowVectorXd>(next.data(), values.cols());
+  }
+  return values;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// Writes an array of 32-bit floats, shape rows x columns, in C order: numpy's .npy, version 1.0 (NEP 1). `fill` is
+/// asked for one row after the other. \throws OutputError, and what `fill` throws.
+void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns,
+               const std::function<void(std::size_t row, std::span<float> values)>& fill);
+
+/// Writes an array of doubles; of one dimension if it has one column. \throws OutputError.
+void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values);
+
+/// Reads an array of 32 or 64-bit floats in C order of one dimension (one column) or two, row by row.
+class NpyReader {
+ public:
+  /// \throws InputError when the file is not such an array, or does not hold as many values as it says.
+  explicit NpyReader(const std::filesystem::path& file);
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return columns_; }
+  /// The next row; it must be there. \throws InputError when the file cannot be read.
+  std::vector<double> next_row();
+
+ private:
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::size_t rows_ = 0;
+  std::size_t columns_ = 0;
+  std::size_t bytes_per_value_ = 0;
+};
+
+/// A whole array. \throws InputError, also when its shape is not this.
+Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns);
+
+}  // namespace patchlight

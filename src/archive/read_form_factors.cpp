@@ -1,0 +1,158 @@
+#include "patchlight/archive/form_factor_files.h"
+#include "patchlight/base/error.h"
+
+#include "archive/file_names.h"
+#include "archive/geometry_hash.h"
+#include "archive/npy.h"
+#include "transport/narrow.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr PatchIndex edge = ExchangeAreas::edge;
+
+// Both halves of a symmetric matrix were rounded to float, each after a division.
+constexpr double reciprocity_tolerance = 1e-5;
+
+Sides sides_of(const std::string& name) {
+  for (const Sides sides : {Sides::automatic, Sides::front, Sides::both}) {
+    if (name == name_of(sides)) return sides;
+  }
+  throw InputError("sides", "found '" + name + "'; expected auto, front or both");
+}
+
+FormFactorInfo info_of(const Json& json) {
+  FormFactorInfo info;
+  info.geometry_sha256 = json.at("geometry_sha256").get<std::string>();
+  info.model = json.at("input").at("file").get<std::string>();
+  info.patches = json.at("patches").get<PatchIndex>();
+  info.format = json.at("matrix").get<std::string>() == "npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
+  if (!json.at("closure").is_null()) info.closure = json.at("closure").get<std::string>();
+  const Json& options = json.at("options");
+  info.max_edge = options.at("max_edge_m").get<double>();
+  info.sides = sides_of(options.at("sides").get<std::string>());
+  info.samples = options.at("samples").get<int>();
+  info.seed = options.at("seed").get<std::uint64_t>();
+  info.lost_share_rays = options.at("lost_share_rays").get<int>();
+  const Json& counts = json.at("counts");
+  info.counts.facing_pairs = counts.at("facing_pairs").get<std::uint64_t>();
+  info.counts.near_pairs = counts.at("near_pairs").get<std::uint64_t>();
+  info.counts.hidden_pairs = counts.at("hidden_pairs").get<std::uint64_t>();
+  info.counts.free_pairs = counts.at("free_pairs").get<std::uint64_t>();
+  info.counts.partial_pairs = counts.at("partly_occluded_pairs").get<std::uint64_t>();
+  info.counts.blocked_pairs = counts.at("blocked_pairs").get<std::uint64_t>();
+  info.counts.shadow_rays = counts.at("shadow_rays").get<std::uint64_t>();
+  return info;
+}
+
+void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
+  const std::string wanted = geometry_hash(mesh);
+  if (info.geometry_sha256 == wanted && info.patches == mesh.size()) return;
+  std::ostringstream text;
+  text << "found form factors of " << info.patches << " patches with geometry " << info.geometry_sha256.substr(0, 12)
+       << ", made from " << info.model << " with edges up to " << info.max_edge << " m and --sides "
+       << name_of(info.sides) << "; expected those of " << mesh.size() << " patches with geometry "
+       << wanted.substr(0, 12) << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
+       << ". Give the same model, --unit and --sides as then, and neither --max-edge nor --patches; with --sides auto "
+          "the "
+          "lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
+       << folder.string();
+  throw InputError(folder.string(), text.str());
+}
+
+void require_positive(const std::filesystem::path& file, const Eigen::VectorXd& values) {
+  if (values.allFinite() && (values.array() > 0).all()) return;
+  throw InputError(file.string(), "found an area that is not above 0; make the form factors anew");
+}
+
+void require_shares(const std::filesystem::path& file, const Eigen::MatrixXd& values) {
+  if (values.allFinite() && (values.array() >= 0).all() && (values.array() <= 1).all()) return;
+  throw InputError(file.string(), "found a share outside 0 to 1; make the form factors anew");
+}
+
+// Refuses an entry of F that cannot be: `other` is A_j F_ji in m^2.
+void require_plausible(const std::filesystem::path& file, double form_factor, double exchange_area, double other) {
+  const double rounding =
+      reciprocity_tolerance * std::max(exchange_area, other) + static_cast<double>(std::numeric_limits<float>::min());
+  if (std::isfinite(form_factor) && form_factor >= 0 && std::abs(exchange_area - other) <= rounding) return;
+  std::ostringstream text;
+  text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
+       << " where A_j F_ji = " << other
+       << "; expected equal numbers, finite and not negative. Make the form factors anew";
+  throw InputError(file.string(), text.str());
+}
+
+// S_ij = A_i F_ij from the rows of F.
+ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen::VectorXd& area) {
+  const auto size = static_cast<PatchIndex>(area.size());
+  NpyReader reader(file);
+  if (reader.rows() != size || reader.columns() != size) {
+    throw InputError(file.string(),
+                     "found " + std::to_string(reader.rows()) + " x " + std::to_string(reader.columns()) +
+                         " values; expected one row and one column for each of " + std::to_string(size) + " patches");
+  }
+  ExchangeAreas S(size);
+  for (PatchIndex i = 0; i < size; ++i) {
+    const std::vector<double> F = reader.next_row();
+    for (PatchIndex j = 0; j < size; ++j) {
+      const double exchange_area = area[i] * F[j];
+      const double other = j < i ? static_cast<double>(S.at(j, i)) : exchange_area;
+      require_plausible(file, F[j], exchange_area, other);
+      const float entry = narrow_toward_zero(exchange_area);
+      if (j >= i) S.tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge] = entry;
+      if (j > i && i / edge == j / edge) {
+        S.tile(i / edge, j / edge)[static_cast<std::size_t>(j % edge) * edge + i % edge] = entry;
+      }
+    }
+  }
+  return S;
+}
+
+}  // namespace
+
+FormFactorInfo read_form_factor_info(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / file_name::info;
+  std::ifstream stream(file);
+  if (!stream) {
+    throw InputError(folder.string(), std::string("there is no ") + file_name::info +
+                                          " in it; expected a folder that patchlight form-factors has written");
+  }
+  try {
+    const Json json = Json::parse(stream);
+    if (json.at("kind") != file_name::kind) throw InputError("kind", "found " + json.at("kind").dump());
+    return info_of(json);
+  } catch (const std::exception& error) {
+    throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
+                                        "); make the form factors anew");
+  }
+}
+
+Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
+  require_same_geometry(folder, info, mesh);
+  if (info.format != MatrixFormat::npy) {
+    throw InputError(folder.string(), "found F.mtx; expected F.npy. Make the form factors anew, without --matrix mtx");
+  }
+  const std::size_t size = info.patches;
+  Eigen::VectorXd area = read_npy(folder / file_name::area, size, 1);
+  require_positive(folder / file_name::area, area);
+  const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 3);
+  require_shares(folder / file_name::lost_share, lost);
+  Eigen::VectorXd raw_row_sum = read_npy(folder / file_name::raw_row_sum, size, 1);
+  ExchangeAreas S = read_exchange_areas(folder / file_name::dense, area);
+  return {std::move(S),
+          std::move(area),
+          std::move(raw_row_sum),
+          {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays},
+          info.counts,
+          info.closure};
+}
+
+}  // namespace patchlight

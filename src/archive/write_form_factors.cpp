@@ -1,0 +1,155 @@
+#include "patchlight/archive/form_factor_files.h"
+#include "patchlight/base/error.h"
+#include "patchlight/output/provenance.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/whole_folder.h"
+#include "patchlight/output/write_mesh.h"
+
+#include "archive/file_names.h"
+#include "archive/geometry_hash.h"
+#include "archive/npy.h"
+#include "output/write_bytes.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace patchlight {
+namespace {
+
+// Keeps the keys in the order in which they are set.
+using Json = nlohmann::ordered_json;
+
+void report(const Observer& observer, PatchIndex row, PatchIndex rows) {
+  if (observer && !observer({.stage = Stage::write, .fraction = static_cast<double>(row) / rows})) throw Cancelled();
+}
+
+float form_factor(const Exchange& exchange, PatchIndex i, PatchIndex j) {
+  return static_cast<float>(static_cast<double>(exchange.exchange_areas.at(i, j)) / exchange.area[i]);
+}
+
+void write_dense(const std::filesystem::path& file, const Exchange& exchange, const Observer& observer) {
+  const PatchIndex size = exchange.exchange_areas.size();
+  write_npy(file, size, size, [&](std::size_t row, std::span<float> values) {
+    const auto i = static_cast<PatchIndex>(row);
+    report(observer, i, size);
+    for (PatchIndex j = 0; j < size; ++j) values[j] = form_factor(exchange, i, j);
+  });
+}
+
+// Matrix Market coordinate format (Boisvert, Pozo and Remington 1996); indices count from 1.
+void write_coordinates(const std::filesystem::path& file, const Exchange& exchange, const Observer& observer) {
+  const PatchIndex size = exchange.exchange_areas.size();
+  std::uint64_t entries = 0;
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = 0; j < size; ++j) entries += exchange.exchange_areas.at(i, j) != 0;
+  }
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << "%%MatrixMarket matrix coordinate real general\n% form factors from patch (row) to patch (column)\n";
+    stream << size << ' ' << size << ' ' << entries << '\n' << std::setprecision(9);
+    for (PatchIndex i = 0; i < size && stream; ++i) {
+      report(observer, i, size);
+      for (PatchIndex j = 0; j < size; ++j) {
+        if (exchange.exchange_areas.at(i, j) == 0) continue;
+        stream << i + 1 << ' ' << j + 1 << ' ' << form_factor(exchange, i, j) << '\n';
+      }
+    }
+    stream.close();
+    if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+  });
+}
+
+Json files_part(const FormFactorResult& result) {
+  Json part;
+  part[result.format == MatrixFormat::npy ? file_name::dense : file_name::sparse] =
+      "form factors F_ij from patch i (row) to patch j (column); unit 1";
+  part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
+  part[file_name::lost_share] =
+      "per patch the share of its hemisphere that is open, that shows sides without patches, and the covered share of "
+      "its area; unit 1";
+  part[file_name::raw_row_sum] = "sum_j F_ij before closure; unit 1";
+  part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
+  return part;
+}
+
+Json counts_part(const AssemblyCounts& counts) {
+  return {{"facing_pairs", counts.facing_pairs},
+          {"near_pairs", counts.near_pairs},
+          {"hidden_pairs", counts.hidden_pairs},
+          {"free_pairs", counts.free_pairs},
+          {"partly_occluded_pairs", counts.partial_pairs},
+          {"blocked_pairs", counts.blocked_pairs},
+          {"shadow_rays", counts.shadow_rays}};
+}
+
+std::string info_json(const FormFactorResult& result) {
+  const auto& [request, plan, mesh, exchange] = result.form_factors;
+  Json json;
+  json["kind"] = file_name::kind;
+  json["version"] = version();
+  json["command_line"] = result.command_line;
+  json["geometry_sha256"] = geometry_hash(mesh);
+  json["input"] = {
+      {"file", result.scene.file}, {"sha256", result.scene.sha256}, {"metres_per_unit", result.scene.metres_per_unit}};
+  json["patches"] = mesh.size();
+  json["matrix"] = result.format == MatrixFormat::npy ? "npy" : "mtx";
+  json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
+  json["options"] = {{"max_edge_m", plan.max_edge}, {"sides", name_of(request.sides)},
+                     {"probes", plan.probes},       {"samples", plan.samples},
+                     {"seed", plan.seed},           {"lost_share_rays", exchange.lost.rays_per_patch}};
+  json["counts"] = counts_part(exchange.counts);
+  json["files"] = files_part(result);
+  // Names from a model may hold bytes that are not UTF-8: they are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// An earlier result holds info.json with the right kind, and nothing that was not written with it.
+bool is_earlier_result(const std::filesystem::path& folder) {
+  static constexpr std::array<std::string_view, 9> names = {
+      file_name::dense, file_name::sparse, file_name::area,        file_name::lost_share, file_name::raw_row_sum,
+      file_name::mesh,  file_name::info,   file_name::by_material, file_name::by_object};
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(names.begin(), names.end(), name) == names.end() || !entry.is_regular_file()) return false;
+  }
+  std::ifstream stream(folder / file_name::info);
+  const Json json = Json::parse(stream, nullptr, false);
+  return json.is_object() && json.value("kind", Json()) == file_name::kind;
+}
+
+}  // namespace
+
+void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,
+                  const Observer& observer) {
+  (format == MatrixFormat::npy ? write_dense : write_coordinates)(file, exchange, observer);
+}
+
+void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result, const Observer& observer) {
+  const Exchange& exchange = result.form_factors.exchange;
+  write_whole_folder(folder, is_earlier_result, [&](const std::filesystem::path& in) {
+    const bool dense = result.format == MatrixFormat::npy;
+    write_matrix(in / (dense ? file_name::dense : file_name::sparse), exchange, result.format, observer);
+    write_npy(in / file_name::area, exchange.area);
+    Eigen::MatrixXd lost(exchange.area.size(), 3);
+    lost << exchange.lost.escaped, exchange.lost.at_backs, exchange.lost.covered;
+    write_npy(in / file_name::lost_share, lost);
+    write_npy(in / file_name::raw_row_sum, exchange.raw_row_sum);
+    write_mesh(in / file_name::mesh, result.scene, result.form_factors);
+    for (const GroupFactors& groups : result.groups) {
+      write_groups(in / (groups.by == GroupBy::material ? file_name::by_material : file_name::by_object), groups);
+    }
+    write_bytes(in / file_name::info, info_json(result));
+  });
+}
+
+void check_form_factors_writable(const std::filesystem::path& folder) {
+  check_folder_writable(folder, is_earlier_result);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,88 @@
+#include "cli/form_factor_options.h"
+
+#include "cli/mesh_options.h"
+#include "cli/model_options.h"
+#include "cli/parse_value.h"
+
+#include <string>
+
+namespace patchlight::cli {
+
+struct FormFactorOptions {
+  ModelOptions model;
+  MeshOptions mesh;
+  std::string output;
+  std::optional<MatrixFormat> format;
+  std::optional<GroupBy> by;
+  bool raw = false;
+  bool quiet = false;
+};
+
+std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
+  auto options = std::make_shared<FormFactorOptions>();
+  FormFactorOptions& to = *options;
+  CLI::App& command = *tool.add_subcommand("form-factors", "computes the form factors between the patches of a model");
+  add_model_options(command, to.model);
+  add_sides_option(command, to.mesh);
+  command
+      .add_option(
+          "-o,--output", to.output,
+          "folder for the matrix, the areas and the patches, which\npatchlight solve --form-factors takes; or a "
+          "file for the\nmatrix alone (.npy, .mtx)")
+      ->option_text("FOLDER|FILE");
+  command
+      .add_option_function<std::string>(
+          "--matrix",
+          [&to](const std::string& text) {
+            to.format = choice<MatrixFormat>("--matrix", text,
+                                             {{"npy", MatrixFormat::npy}, {"mtx", MatrixFormat::matrix_market}});
+          },
+          "format of the matrix in the folder: numpy's, or Matrix Market\ncoordinates; default npy")
+      ->option_text("npy|mtx");
+  command
+      .add_option_function<std::string>(
+          "--by",
+          [&to](const std::string& text) {
+            to.by = choice<GroupBy>("--by", text, {{"material", GroupBy::material}, {"object", GroupBy::object}});
+          },
+          "prints the form factors between materials or objects, too;\ninto the folder as CSV; default: patches only")
+      ->option_text("material|object");
+  command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
+  add_patch_options(command, to.mesh);
+  add_sampling_options(command, to.mesh);
+  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and a summary");
+  return options;
+}
+
+FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
+  FormFactorArguments arguments;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.output = options.output;
+  arguments.format = options.format.value_or(MatrixFormat::npy);
+  arguments.close = !options.raw;
+  arguments.by = options.by;
+  arguments.quiet = options.quiet;
+  if (arguments.models.empty()) {
+    throw UsageError("form-factors: found no model; expected: patchlight form-factors MODEL -o FOLDER");
+  }
+  if (arguments.output.empty()) {
+    throw UsageError("form-factors: nothing would be written; give -o FOLDER, or -o FILE.npy for the matrix alone");
+  }
+  const std::filesystem::path extension = arguments.output.extension();
+  if (extension == ".npy" || extension == ".mtx") {
+    const auto named = extension == ".npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
+    if (options.format && *options.format != named) {
+      throw UsageError("--matrix: contradicts -o '" + options.output + "'; give one of them");
+    }
+    arguments.format = named;
+  }
+  for (const std::filesystem::path& model : arguments.models) {
+    if (weakly_canonical(arguments.output) != weakly_canonical(model)) continue;
+    throw UsageError("-o: '" + options.output + "' is a model; expected another name for the result");
+  }
+  return arguments;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,98 @@
+#include "cli/form_factors.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+namespace patchlight::cli {
+namespace {
+
+// More groups than fit on a line are left to the CSV.
+constexpr std::size_t most_columns = 12;
+
+bool is_one_file(const FormFactorArguments& arguments) {
+  return arguments.output.extension() == ".npy" || arguments.output.extension() == ".mtx";
+}
+
+std::string table(const GroupFactors& groups) {
+  if (groups.names.size() > most_columns) {
+    return std::to_string(groups.names.size()) + " " + name_of(groups.by) + "s: too many to print\n";
+  }
+  std::size_t width = 0;
+  for (const std::string& name : groups.names) width = std::max(width, name.size());
+  std::ostringstream text;
+  text << "form factors from each " << name_of(groups.by) << " to the others, in their order, and their sum:\n"
+       << std::fixed << std::setprecision(5);
+  for (std::size_t from = 0; from < groups.names.size(); ++from) {
+    const auto row = groups.form_factor.row(static_cast<Eigen::Index>(from));
+    text << "  " << std::left << std::setw(static_cast<int>(width)) << groups.names[from] << std::right;
+    for (const double form_factor : row) text << "  " << form_factor;
+    text << "  = " << row.sum() << '\n';
+  }
+  return text.str();
+}
+
+std::string summary(const Scene& scene, const FormFactors& form_factors) {
+  const Exchange& exchange = form_factors.exchange;
+  const Eigen::ArrayXd sums = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area).array();
+  std::ostringstream text;
+  text << scene.file << ": " << form_factors.mesh.size() << " patches with edges up to " << std::setprecision(3)
+       << form_factors.plan.max_edge << " m; row sums " << std::setprecision(6) << sums.minCoeff() << " to "
+       << sums.maxCoeff() << ", before closure " << exchange.raw_row_sum.minCoeff() << " to "
+       << exchange.raw_row_sum.maxCoeff()
+       << "; closure: " << (exchange.closure.empty() ? "not asked for" : exchange.closure) << '\n';
+  return text.str();
+}
+
+}  // namespace
+
+ExitCode form_factors(const FormFactorArguments& arguments) {
+  if (is_one_file(arguments)) {
+    check_writable(arguments.output);
+  } else {
+    check_form_factors_writable(arguments.output);
+  }
+  const ThreadLimit limit(arguments.request.threads);
+  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  const Observer observer = [&line](const Progress& progress) {
+    line.show(progress);
+    return !interrupted();
+  };
+
+  // 1. Read the model, find the form factors
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  const FormFactors found = find_form_factors(scene, arguments.request, arguments.close, observer);
+  std::vector<GroupFactors> groups;
+  if (arguments.by) groups.push_back(group_factors(scene, found, *arguments.by));
+
+  // 2. Write them
+  const WritingGuard guard;
+  if (is_one_file(arguments)) {
+    write_matrix(arguments.output, found.exchange, arguments.format, observer);
+  } else {
+    write_form_factors(arguments.output, {scene, found, groups, arguments.command_line, arguments.format}, observer);
+  }
+  if (arguments.quiet) return good;
+  line.hide();
+  for (const std::string& note : scene.notes) print_message("note", note);
+  for (const std::string& note : found.plan.sides.notes) print_message("note", note);
+  for (const std::string& note : found.plan.notes) print_message("note", note);
+  if (found.request.sides != arguments.request.sides) {
+    print_message("note", "without a lamp --sides auto cannot tell where light gets to: the front sides are used");
+  }
+  std::cout << summary(scene, found);
+  for (const GroupFactors& table_of : groups) std::cout << table(table_of);
+  std::cout << "wrote " << arguments.output.string() << std::endl;
+  return good;
+}
+
+}  // namespace patchlight::cli

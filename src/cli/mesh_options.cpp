@@ -1,0 +1,66 @@
+#include "cli/mesh_options.h"
+
+#include "cli/parse_value.h"
+
+#include <string>
+
+namespace patchlight::cli {
+namespace {
+
+// Adds an option with one value, which `take` understands or refuses.
+template <typename Take>
+void add(CLI::App& command, const std::string& name, const std::string& value, const std::string& help, Take take) {
+  command.add_option_function<std::string>(name, take, help)->option_text(value);
+}
+
+}  // namespace
+
+void add_sides_option(CLI::App& command, MeshOptions& options) {
+  add(command, "--sides", "auto|front|both",
+      "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
+      [&options](const std::string& text) {
+        options.request.sides = choice<Sides>(
+            "--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
+      });
+}
+
+void add_patch_options(CLI::App& command, MeshOptions& options) {
+  Request& request = options.request;
+  add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
+      [&options](const std::string& text) {
+        options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
+      });
+  add(command, "--patches", "N",
+      "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
+          std::to_string(default_patches),
+      [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
+}
+
+void add_sampling_options(CLI::App& command, MeshOptions& options) {
+  Request& request = options.request;
+  add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
+      [&request](const std::string& text) {
+        request.samples = static_cast<int>(whole_number("--samples", text, 4, 65536));
+      });
+  add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
+      [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
+  add(command, "--threads", "N", "number of threads; default 0: one per processor",
+      [&request](const std::string& text) {
+        request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
+      });
+  add(command, "--memory", "SIZE",
+      "memory that may be taken, e.g. 2GB or 500MiB; what needs more is\nrefused before it begins; default: 80 % of "
+      "the machine's",
+      [&request](const std::string& text) { request.memory = bytes("--memory", text); });
+}
+
+Request mesh_request(const MeshOptions& options, double metres_per_unit) {
+  if (options.max_edge && options.request.patches) {
+    throw UsageError("--max-edge and --patches both set the size of the patches; give one of them");
+  }
+  Request request = options.request;
+  if (options.max_edge) request.max_edge = *options.max_edge * metres_per_unit;
+  return request;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,92 @@
+#include "cli/validate.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_validation.h"
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+std::string number_with(int digits, double value) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+using Row = std::vector<std::string>;
+
+Row row_of(const ValidationResult& result) {
+  const Measured& measured = result.measured;
+  return {result.name,
+          number_with(9, result.exact),
+          number_with(9, measured.value),
+          number_with(2, std::abs(measured.value - result.exact)),
+          number_with(2, measured.error_bar),
+          within_bar(result) ? "good" : "OUTSIDE",
+          result.source,
+          measured.bar_from};
+}
+
+// Rows as columns of text, each as wide as its widest cell.
+std::string table(const std::vector<Row>& rows) {
+  std::vector<std::size_t> width(rows.front().size());
+  for (const Row& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      width[column] = std::max(width[column], row[column].size());
+    }
+  }
+  std::ostringstream text;
+  text << std::left;
+  for (const Row& row : rows) {
+    for (std::size_t column = 0; column + 1 < row.size(); ++column) {
+      text << std::setw(static_cast<int>(width[column]) + 2) << row[column];
+    }
+    text << row.back() << '\n';
+  }
+  return text.str();
+}
+
+std::string table(const std::vector<ValidationResult>& results) {
+  std::vector<Row> rows{{"case", "exact", "ours", "error", "bar", "verdict", "exact value from", "bar from"}};
+  for (const ValidationResult& result : results) rows.push_back(row_of(result));
+  return table(rows);
+}
+
+}  // namespace
+
+ExitCode validate(const ValidateArguments& arguments, std::span<const ValidationCase> cases) {
+  if (!arguments.json.empty()) check_writable(arguments.json);
+  const ThreadLimit limit(arguments.threads);
+  const double begin = wall_seconds();
+  const std::vector<ValidationResult> results = [&] {
+    ProgressLine line(stderr_is_terminal());
+    return patchlight::validate(cases, [&line](const Progress& progress) {
+      line.show(progress);
+      return !interrupted();
+    });
+  }();
+  const double seconds = wall_seconds() - begin;
+
+  const WritingGuard guard;
+  if (!arguments.json.empty()) write_validation(arguments.json, results);
+  const auto outside = std::count_if(results.begin(), results.end(), [](const auto& r) { return !within_bar(r); });
+  if (arguments.json_on_stdout) {
+    std::cout << validation_json(results) << std::flush;
+  } else {
+    std::cout << table(results) << results.size() << " cases, " << outside << " outside their error bars; "
+              << number_with(3, seconds) << " s" << std::endl;
+  }
+  return outside == 0 ? good : validation_failed;
+}
+
+}  // namespace patchlight::cli

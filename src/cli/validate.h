@@ -1,0 +1,16 @@
+#pragma once
+
+#include "patchlight/validate/validate.h"
+
+#include "cli/arguments.h"
+#include "cli/exit_code.h"
+
+#include <span>
+
+namespace patchlight::cli {
+
+/// Runs `patchlight validate`: a table of cases with known answers. Returns validation_failed when one of them lies
+/// outside its error bar. \throws OutputError, Cancelled.
+ExitCode validate(const ValidateArguments& arguments, std::span<const ValidationCase> cases);
+
+}  // namespace patchlight::cli

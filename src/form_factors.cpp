@@ -1,0 +1,31 @@
+#include "patchlight/form_factors.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/mesh/mesher.h"
+
+#include "memory.h"
+
+#include <utility>
+
+namespace patchlight {
+FormFactors find_form_factors(const Scene& scene, const Request& request, bool close, const Observer& observer) {
+  const ThreadLimit threads(request.threads);
+  Request used = request;
+  if (used.sides == Sides::automatic && !has_lamp(scene)) used.sides = Sides::front;
+  require_memory(scene, used);
+  Plan plan = plan_form_factors(scene, used);
+  PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  require_memory(mesh.size(), used);
+
+  Exchange exchange =
+      trace_exchange(mesh, Occluder(scene), {plan.probes, plan.samples, plan.seed}, plan.lost_share_rays, observer);
+  if (close) {
+    ClosedExchangeAreas closed =
+        close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, observer);
+    exchange.exchange_areas = std::move(closed.exchange_areas);
+    exchange.closure = closed.method;
+  }
+  return {used, std::move(plan), std::move(mesh), std::move(exchange)};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,38 @@
+#include "patchlight/output/write_mesh.h"
+
+#include "output/vtk_polygons.h"
+
+#include <vtkCellData.h>
+#include <vtkFieldData.h>
+
+namespace patchlight {
+
+void write_mesh(const std::filesystem::path& file, const Scene& scene, const FormFactors& form_factors) {
+  const PatchMesh& mesh = form_factors.mesh;
+  const Exchange& exchange = form_factors.exchange;
+  const Eigen::VectorXd row_sum = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area);
+  std::vector<std::uint32_t> objects, faces;
+  for (const PolygonIndex polygon : mesh.polygon) {
+    objects.push_back(scene.polygons[polygon].group);
+    faces.push_back(scene.polygons[polygon].face);
+  }
+  std::vector<std::string> material_names;
+  for (const Material& material : scene.materials) material_names.push_back(material.name);
+
+  const Pointer<vtkPolyData> polygons = polygons_of(mesh);
+  vtkCellData& cell_data = *polygons->GetCellData();
+  cell_data.AddArray(numbers<vtkDoubleArray>("area", exchange.area));
+  cell_data.AddArray(numbers<vtkDoubleArray>("row_sum", row_sum));
+  cell_data.AddArray(numbers<vtkDoubleArray>("raw_row_sum", exchange.raw_row_sum));
+  cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
+  cell_data.AddArray(numbers<vtkIntArray>("object_id", objects));
+  cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
+  cell_data.SetActiveScalars("row_sum");
+  vtkFieldData& facts = *polygons->GetFieldData();
+  facts.AddArray(strings("material_names", material_names));
+  facts.AddArray(strings("object_names", scene.groups));
+  facts.AddArray(strings("unit_area", {"m^2"}));
+  write_polygons(file, *polygons);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,140 @@
+"""patchlight form-factors: the matrix as others read it, the folder, and solving from it."""
+import ast
+import csv
+import json
+import struct
+import unittest
+
+from support import ROOM, ToolTest, content
+
+GOOD, USAGE, INPUT, MEMORY, OUTPUT = 0, 1, 2, 4, 6
+
+
+def load(file):
+    """A reader of .npy of its own: shape and values."""
+    data = file.read_bytes()
+    assert data[:8] == b"\x93NUMPY\x01\x00"
+    (length,) = struct.unpack("<H", data[8:10])
+    header = ast.literal_eval(data[10 : 10 + length].decode())
+    assert not header["fortran_order"]
+    letter, size = {"<f4": ("f", 4), "<f8": ("d", 8)}[header["descr"]]
+    values = data[10 + length :]
+    return header["shape"], struct.unpack(f"<{len(values) // size}{letter}", values)
+
+
+class FormFactorsTest(ToolTest):
+    def find(self, *arguments, code=GOOD):
+        done = self.run_tool("form-factors", "room.obj", *arguments)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def test_folder(self):
+        self.find("-o", "room.ff/", "--patches", "150")
+        folder = self.folder / "room.ff"
+        info = json.loads((folder / "info.json").read_text())
+        size = info["patches"]
+        shape, F = load(folder / "F.npy")
+        self.assertEqual(shape, (size, size))
+        shape, area = load(folder / "area.npy")
+        self.assertEqual(shape, (size,))
+        for i in range(size):
+            # The room is closed; the remainder that is not stored is below 1e-7, and 1e-7 is lost to the storage of F.
+            self.assertAlmostEqual(sum(F[i * size : (i + 1) * size]), 1, delta=1e-6)
+            self.assertEqual(F[i * size + i], 0)
+            for j in range(i):
+                self.assertAlmostEqual(area[i] * F[i * size + j], area[j] * F[j * size + i], delta=1e-6 * area[i])
+        self.assertEqual(set(info["files"]) | {"info.json"}, {path.name for path in folder.iterdir()})
+        self.assertRegex(info["geometry_sha256"], "^[0-9a-f]{64}$")
+
+    def test_raw_rows_are_not_closed(self):
+        self.find("-o", "raw.ff", "--raw", "--patches", "150")
+        size = json.loads((self.folder / "raw.ff/info.json").read_text())["patches"]
+        _, F = load(self.folder / "raw.ff/F.npy")
+        _, raw_row_sum = load(self.folder / "raw.ff/raw_row_sum.npy")
+        for i in range(size):
+            self.assertAlmostEqual(sum(F[i * size : (i + 1) * size]), raw_row_sum[i], delta=1e-6)
+        self.assertGreater(max(abs(x - 1) for x in raw_row_sum), 1e-5)
+
+    def test_matrix_alone_in_both_formats_tells_the_same(self):
+        self.find("-o", "F.npy", "--patches", "60")
+        self.find("-o", "F.mtx", "--patches", "60")
+        (size, _), F = load(self.folder / "F.npy")
+        lines = [line for line in (self.folder / "F.mtx").read_text().splitlines() if not line.startswith("%")]
+        self.assertEqual([int(word) for word in lines[0].split()], [size, size, len(lines) - 1])
+        entries = {}
+        for line in lines[1:]:
+            i, j, value = line.split()
+            entries[int(i) - 1, int(j) - 1] = float(value)
+        for i in range(size):
+            for j in range(size):
+                self.assertAlmostEqual(entries.get((i, j), 0), F[i * size + j], delta=1e-8)
+
+    def test_groups(self):
+        done = self.find("-o", "room.ff", "--by", "material", "--patches", "150")
+        self.assertIn("white", done.stdout)
+        with (self.folder / "room.ff/by_material.csv").open(newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0], ["from", "area_m2", "white", "lamp"])
+        area = {row[0]: float(row[1]) for row in rows[1:]}
+        # 24 m^2 of walls; both sides of the plate and of the lamp.
+        self.assertAlmostEqual(area["white"], 26, places=6)
+        self.assertAlmostEqual(area["lamp"], 0.5, places=6)
+        F = {row[0]: dict(zip(rows[0][2:], map(float, row[2:]))) for row in rows[1:]}
+        self.assertAlmostEqual(area["lamp"] * F["lamp"]["white"], area["white"] * F["white"]["lamp"], places=7)
+
+    def test_solve_takes_them_with_any_material(self):
+        self.find("-o", "room.ff", "--max-edge", "0.5")
+        for setting in ([], ["--set", "white.reflectance=0.2,0.3,0.9"]):
+            self.run_tool("solve", "room.obj", "--report", "fresh.json", "--max-edge", "0.5", *setting)
+            done = self.run_tool("solve", "room.obj", "--report", "stored.json", "--form-factors", "room.ff/", *setting)
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            fresh, stored = (json.loads((self.folder / name).read_text()) for name in ("fresh.json", "stored.json"))
+            self.assertEqual(fresh["mesh"], stored["mesh"])
+            for a, b in zip(fresh["energy_balance"]["absorbed_W"], stored["energy_balance"]["absorbed_W"]):
+                self.assertAlmostEqual(a, b, delta=1e-6 * a)
+
+    def test_form_factors_of_another_geometry_are_refused(self):
+        self.find("-o", "room.ff", "--patches", "60")
+        self.write("room.obj", ROOM.replace("v -0.5 -0.5 1\n", "v -0.5 -0.5 1.0000001\n"))
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "room.ff")
+        self.assertEqual(done.returncode, INPUT)
+        for words in ("room.ff: found form factors of", "expected those of", "make them anew"):
+            self.assertIn(words, done.stderr)
+        self.assertFalse((self.folder / "a.vtp").exists())
+
+    def test_a_model_without_a_lamp_will_do(self):
+        self.write("room.mtl", "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\n")
+        self.find("-o", "room.ff", "--patches", "60")
+        self.assertEqual(json.loads((self.folder / "room.ff/info.json").read_text())["options"]["sides"], "front")
+
+    def test_same_bits_for_any_number_of_threads(self):
+        for threads in ("1", "3"):
+            self.find("-o", f"F{threads}.npy", "--patches", "150", "--threads", threads)
+        self.assertEqual((self.folder / "F1.npy").read_bytes(), (self.folder / "F3.npy").read_bytes())
+
+    def test_only_an_earlier_result_is_replaced(self):
+        self.find("-o", "room.ff", "--patches", "60")
+        self.find("-o", "room.ff", "--patches", "60", "--matrix", "mtx")
+        self.assertFalse((self.folder / "room.ff/F.npy").exists())
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine/notes.txt").write_text("mine")
+        before = content(self.folder)
+        self.assertIn("empty it first", self.find("-o", "mine", "--patches", "60", code=OUTPUT).stderr)
+        self.find("-o", ".", code=OUTPUT)
+        self.find("-o", "room.mtl", code=OUTPUT)
+        self.find("-o", "missing/room.ff", code=OUTPUT)
+        self.assertEqual(content(self.folder), before)
+
+    def test_refusals(self):
+        for words, code in (([], USAGE), (["-o", "a.ff", "--by", "colour"], USAGE),
+                            (["-o", "F.npy", "--matrix", "mtx"], USAGE), (["-o", "room.obj"], USAGE),
+                            (["-o", "a.ff", "--patches", "9", "--max-edge", "1"], USAGE),
+                            (["-o", "a.ff", "--patches", "100000000"], MEMORY)):
+            self.find(*words, code=code)
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "missing.ff")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("info.json", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,175 @@
+#include "patchlight/archive/form_factor_files.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+#include "unit/output/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+Request coarse() {
+  Request request;
+  request.max_edge = 1;
+  request.sides = Sides::front;
+  request.tolerance = 1e-9;
+  return request;
+}
+
+// A room of 59 m^2 with a box of 4.12 m^2 in it that shines: closed, as every ray meets a patch.
+Scene closed_room() {
+  Scene scene = empty_scene({grey(0.5), grey(0.5, 10)});
+  scene.materials[0].name = "wall";
+  scene.materials[1].name = "lamp";
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  return with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false, 1);
+}
+
+Scene without_a_wall(Scene scene) {
+  scene.polygons.erase(scene.polygons.begin() + 2);
+  return scene;
+}
+
+// Solved with form factors that went through a folder.
+Simulation solved_from_folder(const Scene& scene, bool close) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const FormFactors found = find_form_factors(scene, coarse(), close);
+  write_form_factors(place, {scene, found, {}, "a command"});
+  const FormFactorInfo info = read_form_factor_info(place);
+  return simulate(scene, coarse(), {}, [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); });
+}
+
+// A factor passes through two roundings to float, 2^-24 each. Errors of F of this size in every entry change B by
+// rho / (1 - rho) times as much: here 2 * 6e-8 * 0.5 / 0.5, and some for the closure.
+class StoredFormFactors : public testing::TestWithParam<bool> {};
+
+TEST_P(StoredFormFactors, GiveTheSameSolution) {
+  for (const Scene& scene : {closed_room(), without_a_wall(closed_room())}) {
+    const Simulation fresh = simulate(scene, coarse());
+    const Simulation stored = solved_from_folder(scene, GetParam());
+    const Field difference = stored.solution.irradiance - fresh.solution.irradiance;
+    EXPECT_LT(difference.abs().maxCoeff(), 1e-6 * fresh.solution.irradiance.maxCoeff());
+    EXPECT_EQ(stored.transport.closure, fresh.transport.closure);
+    EXPECT_EQ(stored.transport.raw_row_sum, fresh.transport.raw_row_sum);
+    EXPECT_EQ(stored.transport.lost.escaped, fresh.transport.lost.escaped);
+    EXPECT_EQ(stored.transport.counts.shadow_rays, fresh.transport.counts.shadow_rays);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RawAndClosed, StoredFormFactors, testing::Values(false, true));
+
+TEST(StoredFormFactors, KnowHowTheyWereMade) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const Scene scene = closed_room();
+  Request request = coarse();
+  request.seed = ~std::uint64_t{0};
+  request.samples = 32;
+  const FormFactors found = find_form_factors(scene, request, true);
+  write_form_factors(place, {scene, found, {}, "a command"});
+  const FormFactorInfo info = read_form_factor_info(place);
+  EXPECT_EQ(info.patches, found.mesh.size());
+  EXPECT_EQ(info.max_edge, 1);
+  EXPECT_EQ(info.sides, Sides::front);
+  EXPECT_EQ(info.samples, 32);
+  EXPECT_EQ(info.seed, request.seed);
+  EXPECT_EQ(info.closure, "least squares");
+}
+
+TEST(StoredFormFactors, OfAnotherGeometryAreRefused) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  Scene scene = furnished_room(0.5);
+  const FormFactors found = find_form_factors(scene, coarse(), true);
+  write_form_factors(place, {scene, found, {}, "a command"});
+  const FormFactorInfo info = read_form_factor_info(place);
+  EXPECT_NO_THROW(read_exchange(place, info, found.mesh));
+  // The last bit of one vertex.
+  scene.vertices.back().x() = std::nextafter(scene.vertices.back().x(), 1e9);
+  const PatchMesh moved = tessellate(scene, kept_sides(scene, Sides::front), 1);
+  ASSERT_EQ(moved.size(), found.mesh.size());
+  try {
+    read_exchange(place, info, moved);
+    FAIL() << "another geometry was taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("lie elsewhere"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("patchlight form-factors MODEL -o"), std::string::npos);
+  }
+}
+
+TEST(StoredFormFactors, DamagedFilesAreRefused) {
+  const TemporaryFolder folder;
+  const Scene scene = furnished_room(0.5);
+  const FormFactors found = find_form_factors(scene, coarse(), true);
+  const fs::path place = folder.path() / "room.ff";
+  const FormFactorResult result{scene, found, {}, "a command"};
+  const auto damage = [&](const char* name, const auto& change) {
+    write_form_factors(place, result);
+    std::string content = content_of(place / name);
+    change(content);
+    put(place / name, content);
+    EXPECT_THROW(read_exchange(place, read_form_factor_info(place), found.mesh), InputError) << name;
+    fs::remove_all(place);
+  };
+  for (const char* name : {"F.npy", "area.npy", "lost_share.npy", "raw_row_sum.npy", "info.json"}) {
+    damage(name, [](std::string& content) { content.resize(content.size() - 3); });
+    damage(name, [](std::string& content) { content.clear(); });
+  }
+  // Reciprocity, and numbers that cannot be.
+  damage("F.npy", [](std::string& content) { content.replace(content.size() - 40, 4, std::string("\0\0\0\x3f", 4)); });
+  damage("F.npy", [](std::string& content) { content.replace(content.size() - 4, 4, "\xff\xff\xff\x7f"); });
+  damage("area.npy", [](std::string& content) { content.replace(content.size() - 8, 8, std::string(8, '\0')); });
+  damage("info.json", [](std::string& content) { content.replace(content.find("patchlight"), 10, "somebodies"); });
+}
+
+TEST(StoredFormFactors, ReplaceAnEarlierResultAndNothingElse) {
+  const TemporaryFolder folder;
+  const Scene scene = furnished_room(0.5);
+  const FormFactors found = find_form_factors(scene, coarse(), false);
+  const fs::path place = folder.path() / "room.ff";
+  const FormFactorResult result{scene, found, {}, "a command"};
+  fs::create_directory(place);
+  write_form_factors(place, result);
+  write_form_factors(place, result);
+  EXPECT_EQ(folder.entries(), 1U);
+  put(place / "notes.txt", "mine");
+  EXPECT_THROW(check_form_factors_writable(place), OutputError);
+  EXPECT_THROW(write_form_factors(place, result), OutputError);
+  EXPECT_EQ(content_of(place / "notes.txt"), "mine");
+}
+
+// A room that is closed: everything that leaves a group arrives somewhere, and groups exchange equally.
+TEST(GroupFactors, AreClosedAndReciprocal) {
+  const Scene scene = closed_room();
+  const FormFactors found = find_form_factors(scene, coarse(), true);
+  const GroupFactors groups = group_factors(scene, found, GroupBy::material);
+  ASSERT_EQ(groups.names, (std::vector<std::string>{"wall", "lamp"}));
+  EXPECT_NEAR(groups.area[0], 59, 1e-9);
+  EXPECT_NEAR(groups.area[1], 4.12, 1e-9);
+  // What storage as floats takes from a row is below 1e-7.
+  EXPECT_NEAR(groups.form_factor.row(0).sum(), 1, 2e-7);
+  EXPECT_NEAR(groups.form_factor.row(1).sum(), 1, 2e-7);
+  const Eigen::MatrixXd exchange = groups.area.asDiagonal() * groups.form_factor;
+  EXPECT_NEAR(exchange(0, 1), exchange(1, 0), 1e-12);
+  EXPECT_EQ(groups.form_factor(1, 1), 0);
+}
+
+TEST(GroupFactors, AreWrittenAsCsv) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "by_material.csv";
+  Eigen::MatrixXd F(2, 2);
+  F << 0.5, 0.5, 1, 0;
+  write_groups(file, {GroupBy::material, {"a \"b\", c", "d"}, Eigen::Vector2d(2, 1), F});
+  EXPECT_EQ(content_of(file), "from,area_m2,\"a \"\"b\"\", c\",d\n\"a \"\"b\"\", c\",2,0.5,0.5\nd,1,1,0\n");
+}
+
+}  // namespace
+}  // namespace patchlight

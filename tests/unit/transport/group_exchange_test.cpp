@@ -1,0 +1,44 @@
+#include "patchlight/transport/group_exchange.h"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// More than one tile; entries are small whole numbers, so that all sums are exact.
+ExchangeAreas numbered(PatchIndex size) {
+  ExchangeAreas S(size);
+  constexpr PatchIndex edge = ExchangeAreas::edge;
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = i + 1; j < size; ++j) {
+      const auto entry = static_cast<float>((i * 7 + j * 13) % 11);
+      S.tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge] = entry;
+      if (i / edge == j / edge)
+        S.tile(i / edge, j / edge)[static_cast<std::size_t>(j % edge) * edge + i % edge] = entry;
+    }
+  }
+  return S;
+}
+
+TEST(GroupExchange, IsTheSumOfTheEntries) {
+  constexpr PatchIndex size = 150;
+  const ExchangeAreas S = numbered(size);
+  std::vector<std::uint32_t> group_of(size);
+  for (PatchIndex i = 0; i < size; ++i) group_of[i] = i * i % 3;
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = 0; j < size; ++j) expected(group_of[i], group_of[j]) += static_cast<double>(S.at(i, j));
+  }
+  EXPECT_EQ(exchange_between_groups(S, group_of, 3), expected);
+}
+
+// One group of all patches exchanges what all rows add up to.
+TEST(GroupExchange, OneGroupIsAll) {
+  const ExchangeAreas S = numbered(100);
+  const std::vector<std::uint32_t> one(100, 0);
+  EXPECT_EQ(exchange_between_groups(S, one, 1)(0, 0), row_sums(S).sum());
+}
+
+}  // namespace
+}  // namespace patchlight
