@@ -12,6 +12,9 @@ namespace {
 // Edges closer to one line than this share of their length are integrated as collinear.
 constexpr double collinear_tolerance = 1e-12;
 
+// Directions that differ by a smaller sine count as parallel.
+constexpr double parallel_tolerance = 1e-12;
+
 struct Edge {
   Point start;
   Vector direction;  // unit
@@ -43,10 +46,14 @@ double inner_integral(const Point& x, const Edge& edge) {
   return log_integral(edge.length - foot, h) - log_integral(-foot, h);
 }
 
-// int int ln |s - t| ds dt over s between s0 and s1 and t in [0, length], both on one line, exact by the second
-// antiderivative x^2 (ln|x| / 2 - 3/4).
-double collinear_integral(double s0, double s1, double length) {
-  const auto g = [](double x) { return x == 0 ? 0 : x * x * (0.5 * std::log(std::abs(x)) - 0.75); };
+// int int ln sqrt((s - t)^2 + h^2) ds dt over s between s0 and s1 and t in [0, length]: two parallel edges at distance
+// h, exact by the second antiderivative (x^2 - h^2) / 4 ln(x^2 + h^2) - 3/4 x^2 + h x atan(x / h).
+double parallel_integral(double s0, double s1, double length, double h) {
+  const auto g = [h](double x) {
+    const double squared = x * x + h * h;
+    if (squared == 0) return 0.0;
+    return 0.25 * (x * x - h * h) * std::log(squared) - 0.75 * x * x + (h > 0 ? h * x * std::atan(x / h) : 0);
+  };
   const double lower = std::min(s0, s1);
   const double upper = std::max(s0, s1);
   return g(upper) - g(lower) - g(upper - length) + g(lower - length);
@@ -73,7 +80,10 @@ double double_log_integral(const Edge& a, const Edge& b) {
   const double h_start = (start - along_start * b.direction).norm();
   const double h_end = (end - along_end * b.direction).norm();
   if (std::max(h_start, h_end) <= collinear_tolerance * (a.length + b.length)) {
-    return collinear_integral(along_start, along_end, b.length);
+    return parallel_integral(along_start, along_end, b.length, 0);
+  }
+  if (b.direction.cross(a.direction).norm() <= parallel_tolerance) {
+    return parallel_integral(along_start, along_end, b.length, 0.5 * (h_start + h_end));
   }
 
   // 2. Far apart the integrand is smooth.

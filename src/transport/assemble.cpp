@@ -78,16 +78,16 @@ bool Assembler::is_free(std::size_t row, std::size_t column) const {
 }
 
 void Assembler::count(const Pair& pair, RowFacts& facts) const {
-  facts.counts.shadow_rays += pair.free_rays + pair.blocked_rays;
+  facts.counts.shadow_rays += pair.rays();
   facts.counts.partial_pairs += pair.is_partial() ? 1 : 0;
-  facts.counts.blocked_pairs += pair.free_rays == 0 ? 1 : 0;
+  facts.counts.blocked_pairs += pair.free_rays == 0 && pair.blocked_rays > 0 ? 1 : 0;
 }
 
 // Samples one of many pairs again, independently: the difference tells the error of pairs like it.
 void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) const {
   if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size()) != 0) return;
   const Pair again = sampler.sampled_again(pair);
-  facts.counts.shadow_rays += again.free_rays + again.blocked_rays;
+  facts.counts.shadow_rays += again.rays();
   const double share = exchange_area / again.unoccluded;
   const double difference = share - sampler.exchange_area(again) / again.unoccluded;
   if (pair.is_partial()) {

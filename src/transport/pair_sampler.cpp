@@ -26,7 +26,11 @@ std::uint32_t in_packets(int count) {
 
 void add(Pair& pair, float weight, bool blocked) {
   (blocked ? pair.blocked_weight : pair.free_weight) += weight;
-  ++(blocked ? pair.blocked_rays : pair.free_rays);
+  if (weight > 0) {
+    ++(blocked ? pair.blocked_rays : pair.free_rays);
+  } else {
+    ++(blocked ? pair.idle_blocked_rays : pair.idle_free_rays);
+  }
 }
 
 std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
@@ -134,7 +138,8 @@ std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
 
   // 3. What was not worth computing for pairs that see nothing of each other.
   for (Pair& pair : pairs) {
-    if (pair.unoccluded < 0 && pair.free_rays > 0) pair.unoccluded = exact(pair.first, pair.second);
+    if (pair.unoccluded < 0 && (pair.free_rays > 0 || pair.is_partial()))
+      pair.unoccluded = exact(pair.first, pair.second);
   }
   return pairs;
 }
@@ -144,7 +149,7 @@ Pair PairSampler::sampled_again(const Pair& pair) const {
   Pair again = pair;
   again.set = table_.of_pair(keys_[pair.first] ^ another, keys_[pair.second]);
   again.free_weight = again.blocked_weight = 0;
-  again.free_rays = again.blocked_rays = 0;
+  again.free_rays = again.blocked_rays = again.idle_free_rays = again.idle_blocked_rays = 0;
   if (pair.is_adjacent) {
     trace_adjacent({&again, 1}, 0, adjacent_factor * samples_);
   } else {
@@ -155,12 +160,14 @@ Pair PairSampler::sampled_again(const Pair& pair) const {
 }
 
 double PairSampler::exchange_area(const Pair& pair) const {
-  if (pair.blocked_rays == 0) return pair.unoccluded;
-  if (pair.free_rays == 0) return 0;
-  const double count = static_cast<double>(pair.free_rays) + pair.blocked_rays;
   const double areas = shapes_[pair.first].area * shapes_[pair.second].area;
   // Of patches that see each other in a small part only, no sample may lie in it: then all rays count alike.
-  if (pair.free_weight + pair.blocked_weight == 0) return static_cast<double>(pair.unoccluded) * pair.free_rays / count;
+  if (pair.free_rays + pair.blocked_rays == 0) {
+    return static_cast<double>(pair.unoccluded) * pair.idle_free_rays / std::max(1U, pair.rays());
+  }
+  if (pair.blocked_rays == 0) return pair.unoccluded;
+  if (pair.free_rays == 0) return 0;
+  const double count = pair.rays();
   // What is mostly hidden is estimated directly; what is mostly seen by the control variate, the exact unoccluded value
   // less the mean of what is blocked. Either way the error is that of the smaller part.
   if (pair.free_weight < pair.blocked_weight)

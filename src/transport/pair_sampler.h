@@ -17,14 +17,18 @@ struct Pair {
   PatchIndex first = 0;  ///< rays are sampled from here
   PatchIndex second = 0;
   SampleSet set;
-  float unoccluded = 0;      ///< exchange area without occluders, m^2; -1 when not yet computed
-  float free_weight = 0;     ///< summed weights of the samples whose shadow ray is free: geometry terms, 1/m^2
-  float blocked_weight = 0;  ///< and of those whose ray is blocked
-  std::uint32_t free_rays = 0;
-  std::uint32_t blocked_rays = 0;
-  bool is_adjacent = false;  ///< sampled by solid angle
+  float unoccluded = 0;              ///< exchange area without occluders, m^2; -1 when not yet computed
+  float free_weight = 0;             ///< summed weights of the samples whose shadow ray is free: geometry terms, 1/m^2
+  float blocked_weight = 0;          ///< and of those whose ray is blocked
+  std::uint32_t free_rays = 0;       ///< of samples with a weight
+  std::uint32_t blocked_rays = 0;    ///< the same
+  std::uint32_t idle_free_rays = 0;  ///< of samples without: one end lies behind the other patch
+  std::uint32_t idle_blocked_rays = 0;  ///< the same
+  bool is_adjacent = false;             ///< sampled by solid angle
 
-  bool is_partial() const { return free_rays > 0 && blocked_rays > 0; }
+  std::uint32_t rays() const { return free_rays + blocked_rays + idle_free_rays + idle_blocked_rays; }
+  /// The rays disagree, or say nothing.
+  bool is_partial() const { return (free_rays > 0) == (blocked_rays > 0); }
 };
 
 /// Finds by shadow rays how much of each other the patches of pairs see.
