@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/plan/close_lamps.h"
 #include "patchlight/solve/energy.h"
 #include "patchlight/transport/dense.h"
 #include "patchlight/visibility/occluder.h"
@@ -31,14 +32,18 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
 
   // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays; and the share of each patch's
   //    hemisphere from which no patch is seen.
+  const Occluder occluder(scene);
+  for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
+    result.plan.notes.push_back(std::move(note));
   const AssemblyOptions sampling{plan.probes, plan.samples, plan.seed};
-  Exchange exchange = known_exchange ? known_exchange(mesh)
-                                     : trace_exchange(mesh, Occluder(scene), sampling, plan.lost_share_rays, observer);
+  Exchange exchange =
+      known_exchange ? known_exchange(mesh) : trace_exchange(mesh, occluder, sampling, plan.lost_share_rays, observer);
   const Eigen::VectorXd area = exchange.area;
   TransportFacts& facts = result.transport;
   facts.raw_row_sum = exchange.raw_row_sum;
   facts.lost = exchange.lost;
   facts.counts = exchange.counts;
+  facts.error = exchange.error;
   clock.finish(Stage::form_factors);
 
   // 4. Closure: each row sums up to what its patch sees.

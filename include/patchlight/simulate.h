@@ -25,6 +25,7 @@ struct TransportFacts {
   Eigen::VectorXd row_sum;      ///< after
   LostShare lost;
   AssemblyCounts counts;
+  SamplingError error;  ///< of the sampled exchange areas, before closure
   std::string closure;  ///< which method closed the rows
 };
 

@@ -152,6 +152,7 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
           std::move(raw_row_sum),
           {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays},
           info.counts,
+          {},
           info.closure};
 }
 

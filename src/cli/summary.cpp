@@ -70,6 +70,13 @@ std::string details(const Simulation& simulation) {
       text << ", " << rounded(1e-6 * static_cast<double>(counts.shadow_rays) / cost.seconds) << " million per second";
     }
   }
+  const SamplingError& error = simulation.transport.error;
+  if (counts.partial_pairs > 0) {
+    text << "\nsampled form factors: standard error " << rounded(100 * standard_error(error, 0.5), 2)
+         << " % of the unoccluded value for half hidden pairs; where probes agreed, 95 % are within "
+         << rounded(100 * bound_on_miss(error.visible), 2) << " % (seen) and "
+         << rounded(100 * bound_on_miss(error.occluded), 2) << " % (hidden)";
+  }
   text << "\nrow sums before closure: " << rounded(simulation.transport.raw_row_sum.minCoeff(), 6) << " to "
        << rounded(simulation.transport.raw_row_sum.maxCoeff(), 6) << "; closure: " << simulation.transport.closure
        << '\n';

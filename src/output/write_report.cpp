@@ -49,6 +49,25 @@ Json request_part(const Request& request) {
   return part;
 }
 
+Json unanimous_part(const SamplingError::Unanimous& unanimous) {
+  return {{"sampled_again", unanimous.pairs}, {"missed", unanimous.missed}, {"bound", bound_on_miss(unanimous)}};
+}
+
+// As shares of the unoccluded exchange area.
+Json sampling_error_part(const SamplingError& error) {
+  Json part;
+  part["by_visible_share"] = Json::array();
+  for (std::size_t bin = 0; bin < SamplingError::bins; ++bin) {
+    const double share = (static_cast<double>(bin) + 0.5) / SamplingError::bins;
+    part["by_visible_share"].push_back({{"visible_share", share},
+                                        {"sampled_again", error.partial_pairs[bin]},
+                                        {"standard_error", standard_error(error, share)}});
+  }
+  part["probes_all_free"] = unanimous_part(error.visible);
+  part["probes_all_blocked"] = unanimous_part(error.occluded);
+  return part;
+}
+
 Json plan_part(const Plan& plan) {
   Json part;
   part["max_edge_m"] = plan.max_edge;
@@ -149,6 +168,9 @@ Json transport_part(const Simulation& simulation) {
   part["partly_occluded_pairs"] = transport.counts.partial_pairs;
   part["blocked_pairs"] = transport.counts.blocked_pairs;
   part["shadow_rays"] = transport.counts.shadow_rays;
+  part["hidden_pairs"] = transport.counts.hidden_pairs;
+  part["free_pairs"] = transport.counts.free_pairs;
+  part["sampling_error"] = sampling_error_part(transport.error);
   part["lost_share_rays"] =
       static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
   part["closure"] = transport.closure;

@@ -20,6 +20,7 @@ struct Exchange {
   Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
   LostShare lost;
   AssemblyCounts counts;
+  SamplingError error;  ///< of the sampled entries, before closure
   std::string closure;  ///< the method that has closed the exchange areas; empty before closure
 };
 

@@ -1,0 +1,34 @@
+#include "patchlight/plan/close_lamps.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// A lamp that faces the ceiling of a 4 x 3 x 2.5 m room from `gap` below.
+Scene uplight(double gap) {
+  const Scene room = with_box(empty_scene({grey(0.5), grey(0.5, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  const double z = 2.5 - gap;
+  return with_quad(room, {Point(1, 1, z), Point(2, 1, z), Point(2, 2, z), Point(1, 2, z)}, 1);
+}
+
+TEST(CloseLamps, AreNamedWithTheEdgeThatWouldDo) {
+  const Scene scene = uplight(0.01);
+  const std::vector<std::string> notes = notes_on_close_lamps(scene, Occluder(scene), 0.3);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("--max-edge 0.01"), std::string::npos) << notes[0];
+}
+
+TEST(CloseLamps, NoneWherePatchesAreSmallOrTheLampIsFar) {
+  const Scene near = uplight(0.01);
+  EXPECT_TRUE(notes_on_close_lamps(near, Occluder(near), 0.015).empty());
+  const Scene far = uplight(1.5);
+  EXPECT_TRUE(notes_on_close_lamps(far, Occluder(far), 0.3).empty());
+}
+
+}  // namespace
+}  // namespace patchlight
