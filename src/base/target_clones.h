@@ -1,10 +1,11 @@
 #pragma once
 
-/// A function that is compiled for several instruction sets; the machine chooses when the program starts. Sanitizers
-/// and clang take the plain version.
+/// A function that is compiled for several instruction sets, the levels of the x86-64 ABI (AVX2 with FMA, AVX-512); the
+/// machine chooses when the program starts, by what it can, whoever made it. Sanitizers and clang take the plain
+/// version.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define PATCHLIGHT_TARGET_CLONES __attribute__((target_clones("default", "arch=haswell", "arch=skylake-avx512")))
+#define PATCHLIGHT_TARGET_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define PATCHLIGHT_TARGET_CLONES
 #endif

@@ -1,6 +1,6 @@
 // What the accuracy of form factors costs: raw row sums and, where a reference file is given, the entries of the closed
 // room against CPU seconds of the assembly alone.
-// usage: benchmark_form_factors ROOM.obj [--benchmark_...]    every polygon of the model is one patch
+// usage: benchmark_form_factors ROOM.obj MAX_EDGE [--benchmark_...]    with a MAX_EDGE of 9 every polygon is one patch
 #include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/mesh/mesher.h"
@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -21,9 +22,9 @@ struct Room {
   PatchMesh mesh;
 };
 
-Room read_room(const char* file) {
+Room read_room(const char* file, double max_edge) {
   Room room{read_scene(file, {}), {}};
-  room.mesh = tessellate(room.scene, kept_sides(room.scene, Sides::front), bounds(room.scene).diagonal().norm());
+  room.mesh = tessellate(room.scene, kept_sides(room.scene, Sides::front), max_edge);
   return room;
 }
 
@@ -56,11 +57,11 @@ void assemble(benchmark::State& state, const Room& room) {
 }  // namespace
 
 int main(int count, char** values) {
-  if (count < 2) {
-    std::fprintf(stderr, "usage: benchmark_form_factors ROOM.obj [--benchmark_...]\n");
+  if (count < 3) {
+    std::fprintf(stderr, "usage: benchmark_form_factors ROOM.obj MAX_EDGE [--benchmark_...]\n");
     return 1;
   }
-  const auto room = std::make_shared<Room>(read_room(values[1]));
+  const auto room = std::make_shared<Room>(read_room(values[1], std::stod(values[2])));
   std::printf("%s: %u patches\n", values[1], room->mesh.size());
   auto* const runs =
       benchmark::RegisterBenchmark("assemble", [room](benchmark::State& state) { assemble(state, *room); });
@@ -69,9 +70,10 @@ int main(int count, char** values) {
        {std::pair{2, 2}, {2, 8}, {4, 4}, {4, 16}, {8, 8}, {8, 16}, {16, 64}, {16, 128}}) {
     runs->Args({probes, samples, 1});
   }
-  values[1] = values[0];
-  int left = count - 1;
-  benchmark::Initialize(&left, values + 1);
+  runs->Args({8, 16, 2});
+  values[2] = values[0];
+  int left = count - 2;
+  benchmark::Initialize(&left, values + 2);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }
