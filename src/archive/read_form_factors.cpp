@@ -11,6 +11,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 
 namespace patchlight {
 namespace {
@@ -42,6 +43,10 @@ FormFactorInfo info_of(const Json& json) {
   info.samples = options.at("samples").get<int>();
   info.seed = options.at("seed").get<std::uint64_t>();
   info.lost_share_rays = options.at("lost_share_rays").get<int>();
+  const std::string matrix = json.at("matrix").get<std::string>();
+  const bool good = info.max_edge > 0 && std::isfinite(info.max_edge) && info.samples >= 1 &&
+                    info.lost_share_rays >= 1 && (matrix == "npy" || matrix == "mtx");
+  if (!good) throw std::out_of_range("an option has a value that it cannot have");
   const Json& counts = json.at("counts");
   info.counts.facing_pairs = counts.at("facing_pairs").get<std::uint64_t>();
   info.counts.near_pairs = counts.at("near_pairs").get<std::uint64_t>();

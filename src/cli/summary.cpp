@@ -71,7 +71,7 @@ std::string details(const Simulation& simulation) {
     }
   }
   const SamplingError& error = simulation.transport.error;
-  if (counts.partial_pairs > 0) {
+  if (was_audited(error)) {
     text << "\nsampled form factors: standard error " << rounded(100 * standard_error(error, 0.5), 2)
          << " % of the unoccluded value for half hidden pairs; where probes agreed, 95 % are within "
          << rounded(100 * bound_on_miss(error.visible), 2) << " % (seen) and "

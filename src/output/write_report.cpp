@@ -53,8 +53,9 @@ Json unanimous_part(const SamplingError::Unanimous& unanimous) {
   return {{"sampled_again", unanimous.pairs}, {"missed", unanimous.missed}, {"bound", bound_on_miss(unanimous)}};
 }
 
-// As shares of the unoccluded exchange area.
+// As shares of the unoccluded exchange area; null where no pair was sampled again, as with form factors from a file.
 Json sampling_error_part(const SamplingError& error) {
+  if (!was_audited(error)) return nullptr;
   Json part;
   part["by_visible_share"] = Json::array();
   for (std::size_t bin = 0; bin < SamplingError::bins; ++bin) {

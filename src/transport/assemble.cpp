@@ -37,7 +37,7 @@ struct Assembler {
   const std::vector<PatchShape>& shapes;
   const std::vector<PatchCluster>& clusters;
   const std::vector<ClusterHull>& hulls;
-  PairSampler sampler;
+  const PairSampler& sampler;
 
   template <typename Use>
   void for_facing_pairs(const PatchCluster& a, const PatchCluster& b, AssemblyCounts& counts, Use use) const;
@@ -88,6 +88,8 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size()) != 0) return;
   const Pair again = sampler.sampled_again(pair);
   facts.counts.shadow_rays += again.rays();
+  // Patches nearly in one plane may have nothing to compare with.
+  if (!(again.unoccluded > 0)) return;
   const double share = exchange_area / again.unoccluded;
   const double difference = share - sampler.exchange_area(again) / again.unoccluded;
   if (pair.is_partial()) {

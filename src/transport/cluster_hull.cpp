@@ -1,5 +1,6 @@
 #include "transport/cluster_hull.h"
 
+#include <algorithm>
 #include <span>
 
 namespace patchlight {
@@ -32,7 +33,12 @@ ClusterHull hull_of(const PatchCluster& cluster, const std::vector<PatchShape>& 
   ClusterHull hull{culler.slabs(corners), {}, {}};
   const PatchShape& first = shapes[cluster.patches[0]];
   const Vector& normal = first.normal;
-  if (cluster.is_planar) hull.behind = HalfSpace{normal, normal.dot(first.centroid)};
+  if (cluster.is_planar) {
+    // Of the lowest corner: the patches lie in one plane up to rounding only.
+    double lowest = normal.dot(first.centroid);
+    for (const Point& corner : corners) lowest = std::min(lowest, normal.dot(corner));
+    hull.behind = HalfSpace{normal, lowest};
+  }
   hull.corners = box_around(corners, cluster.is_planar ? normal : Vector(Vector::UnitZ()), first.centroid);
   return hull;
 }

@@ -21,6 +21,11 @@ SamplingError& SamplingError::operator+=(const SamplingError& other) {
   return *this;
 }
 
+bool was_audited(const SamplingError& error) {
+  return std::accumulate(error.partial_pairs.begin(), error.partial_pairs.end(),
+                         error.visible.pairs + error.occluded.pairs) > 0;
+}
+
 double standard_error(const SamplingError& error, double visible_share) {
   constexpr std::uint64_t enough = 30;
   const auto bin = static_cast<std::size_t>(
@@ -35,7 +40,7 @@ double standard_error(const SamplingError& error, double visible_share) {
 }
 
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {
-  constexpr std::uint64_t enough = 30;
+  constexpr std::uint64_t enough = 100;
   constexpr double sure = 0.97;
   if (unanimous.pairs < enough) return 1;
   std::uint64_t below = 0;

@@ -92,9 +92,15 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   std::array<unsigned char, packet_size> clear{};
   if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
   for (unsigned k = 0; k < arguments->N; ++k) {
-    if (arguments->valid[k] != -1 || clear[k] != 0) continue;
+    if (arguments->valid[k] != -1) continue;
     const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
     const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
+    if (clear[k] != 0) {
+      const PolygonIndex polygon = planes[triangle].polygon;
+      const ShadowPacket& rays = *context->packet;
+      if (polygon == rays.from_polygon[ray] || polygon == rays.to_polygon[ray]) arguments->valid[k] = 0;
+      continue;
+    }
     const bool blocks =
         context->packet != nullptr
             ? separates(planes[triangle], exact_ray(*context->packet, ray), on_plane_tolerance_of_packets)

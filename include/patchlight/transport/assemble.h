@@ -13,7 +13,8 @@ namespace patchlight {
 
 struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
-  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; near pairs take four times as many
+  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; adjacent pairs take four
+                     ///< times as many. Both are rounded up to 2, 4, 8 or a multiple of 16, to fill packets
   std::uint64_t seed = 1;
   bool keep_sampled = false;  ///< fill Assembly::sampled: 16 bytes for each pair that shadow rays decided
 };

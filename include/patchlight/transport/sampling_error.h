@@ -29,12 +29,15 @@ struct SamplingError {
   SamplingError& operator+=(const SamplingError& other);
 };
 
+/// True when some pair was sampled a second time, so that there is something to tell.
+bool was_audited(const SamplingError& error);
+
 /// Standard error of an entry whose probes disagreed, as a share of U; that of all such pairs where fewer than 30 have
 /// about this visible share.
 double standard_error(const SamplingError& error, double visible_share);
 
-/// An upper bound, more than 95 % sure for a pair chosen at random, of what probes that agreed had wrong, as a share of
-/// U: what 97 % of the pairs that were sampled again stayed below. 1 when fewer than 30 were.
+/// An upper bound, about 95 % sure for a pair chosen at random, of what probes that agreed had wrong, as a share of
+/// U: what 97 % of the pairs that were sampled again stayed below. 1 when fewer than 100 were.
 double bound_on_miss(const SamplingError::Unanimous& unanimous);
 
 }  // namespace patchlight
