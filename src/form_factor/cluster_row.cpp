@@ -18,6 +18,10 @@ constexpr float middle_diameters = 4;
 constexpr float height_tolerance = 1e-7F;
 constexpr float height_rounding = 4e-7F;
 
+// A coordinate and its differences are right to this share of the largest; distances have to be known better than this.
+constexpr float position_rounding = 1.2e-7F;
+constexpr float distance_tolerance = 1e-4F;
+
 struct Float3 {
   float x, y, z;
 };
@@ -95,6 +99,10 @@ PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float
   const Heights h = heights(first, lane, shift, second);
   const Float3 centroid = minus(lane_of(first.centroid, lane), shift);
   const float radius = first.radius.at[static_cast<std::size_t>(lane)];
+  // Patches of clusters that are wide against the patches' distance are left to double precision.
+  const float rounding =
+      position_rounding * (first.reach + second.reach + std::abs(shift.x) + std::abs(shift.y) + std::abs(shift.z));
+  const float least = rounding * rounding / (distance_tolerance * distance_tolerance);
   for (std::size_t l = 0; l < Lanes::count; ++l) {
     const float x = second.centroid.x.at[l] - centroid.x;
     const float y = second.centroid.y.at[l] - centroid.y;
@@ -104,9 +112,11 @@ PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float
     const float reach = squared / (4 * larger * larger);
     const float tolerance =
         height_tolerance * (radius + second.radius.at[l]) + height_rounding * (std::abs(x) + std::abs(y) + std::abs(z));
+    const int coarse = static_cast<int>(squared < least);
+    const float lowest_seen = coarse != 0 ? -rounding : tolerance;
     const int facing =
-        static_cast<int>(h.highest.at[l] > tolerance) & static_cast<int>(h.highest_of_one.at[l] > tolerance);
-    const int exact = static_cast<int>(reach < near_diameters * near_diameters) |
+        static_cast<int>(h.highest.at[l] > lowest_seen) & static_cast<int>(h.highest_of_one.at[l] > lowest_seen);
+    const int exact = coarse | static_cast<int>(reach < near_diameters * near_diameters) |
                       static_cast<int>(h.lowest.at[l] < -tolerance) |
                       static_cast<int>(h.lowest_of_one.at[l] < -tolerance);
     const int far = static_cast<int>(reach >= middle_diameters * middle_diameters);

@@ -52,7 +52,9 @@ PatchCluster cluster_of(const PatchMesh& mesh, const std::vector<PatchShape>& sh
     cluster.patches[lane] = patch;
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t corner = std::min(k, static_cast<std::size_t>(shape.corners.count) - 1);
-      set(cluster.corner[k], lane, (shape.corners.points[corner] - cluster.centre) / unit);
+      const Vector position = (shape.corners.points[corner] - cluster.centre) / unit;
+      set(cluster.corner[k], lane, position);
+      cluster.reach = std::max(cluster.reach, static_cast<float>(position.lpNorm<Eigen::Infinity>()));
     }
     set(cluster.centroid, lane, (shape.centroid - cluster.centre) / unit);
     set(cluster.normal, lane, shape.normal);

@@ -37,7 +37,8 @@ struct PatchCluster {
   std::array<PatchIndex, Lanes::count> patches{};
   bool is_planar = false;  ///< all patches lie in one plane and face the same side of it: that of the first patch
   Point centre;            ///< metres
-  double unit = 1;         ///< metres; the extent of the mesh
+  double unit = 1;         ///< metres; about the extent of the mesh
+  float reach = 0;         ///< largest coordinate of a corner: rounding is 6e-8 of it
   std::array<LaneVectors, 4> corner;
   LaneVectors centroid;
   LaneVectors normal;
@@ -54,7 +55,8 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
 struct ClusterRow {
   Lanes unoccluded;          ///< exchange areas without occluders, m^2; for facing pairs that are not in `exact`
   std::uint16_t facing = 0;  ///< pairs whose form factor is not 0 by orientation
-  std::uint16_t exact = 0;   ///< of these, those that need unoccluded_exchange_area(): near or straddling
+  std::uint16_t exact = 0;   ///< of these, those that need unoccluded_exchange_area(): near, straddling,
+                             ///< or so near in clusters so wide that single precision is too coarse
 };
 
 /// The exchange areas of patch `lane` of cluster `first` with the patches of `second`. Relative error below 1e-3: that

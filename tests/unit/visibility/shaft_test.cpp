@@ -18,7 +18,7 @@ Quad square_at(const Point& corner, const Vector& along_u, const Vector& along_v
 
 std::vector<Point> points_of(const Quad& quad) { return {quad.begin(), quad.end()}; }
 
-// Squares of half a metre all over the faces of the furnished room, and some in the air.
+// Squares all over the faces of the furnished room.
 std::vector<Quad> some_squares(const Scene& scene) {
   std::vector<Quad> squares;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -61,6 +61,26 @@ TEST(ShaftCuller, NothingStandsInAnEmptyShaft) {
     EXPECT_GT(empty, 100);
     EXPECT_GT(not_empty, 100);
   }
+}
+
+// A wall across a room hides its halves from each other; not so a wall with a door where the door can be seen through,
+// or one that is a little too small.
+TEST(Occluder, HidesWhatOnePolygonCutsOff) {
+  const Scene room = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 4), true);
+  const std::vector<Point> left = points_of(square_at(Point(0, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
+  const std::vector<Point> right = points_of(square_at(Point(4, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
+  const auto hides = [&](const Scene& scene) { return Occluder(scene).hides(left, right); };
+  EXPECT_FALSE(hides(room));
+  EXPECT_TRUE(hides(with_quad(room, square_at(Point(2, 0, 0), Vector(0, 4, 0), Vector(0, 0, 4)))));
+  EXPECT_TRUE(hides(with_quad(room, square_at(Point(2, 0.99, 0.99), Vector(0, 1.02, 0), Vector(0, 0, 1.02)))));
+  EXPECT_FALSE(hides(with_quad(room, square_at(Point(2, 1.01, 0.99), Vector(0, 1.02, 0), Vector(0, 0, 1.02)))));
+  const auto with_door = [&](double y) {
+    return with_polygon(
+        room, {Point(2, 0, 0), Point(2, 4, 0), Point(2, 4, 4), Point(2, 0, 4), Point(2, 0, 0), Point(2, y, 0.5),
+               Point(2, y, 3), Point(2, y + 0.5, 3), Point(2, y + 0.5, 0.5), Point(2, y, 0.5)});
+  };
+  EXPECT_FALSE(hides(with_door(1.2)));
+  EXPECT_TRUE(hides(with_door(3)));
 }
 
 TEST(ShaftCuller, FindsAThinPlateAndSmallThings) {
