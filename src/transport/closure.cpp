@@ -131,6 +131,20 @@ std::optional<Eigen::VectorXd> row_scales(const ExchangeAreas& S, const Eigen::V
   return std::nullopt;
 }
 
+// No patch sees more than its hemisphere: rows that add up to far more than their area are cut down to it, by the
+// smaller of both patches' factors, which keeps the matrix symmetric. Without this, light could grow from bounce to
+// bounce. Rows that exceed it by less stay, as noise raises as many as it lowers: cutting these alone would take light
+// away.
+ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, const Eigen::VectorXd& sums) {
+  constexpr double gross_excess = 1.1;
+  const Eigen::VectorXd factor =
+      (sums.array() > gross_excess * area.array()).select(area.array() / sums.array(), 1.0).matrix();
+  ExchangeAreas S = changed(
+      std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) { return entry * std::min(factor[i], factor[j]); });
+  return {std::move(S), Eigen::VectorXd::Zero(area.size()),
+          "rows above 1.1 cut to 1: open scene, and the least change has negative entries"};
+}
+
 }  // namespace
 
 ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason) {
@@ -160,8 +174,7 @@ ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorX
   }
 
   // 2. Scaling keeps every entry positive, but needs exact targets.
-  if (!lost.closed())
-    return keep_exchange_areas(std::move(raw), "open scene, and the least change has negative entries");
+  if (!lost.closed()) return limited(std::move(raw), area, raw_sums);
   const auto scale = row_scales(raw, target.sum, observer);
   if (!scale) return keep_exchange_areas(std::move(raw), "no symmetric scaling has the wanted row sums");
   ExchangeAreas closed = changed(

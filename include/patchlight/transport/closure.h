@@ -13,14 +13,15 @@ namespace patchlight {
 struct ClosedExchangeAreas {
   ExchangeAreas exchange_areas;  ///< entries narrowed toward zero
   Eigen::VectorXd remainder;     ///< m^2, what narrowing took from each row; applied as remainder_i B_i
-  std::string method;            ///< "least squares", "scaling" or "none", with the reason
+  std::string method;            ///< "least squares", "scaling", "rows above 1.1 cut to 1" or "none", with the reason
 };
 
 /// Corrects symmetric exchange areas so that row i sums to a_i = A_i (1 - lost_i), the smallest change in the norm
 /// weighted by the entries' variance, for which S_ij^2 stands. In a closed scene the sums become exact; in an open one
 /// the measured lost share has a standard error that is weighed against that of the entries. Falls back to symmetric
-/// scaling when an entry would become negative, and to the raw entries where no symmetric matrix with this pattern has
-/// such sums. docs/theory.md section 6. \throws Cancelled.
+/// scaling when an entry would become negative, in an open scene to cutting rows that sum to more than their area, and
+/// to the raw entries where no symmetric matrix with this pattern has such sums. docs/theory.md section 6. \throws
+/// Cancelled.
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
                                          const Observer& observer = {});
 
