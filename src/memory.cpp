@@ -38,14 +38,6 @@ std::string gigabytes(double bytes) {
   return text.str();
 }
 
-double kept_area(const Scene& scene, const KeptSides& sides) {
-  double sum = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    sum += area_vector(corner_points(scene, p)).norm() * (sides.front[p] + sides.back[p]);
-  }
-  return sum;
-}
-
 }  // namespace
 
 double memory_needed(std::size_t patches) {

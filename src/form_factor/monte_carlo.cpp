@@ -31,9 +31,9 @@ SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
   }
 }
 
-SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key) const {
-  const std::uint32_t scramble =
-      hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_)))) % scrambles_;
+SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key, std::uint32_t replicate) const {
+  const std::uint32_t key = hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_))));
+  const std::uint32_t scramble = (key % scrambles_ + replicate) % scrambles_;
   const float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples_;
   return {rows, rows + 4 * std::size_t{samples_}, samples_};
 }

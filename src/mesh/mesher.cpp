@@ -206,14 +206,6 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::s
   }
 }
 
-double kept_area(const Scene& scene, const KeptSides& sides) {
-  double area = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    area += (sides.front[p] + sides.back[p]) * area_vector(corner_points(scene, p)).norm();
-  }
-  return area;
-}
-
 double diameter(const Scene& scene) { return bounds(scene).diagonal().norm(); }
 
 }  // namespace

@@ -176,4 +176,12 @@ KeptSides kept_sides(const Scene& scene, Sides sides) {
   return kept;
 }
 
+double kept_area(const Scene& scene, const KeptSides& sides) {
+  double area = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    area += (sides.front[p] + sides.back[p]) * area_vector(corner_points(scene, p)).norm();
+  }
+  return area;
+}
+
 }  // namespace patchlight

@@ -145,9 +145,8 @@ std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
 }
 
 Pair PairSampler::sampled_again(const Pair& pair) const {
-  constexpr std::uint32_t another = 0x9e3779b9U;
   Pair again = pair;
-  again.set = table_.of_pair(keys_[pair.first] ^ another, keys_[pair.second]);
+  again.set = table_.of_pair(keys_[pair.first], keys_[pair.second], 1);
   again.free_weight = again.blocked_weight = 0;
   again.free_rays = again.blocked_rays = again.idle_free_rays = again.idle_blocked_rays = 0;
   if (pair.is_adjacent) {

@@ -4,6 +4,7 @@
 #include "patchlight/visibility/convex_hull.h"
 
 #include "base/target_clones.h"
+#include "visibility/flat_polygon.h"
 
 #include <algorithm>
 #include <array>
@@ -119,53 +120,22 @@ RTCIntersectContext new_context() {
   return context;
 }
 
+// What Embree is asked for one ray, in recentred coordinates.
+RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
+  const Eigen::Vector3f o = from.cast<float>();
+  const Eigen::Vector3f d = toward.cast<float>();
+  RTCRayHit query{};
+  query.ray = {o.x(), o.y(), o.z(), 0, d.x(), d.y(), d.z(), 0, farthest, ~0U, 0, 0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
 std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
-
-// A polygon in the coordinates of its plane.
-struct Outline {
-  Point origin;
-  Vector u, v, normal;
-  std::vector<Eigen::Vector2d> corners;
-
-  double height(const Point& point) const { return normal.dot(point - origin); }
-  Eigen::Vector2d in_plane(const Point& point) const { return {u.dot(point - origin), v.dot(point - origin)}; }
-};
-
-Outline outline_of(std::span<const Point> corners) {
-  const Vector normal = area_vector(corners).normalized();
-  const Vector u = normal.unitOrthogonal();
-  Outline outline{corners[0], u, normal.cross(u), normal, {}};
-  for (const Point& corner : corners) outline.corners.push_back(outline.in_plane(corner));
-  return outline;
-}
-
-bool touches(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  if (!box.intersects(Eigen::AlignedBox2d(a.cwiseMin(b), a.cwiseMax(b)))) return false;
-  // The box's corners on both sides of the line: its half width across the line reaches the middle's distance.
-  const Eigen::Vector2d across(a.y() - b.y(), b.x() - a.x());
-  return std::abs(across.dot(box.center() - a)) <= across.cwiseAbs().dot(box.sizes()) / 2;
-}
-
-// Whether a rectangle lies in a polygon: no edge touches it, and its middle lies inside. A hole's seam counts as an
-// edge.
-bool holds(const Outline& outline, const Eigen::AlignedBox2d& box) {
-  bool inside = false;
-  const Eigen::Vector2d middle = box.center();
-  for (std::size_t k = 0; k < outline.corners.size(); ++k) {
-    const Eigen::Vector2d& a = outline.corners[k];
-    const Eigen::Vector2d& b = outline.corners[(k + 1) % outline.corners.size()];
-    if (touches(box, a, b)) return false;
-    if ((a.y() > middle.y()) == (b.y() > middle.y())) continue;
-    if (middle.x() < a.x() + (middle.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
-}
 
 // The triangles of some polygons, ready to be traced.
 struct TriangleScene {
   RTCScene scene = nullptr;
-  std::vector<Plane> planes;      // per triangle
-  std::vector<Outline> outlines;  // per polygon of the scene
+  std::vector<Plane> planes;  // per triangle
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -174,26 +144,6 @@ struct TriangleScene {
     if (scene) rtcReleaseScene(scene);
   }
 };
-
-// Whether a polygon cuts every segment from the hull of some points to that of others. With heights h > 0 of the points
-// a and h' < 0 of the points b over its plane, segments from a to b cross it at (h b - h' a) / (h - h'): for points of
-// the hulls that is a mean, with positive weights, of the crossings between their corners. So all crossings lie in the
-// polygon when it holds a rectangle around those of the corners.
-bool cuts_all(const Outline& outline, std::span<const Point> from, std::span<const Point> to) {
-  const double sign = outline.height(from[0]) > 0 ? 1 : -1;
-  const double tolerance = on_plane_tolerance_of_packets;
-  Eigen::AlignedBox2d crossings;
-  for (const Point& a : from) {
-    const double above = sign * outline.height(a);
-    if (above <= tolerance) return false;
-    for (const Point& b : to) {
-      const double below = sign * outline.height(b);
-      if (below >= -tolerance) return false;
-      crossings.extend(outline.in_plane((above * b - below * a) / (above - below)));
-    }
-  }
-  return holds(outline, crossings);
-}
 
 }  // namespace
 
@@ -205,6 +155,7 @@ struct Occluder::Tracer {
   TriangleScene blockers;  // those that can block a segment
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
+  std::vector<FlatPolygon> polygons;  // of the scene, recentred
 
   Tracer(const Scene& scene, Blockers blockers);
   ~Tracer() { rtcReleaseDevice(device); }
@@ -227,17 +178,20 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which)
   scale = 1 / box.diagonal().norm();
   build(everything, scene, none_of(scene));
   build(blockers, scene, left_out);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    std::vector<Point> points = corner_points(scene, p);
+    for (Point& point : points) point = recentred(point);
+    polygons.push_back(flat_polygon(points));
+  }
 }
 
 void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
                              const std::vector<std::uint8_t>& without) const {
   std::vector<Eigen::Vector3f> corners;
-  target.outlines.resize(scene.polygons.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (without[p]) continue;
     std::vector<Point> points = corner_points(scene, p);
     for (Point& point : points) point = recentred(point);
-    target.outlines[p] = outline_of(points);
     for (const auto& [a, b, c] : triangulate(points)) {
       for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
       const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
@@ -326,11 +280,7 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
 
 // The first polygon that can block between two points, in recentred coordinates.
 std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, const Point& to) const {
-  const Eigen::Vector3f origin = from.cast<float>();
-  const Eigen::Vector3f direction = (to - from).cast<float>();
-  RTCRayHit query{};
-  query.ray = {origin.x(), origin.y(), origin.z(), 0, direction.x(), direction.y(), direction.z(), 0, 1, ~0U, 0, 0};
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCRayHit query = new_query(from, to - from, 1);
   const ExactRay exact{from, to, no_polygon, no_polygon};
   Context context{new_context(), &exact, nullptr};
   rtcIntersect1(blockers.scene, &context.embree, &query);
@@ -347,12 +297,12 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
     return Point(std::accumulate(points.begin(), points.end(), Point(Point::Zero())) /
                  static_cast<double>(points.size()));
   };
-  const auto& outlines = tracer_->blockers.outlines;
   const auto met = tracer_->first_polygon(middle(from), middle(to));
   if (!met) return false;
-  if (cuts_all(outlines[*met], from, to)) return true;
+  const std::vector<FlatPolygon>& polygons = tracer_->polygons;
+  if (cuts_all(polygons[*met], from, to, on_plane_tolerance_of_packets)) return true;
   const auto other = tracer_->first_polygon(middle(to), middle(from));
-  return other && *other != *met && cuts_all(outlines[*other], from, to);
+  return other && *other != *met && cuts_all(polygons[*other], from, to, on_plane_tolerance_of_packets);
 }
 
 const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }
@@ -381,22 +331,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
     const Point start = tracer_->recentred(ray.origin);
-    const Eigen::Vector3f origin = start.cast<float>();
-    const Eigen::Vector3f direction = ray.direction.cast<float>();
-    RTCRayHit query{};
-    query.ray = {origin.x(),
-                 origin.y(),
-                 origin.z(),
-                 0,
-                 direction.x(),
-                 direction.y(),
-                 direction.z(),
-                 0,
-                 std::numeric_limits<float>::infinity(),
-                 ~0U,
-                 0,
-                 0};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
     Context context{new_context(), &exact, nullptr};
     rtcIntersect1(tracer_->everything.scene, &context.embree, &query);

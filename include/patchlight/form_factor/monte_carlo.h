@@ -23,7 +23,8 @@ class SampleTable {
   /// `samples` is the largest number of samples of one pair of patches.
   SampleTable(std::uint32_t samples, std::uint64_t seed);
 
-  SampleSet of_pair(std::uint32_t first_key, std::uint32_t second_key) const;
+  /// `replicate` chooses among independent sets of one pair: sets of different replicates below 16 differ.
+  SampleSet of_pair(std::uint32_t first_key, std::uint32_t second_key, std::uint32_t replicate = 0) const;
 
  private:
   std::uint32_t samples_;

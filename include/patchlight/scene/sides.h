@@ -37,4 +37,7 @@ struct KeptSides {
 /// So the inner sides of a closed room are used even when its normals point outward; a note says so.
 KeptSides kept_sides(const Scene& scene, Sides sides);
 
+/// Area of the kept sides in m^2; a polygon of which both are kept counts twice.
+double kept_area(const Scene& scene, const KeptSides& sides);
+
 }  // namespace patchlight

@@ -17,21 +17,6 @@ using Formats = ModelFiles;
 
 constexpr const char* grey_surface = R"("pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]})";
 
-bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  return std::any_of(texts.begin(), texts.end(),
-                     [&](const auto& text) { return text.find(part) != std::string::npos; });
-}
-
-std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
-  try {
-    read_scene(file, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << file << " was read";
-  return {};
-}
-
 class RoomIn : public Formats {
  protected:
   static constexpr double max_edge = 0.57;  // no edge is a multiple of it, so rounding does not change the patches

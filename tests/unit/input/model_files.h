@@ -1,12 +1,33 @@
 #pragma once
 
+#include "patchlight/base/error.h"
+#include "patchlight/input/read_scene.h"
+
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace patchlight {
+
+/// What InputError says when the file is read; fails when there is none.
+inline std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
+  try {
+    read_scene(file, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << file << " was read";
+  return {};
+}
+
+inline bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
+  return std::any_of(texts.begin(), texts.end(),
+                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
+}
 
 /// A test with a folder of its own for small model files; it is removed afterwards.
 class ModelFiles : public ::testing::Test {

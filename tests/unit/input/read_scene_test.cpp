@@ -21,25 +21,7 @@ constexpr const char* materials =
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-// What InputError says when the file is read; fails when there is none.
-std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
-  try {
-    read_scene(file, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << file << " was read";
-  return {};
-}
-
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  for (const std::string& text : texts) {
-    if (contains(text, part)) return true;
-  }
-  return false;
-}
 
 std::map<std::string, double> area_per_material(const Scene& scene) {
   std::map<std::string, double> area;

@@ -1,0 +1,60 @@
+#include "visibility/flat_polygon.h"
+
+#include <cmath>
+
+namespace patchlight {
+
+FlatPolygon flat_polygon(std::span<const Point> corners) {
+  const Vector normal = area_vector(corners).normalized();
+  const Vector u = normal.unitOrthogonal();
+  FlatPolygon polygon{corners[0], u, normal.cross(u), normal, {}};
+  for (const Point& corner : corners) polygon.corners.push_back(polygon.in_plane(corner));
+  return polygon;
+}
+
+namespace {
+
+bool touches(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (!box.intersects(Eigen::AlignedBox2d(a.cwiseMin(b), a.cwiseMax(b)))) return false;
+  // The box's corners on both sides of the line: its half width across the line reaches the middle's distance.
+  const Eigen::Vector2d across(a.y() - b.y(), b.x() - a.x());
+  return std::abs(across.dot(box.center() - a)) <= across.cwiseAbs().dot(box.sizes()) / 2;
+}
+
+// Whether a rectangle lies in a polygon: no edge touches it, and its middle lies inside. A hole's seam counts as an
+// edge.
+bool holds(const FlatPolygon& polygon, const Eigen::AlignedBox2d& box) {
+  bool inside = false;
+  const Eigen::Vector2d middle = box.center();
+  for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
+    const Eigen::Vector2d& a = polygon.corners[k];
+    const Eigen::Vector2d& b = polygon.corners[(k + 1) % polygon.corners.size()];
+    if (touches(box, a, b)) return false;
+    if ((a.y() > middle.y()) == (b.y() > middle.y())) continue;
+    if (middle.x() < a.x() + (middle.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
+
+// Whether a polygon cuts every segment from the hull of some points to that of others. With heights h > 0 of the points
+// a and h' < 0 of the points b over its plane, segments from a to b cross it at (h b - h' a) / (h - h'): for points of
+// the hulls that is a mean, with positive weights, of the crossings between their corners. So all crossings lie in the
+// polygon when it holds a rectangle around those of the corners.
+bool cuts_all(const FlatPolygon& polygon, std::span<const Point> from, std::span<const Point> to, double tolerance) {
+  const double sign = polygon.height(from[0]) > 0 ? 1 : -1;
+  Eigen::AlignedBox2d crossings;
+  for (const Point& a : from) {
+    const double above = sign * polygon.height(a);
+    if (above <= tolerance) return false;
+    for (const Point& b : to) {
+      const double below = sign * polygon.height(b);
+      if (below >= -tolerance) return false;
+      crossings.extend(polygon.in_plane((above * b - below * a) / (above - below)));
+    }
+  }
+  return holds(polygon, crossings);
+}
+
+}  // namespace patchlight
