@@ -37,7 +37,7 @@ for name in "${names[@]}"; do
       ;;
     duplex)
       files=("$models/duplex-ifc/Duplex_A.ifc")
-      options=(--set Glass.radiance=100 --patches 25000 --tolerance 1e-3 --camera 1,-1,1.6 7.5,-4.5,1 60)
+      options=(--set Sash.radiance=100 --patches 25000 --tolerance 1e-3 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
       ;;
     kitchen)
       python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null

@@ -17,8 +17,9 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, bool c
   PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
   require_memory(mesh.size(), used);
 
+  const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, plan.sides));
   Exchange exchange =
-      trace_exchange(mesh, Occluder(scene), {plan.probes, plan.samples, plan.seed}, plan.lost_share_rays, observer);
+      trace_exchange(mesh, occluder, {plan.probes, plan.samples, plan.seed}, plan.lost_share_rays, observer);
   if (close) {
     ClosedExchangeAreas closed =
         close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, observer);

@@ -32,7 +32,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
 
   // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays; and the share of each patch's
   //    hemisphere from which no patch is seen.
-  const Occluder occluder(scene);
+  const Coverings coverings = find_coverings(scene, plan.sides);
+  for (const Problem& problem : problems_with_overlaps(scene, coverings)) result.plan.notes.push_back(problem.what);
+  const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
   for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
     result.plan.notes.push_back(std::move(note));
   const AssemblyOptions sampling{plan.probes, plan.samples, plan.seed};

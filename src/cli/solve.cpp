@@ -95,7 +95,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 3. Look at the solution: irradiance at points, picture
   StageClock looking;
-  const Occluder occluder(results.scene, Occluder::Blockers::all);
+  const Occluder occluder(results.scene, Occluder::Blockers::all, find_coverings(results.scene, simulation.plan.sides));
   if (!arguments.points.empty()) {
     results.irradiance =
         gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,

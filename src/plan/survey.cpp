@@ -1,5 +1,6 @@
 #include "patchlight/plan/survey.h"
 
+#include "patchlight/scene/coverings.h"
 #include "patchlight/scene/shells.h"
 
 #include <algorithm>
@@ -182,6 +183,7 @@ SceneReport survey(const Scene& scene) {
   };
   add(problems_with_size(scene, report.unit_guess, size));
   add(problems_with_reflectance(report.materials));
+  add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
   if (!report.usable) add({{ProblemKind::no_lamp, 1, advice_without_lamp(scene), {}}});
   report.problems = worst_first(std::move(report.problems));
   return report;

@@ -30,6 +30,8 @@ const char* name_of(ProblemKind kind) {
       return "non_planar";
     case ProblemKind::duplicate_faces:
       return "duplicate_faces";
+    case ProblemKind::overlapping_faces:
+      return "overlapping_faces";
     case ProblemKind::two_sided_faces:
       return "two_sided_faces";
     case ProblemKind::non_manifold_edges:
@@ -46,7 +48,7 @@ const char* name_of(ProblemKind kind) {
 
 Severity severity_of(ProblemKind kind) {
   if (kind <= ProblemKind::self_intersecting) return Severity::error;
-  return kind <= ProblemKind::duplicate_faces ? Severity::warning : Severity::remark;
+  return kind <= ProblemKind::overlapping_faces ? Severity::warning : Severity::remark;
 }
 
 const char* name_of(Severity severity) {

@@ -5,6 +5,7 @@
 
 #include "scene/coincident.h"
 #include "scene/pieces.h"
+#include "scene/problem_face.h"
 
 #include <algorithm>
 #include <sstream>
@@ -13,27 +14,6 @@ namespace patchlight {
 namespace {
 
 using Faces = std::vector<ProblemFace>;
-
-ProblemFace face_of(const Scene& scene, const Polygon& polygon) {
-  ProblemFace face{.corners = {}, .file = polygon.file, .line = polygon.line, .face = polygon.face};
-  for (const std::uint32_t corner : polygon.corners) face.corners.push_back(scene.vertices[corner]);
-  return face;
-}
-
-// "3 faces", "1 face".
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-// "3 faces (first at room.obj:12)".
-std::string listed(const Scene& scene, const Faces& faces) {
-  Polygon first;
-  first.file = faces.front().file;
-  first.line = faces.front().line;
-  std::ostringstream text;
-  text << counted(faces.size(), "face") << (faces.size() == 1 ? " (" : " (first at ") << place_of(scene, first) << ')';
-  return text.str();
-}
 
 // The scene with one more problem, unless no face is concerned. `does` follows the number of faces: "have no area".
 Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string& does) {
@@ -127,7 +107,7 @@ Scene clean_corners(Scene scene) {
     std::vector<std::uint32_t> kept = without_spikes(polygon.corners, scene.vertices, width);
     if (kept.size() == polygon.corners.size()) continue;
     // Those of which fewer than three corners are left have no area and are left out as such.
-    if (kept.size() >= 3) repeated.push_back(face_of(scene, polygon));
+    if (kept.size() >= 3) repeated.push_back(problem_face(scene, polygon));
     polygon.corners = std::move(kept);
   }
   return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
@@ -142,10 +122,10 @@ Scene make_simple(Scene scene) {
   polygons.reserve(scene.polygons.size());
   for (const Polygon& polygon : scene.polygons) {
     Pieces pieces = pieces_of(scene, polygon, width);
-    if (pieces.kind == ProblemKind::zero_area) narrow.push_back(face_of(scene, polygon));
-    if (pieces.kind == ProblemKind::non_planar) bent.push_back(face_of(scene, polygon));
+    if (pieces.kind == ProblemKind::zero_area) narrow.push_back(problem_face(scene, polygon));
+    if (pieces.kind == ProblemKind::non_planar) bent.push_back(problem_face(scene, polygon));
     if (pieces.kind == ProblemKind::self_intersecting) {
-      (pieces.polygons.empty() ? lost : crossing).push_back(face_of(scene, polygon));
+      (pieces.polygons.empty() ? lost : crossing).push_back(problem_face(scene, polygon));
     }
     scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
     for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
@@ -168,15 +148,15 @@ Scene merge_coincident(Scene scene) {
     Polygon& first = scene.polygons[pair.first];
     const Polygon& second = scene.polygons[pair.second];
     if (!pair.same_front && !first.back_material) {
-      two_sided.push_back(face_of(scene, second));
+      two_sided.push_back(problem_face(scene, second));
       first.back_material = second.material;
       continue;
     }
     const Side side = pair.same_front ? Side::front : Side::back;
-    duplicates.push_back(face_of(scene, second));
+    duplicates.push_back(problem_face(scene, second));
     other_material += material_on(first, side) != second.material;
     if (emits(scene, pair.second, Side::front) && !emits(scene, pair.first, side)) {
-      covered.push_back(face_of(scene, second));
+      covered.push_back(problem_face(scene, second));
     }
   }
   std::vector<Polygon> kept;
@@ -202,10 +182,10 @@ Scene report_shells(Scene scene) {
   std::size_t lamps = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (!shells.turned[p] || scene.polygons[p].back_material) continue;
-    turned.push_back(face_of(scene, scene.polygons[p]));
+    turned.push_back(problem_face(scene, scene.polygons[p]));
     lamps += is_lamp(scene, p);
   }
-  for (const PolygonIndex p : shells.branched) branched.push_back(face_of(scene, scene.polygons[p]));
+  for (const PolygonIndex p : shells.branched) branched.push_back(problem_face(scene, scene.polygons[p]));
   const std::string shine = lamps > 0 ? ", " + counted(lamps, "lamp") + " among them" : "";
   scene = with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
                        "turned against the faces next to them" + shine +

@@ -74,6 +74,7 @@ void Assembler::for_facing_pairs(const PatchCluster& a, const PatchCluster& b, A
 bool Assembler::is_free(std::size_t row, std::size_t column) const {
   const ClusterHull& a = hulls[row];
   const ClusterHull& b = hulls[column];
+  if (a.is_covered || b.is_covered) return false;
   return !occluder.can_occlude() || occluder.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
 }
 
@@ -141,6 +142,11 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
   return facts;
 }
 
+bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
+  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
+                     [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
+}
+
 Assembly with_row(Assembly assembly, const RowFacts& row) {
   AssemblyCounts& counts = assembly.counts;
   counts.facing_pairs += row.counts.facing_pairs;
@@ -163,7 +169,10 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
   const std::vector<PatchShape> shapes = patch_shapes(mesh);
   const std::vector<PatchCluster> clusters = patch_clusters(mesh, shapes);
   std::vector<ClusterHull> hulls;
-  for (const PatchCluster& cluster : clusters) hulls.push_back(hull_of(cluster, shapes, occluder.shafts()));
+  for (const PatchCluster& cluster : clusters) {
+    hulls.push_back(hull_of(cluster, shapes, occluder.shafts()));
+    hulls.back().is_covered = is_covered(mesh, cluster, occluder);
+  }
   const PairSampler sampler(mesh, shapes, occluder, options);
   const Assembler assembler{mesh, occluder, options, shapes, clusters, hulls, sampler};
 

@@ -86,6 +86,10 @@ std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& r
   std::vector<std::size_t> tried_again;
   const auto hits = occluder.first_hits(rays);
   for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) {
+      sights[k] = Sight::contact;
+      continue;
+    }
     if (hits[k]) {
       sights[k] = sight_of(*hits[k]);
       continue;

@@ -21,22 +21,30 @@ bool touches(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& a, const Eig
   return std::abs(across.dot(box.center() - a)) <= across.cwiseAbs().dot(box.sizes()) / 2;
 }
 
-// Whether a rectangle lies in a polygon: no edge touches it, and its middle lies inside. A hole's seam counts as an
-// edge.
-bool holds(const FlatPolygon& polygon, const Eigen::AlignedBox2d& box) {
+// Even-odd rule: the seam of a hole is crossed twice.
+bool is_inside(const FlatPolygon& polygon, const Eigen::Vector2d& point) {
   bool inside = false;
-  const Eigen::Vector2d middle = box.center();
   for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
     const Eigen::Vector2d& a = polygon.corners[k];
     const Eigen::Vector2d& b = polygon.corners[(k + 1) % polygon.corners.size()];
-    if (touches(box, a, b)) return false;
-    if ((a.y() > middle.y()) == (b.y() > middle.y())) continue;
-    if (middle.x() < a.x() + (middle.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
   }
   return inside;
 }
 
+// Whether a rectangle lies in a polygon: no edge touches it, and its middle lies inside. A hole's seam counts as an
+// edge.
+bool holds(const FlatPolygon& polygon, const Eigen::AlignedBox2d& box) {
+  for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
+    if (touches(box, polygon.corners[k], polygon.corners[(k + 1) % polygon.corners.size()])) return false;
+  }
+  return is_inside(polygon, box.center());
+}
+
 }  // namespace
+
+bool contains(const FlatPolygon& polygon, const Point& point) { return is_inside(polygon, polygon.in_plane(point)); }
 
 // Whether a polygon cuts every segment from the hull of some points to that of others. With heights h > 0 of the points
 // a and h' < 0 of the points b over its plane, segments from a to b cross it at (h b - h' a) / (h - h'): for points of

@@ -19,6 +19,9 @@ struct FlatPolygon {
 
 FlatPolygon flat_polygon(std::span<const Point> corners);
 
+/// True when a point of the polygon's plane lies in the polygon.
+bool contains(const FlatPolygon& polygon, const Point& point);
+
 /// True when the polygon cuts every segment from the convex hull of some points to that of others, both of them farther
 /// than `tolerance` from its plane. May be false when it does by little: a rectangle of the polygon has to hold all
 /// crossings, and the seam of a hole counts as an edge.

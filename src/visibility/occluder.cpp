@@ -3,8 +3,9 @@
 #include "patchlight/scene/triangulate.h"
 #include "patchlight/visibility/convex_hull.h"
 
-#include "base/target_clones.h"
+#include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
+#include "visibility/hit_filter.h"
 
 #include <algorithm>
 #include <array>
@@ -18,97 +19,10 @@
 namespace patchlight {
 namespace {
 
-// A point nearer to a plane than this share of the scene's extent lies on it.
-constexpr double on_plane_tolerance = 1e-9;
-
-// The same for rays whose ends are given in single precision: what rounding a point of the scene leaves of its height.
-constexpr double on_plane_tolerance_of_packets = 3e-7;
-
 // Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
 constexpr double beyond = 1e6;
 
 constexpr unsigned packet_size = ShadowPacket::size;
-
-// The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
-struct Plane {
-  Vector normal;
-  double offset = 0;
-  PolygonIndex polygon = no_polygon;
-
-  double height(const Point& point) const { return normal.dot(point) - offset; }
-};
-
-// One ray in double: what decides whether a hit that Embree finds in single precision is one.
-struct ExactRay {
-  Point from;
-  Point to;  // or, for a ray without an end, a point far along it
-  PolygonIndex from_polygon = no_polygon;
-  PolygonIndex to_polygon = no_polygon;
-};
-
-// What the filter needs beside Embree's own context.
-struct Context {
-  RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to the whole
-  const ExactRay* rays = nullptr;
-  const ShadowPacket* packet = nullptr;  // in place of rays
-};
-
-// A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
-// ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
-bool separates(const Plane& plane, const ExactRay& ray, double tolerance) {
-  if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
-  const double from = plane.height(ray.from);
-  const double to = plane.height(ray.to);
-  return (from > tolerance && to < -tolerance) || (from < -tolerance && to > tolerance);
-}
-
-ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
-  const Point from(rays.from_x[k], rays.from_y[k], rays.from_z[k]);
-  const Vector toward(rays.toward_x[k], rays.toward_y[k], rays.toward_z[k]);
-  return {from, from + toward, rays.from_polygon[k], rays.to_polygon[k]};
-}
-
-// Marks the hits that are beyond doubt: the ray's ends are so far on either side of the triangle's plane, by
-// t |n . d| and (1 - t) |n . d|, that single precision tells them apart.
-template <unsigned N>
-PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, unsigned char* clear) {
-  constexpr float clear_height = 1e-4F;
-  for (unsigned k = 0; k < N; ++k) {
-    const float x = RTCHitN_Ng_x(hits.hit, N, k);
-    const float y = RTCHitN_Ng_y(hits.hit, N, k);
-    const float z = RTCHitN_Ng_z(hits.hit, N, k);
-    const float t = RTCRayN_tfar(hits.ray, N, k);
-    const float nearer = std::min(t, 1 - t);
-    const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
-                                   z * RTCRayN_dir_z(hits.ray, N, k));
-    const float least = clear_height * clear_height * (x * x + y * y + z * z);
-    clear[k] = static_cast<unsigned char>(static_cast<int>(height * height > least) & static_cast<int>(nearer > 0));
-  }
-}
-
-PATCHLIGHT_TARGET_CLONES
-void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
-  const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
-  std::array<unsigned char, packet_size> clear{};
-  if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
-  for (unsigned k = 0; k < arguments->N; ++k) {
-    if (arguments->valid[k] != -1) continue;
-    const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
-    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
-    if (clear[k] != 0) {
-      const PolygonIndex polygon = planes[triangle].polygon;
-      const ShadowPacket& rays = *context->packet;
-      if (polygon == rays.from_polygon[ray] || polygon == rays.to_polygon[ray]) arguments->valid[k] = 0;
-      continue;
-    }
-    const bool blocks =
-        context->packet != nullptr
-            ? separates(planes[triangle], exact_ray(*context->packet, ray), on_plane_tolerance_of_packets)
-            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
-    if (!blocks) arguments->valid[k] = 0;
-  }
-}
 
 void fail_on_error(void*, RTCError, const char* message) {
   throw std::runtime_error(std::string("Embree: ") + message);
@@ -155,9 +69,9 @@ struct Occluder::Tracer {
   TriangleScene blockers;  // those that can block a segment
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
-  std::vector<FlatPolygon> polygons;  // of the scene, recentred
+  CoveredPlaces covered_places;
 
-  Tracer(const Scene& scene, Blockers blockers);
+  Tracer(const Scene& scene, Blockers blockers, Coverings coverings);
   ~Tracer() { rtcReleaseDevice(device); }
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -168,7 +82,7 @@ struct Occluder::Tracer {
   void trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene, Blockers which)
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings)
     : device(rtcNewDevice(nullptr)),
       left_out(which == Blockers::all ? none_of(scene) : on_convex_hull(scene)),
       shafts(scene, left_out) {
@@ -178,10 +92,11 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which)
   scale = 1 / box.diagonal().norm();
   build(everything, scene, none_of(scene));
   build(blockers, scene, left_out);
+  covered_places.coverings = std::move(coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     std::vector<Point> points = corner_points(scene, p);
     for (Point& point : points) point = recentred(point);
-    polygons.push_back(flat_polygon(points));
+    covered_places.polygons.push_back(flat_polygon(points));
   }
 }
 
@@ -246,10 +161,16 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint
     rays.flags[k] = 0;
     valid[k] = k < segments.size() ? -1 : 0;
   }
-  Context context{new_context(), exact, nullptr};
+  Context context{new_context(), exact, nullptr, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
-  for (std::size_t k = 0; k < segments.size(); ++k) blocked[k] = rays.tfar[k] < 0;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    blocked[k] = rays.tfar[k] < 0 ||
+                         (covered_places.any() && covered_places.covers_end(exact[k].from, exact[k].to,
+                                                                            exact[k].from_polygon, exact[k].to_polygon))
+                     ? 1
+                     : 0;
+  }
 }
 
 std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
@@ -270,11 +191,18 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
     rays.flags[k] = 0;
     valid[k] = -1;
   }
-  Context context{new_context(), nullptr, &packet};
+  Context context{new_context(), nullptr, &packet, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, tracer_->blockers.scene, &context.embree, &rays);
   unsigned blocked = 0;
   for (unsigned k = 0; k < ShadowPacket::size; ++k) blocked |= static_cast<unsigned>(rays.tfar[k] < 0) << k;
+  if (tracer_->covered_places.any()) {
+    for (unsigned k = 0; k < ShadowPacket::size; ++k) {
+      const ExactRay ray = exact_ray(packet, k);
+      const bool covered = tracer_->covered_places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
+      blocked |= static_cast<unsigned>(covered) << k;
+    }
+  }
   return static_cast<std::uint16_t>(blocked);
 }
 
@@ -282,7 +210,7 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
 std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, const Point& to) const {
   RTCRayHit query = new_query(from, to - from, 1);
   const ExactRay exact{from, to, no_polygon, no_polygon};
-  Context context{new_context(), &exact, nullptr};
+  Context context{new_context(), &exact, nullptr, nullptr};
   rtcIntersect1(blockers.scene, &context.embree, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return blockers.planes[query.hit.primID].polygon;
@@ -299,7 +227,7 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
   };
   const auto met = tracer_->first_polygon(middle(from), middle(to));
   if (!met) return false;
-  const std::vector<FlatPolygon>& polygons = tracer_->polygons;
+  const std::vector<FlatPolygon>& polygons = tracer_->covered_places.polygons;
   if (cuts_all(polygons[*met], from, to, on_plane_tolerance_of_packets)) return true;
   const auto other = tracer_->first_polygon(middle(to), middle(from));
   return other && *other != *met && cuts_all(polygons[*other], from, to, on_plane_tolerance_of_packets);
@@ -309,12 +237,21 @@ const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }
 
 TracingFrame Occluder::frame() const { return {tracer_->centre, tracer_->scale}; }
 
-Occluder::Occluder(const Scene& scene, Blockers blockers) : tracer_(std::make_unique<Tracer>(scene, blockers)) {}
+Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings)
+    : tracer_(std::make_unique<Tracer>(scene, blockers, std::move(coverings))) {}
 Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
-bool Occluder::can_occlude() const { return !tracer_->blockers.planes.empty(); }
+bool Occluder::can_occlude() const { return !tracer_->blockers.planes.empty() || tracer_->covered_places.any(); }
+
+bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
+  return tracer_->covered_places.covers(polygon, side, tracer_->recentred(place));
+}
+
+bool Occluder::is_covered_in_part(PolygonIndex polygon, Side side) const {
+  return !tracer_->covered_places.coverings.over_side(polygon, side).empty();
+}
 
 std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) const {
   std::vector<std::uint8_t> blocked(segments.size(), 0);
@@ -333,7 +270,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
-    Context context{new_context(), &exact, nullptr};
+    Context context{new_context(), &exact, nullptr, tracer_->covered_places.any() ? &tracer_->covered_places : nullptr};
     rtcIntersect1(tracer_->everything.scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 

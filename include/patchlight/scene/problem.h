@@ -25,6 +25,7 @@ enum class ProblemKind : std::uint8_t {
   turned_faces,         ///< faces that are turned against their neighbours
   non_planar,           ///< faces whose corners do not lie in one plane
   duplicate_faces,      ///< a face that is there already, with the same front
+  overlapping_faces,    ///< faces that lie in part under another in the same plane
   // Harmless.
   two_sided_faces,     ///< two faces at one place, back to back
   non_manifold_edges,  ///< edges of more than two faces

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/coverings.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/visibility/shaft.h"
 
@@ -54,7 +55,9 @@ struct Hit {
 /// threads. Rays are traced in single precision, in a scene recentred and scaled to unit extent in double; a hit counts
 /// only if the plane of the polygon separates the two ends of the ray in double, by more than 1e-9 of the extent at
 /// each end. So there is no offset to choose: a surface never shades itself or its neighbour at a shared edge, and a
-/// wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision, from its foot.
+/// wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision, from its foot. Where
+/// polygons lie one on the other in one plane, the lower one is out of sight: a shadow ray from or to a place of it is
+/// blocked.
 class Occluder {
  public:
   /// Which polygons can block a segment.
@@ -64,7 +67,7 @@ class Occluder {
     all           ///< all: for points that may lie outside
   };
 
-  explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull);
+  explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {});
   ~Occluder();
   Occluder(Occluder&&) noexcept;
   Occluder& operator=(Occluder&&) noexcept;
@@ -90,8 +93,14 @@ class Occluder {
   /// The first polygon that each ray meets, if any.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
+  /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
+  bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
+
+  /// True when another polygon lies over some place of this side.
+  bool is_covered_in_part(PolygonIndex polygon, Side side) const;
+
   /// False when no polygon can stand between two points of the scene's surfaces, because every polygon lies on the
-  /// scene's convex hull: then shadow rays are not needed.
+  /// scene's convex hull and none over another: then shadow rays are not needed.
   bool can_occlude() const;
 
  private:

@@ -72,6 +72,52 @@ TEST(Occluder, AConvexRoomCannotOcclude) {
   EXPECT_TRUE(Occluder(divided_room()).can_occlude());
 }
 
+// A closed room with a 1 x 1 rug drawn in the floor's plane, polygon 6.
+Scene room_with_rug() {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(2, 2, 2), true);
+  return with_quad(std::move(scene), {Point(0.5, 0.5, 0), Point(1.5, 0.5, 0), Point(1.5, 1.5, 0), Point(0.5, 1.5, 0)});
+}
+
+TEST(Occluder, ACoveredPlaceIsOutOfSight) {
+  const Scene scene = room_with_rug();
+  const Occluder occluder(scene, Occluder::Blockers::inside_hull,
+                          find_coverings(scene, kept_sides(scene, Sides::front)));
+  EXPECT_TRUE(occluder.can_occlude());
+  const Point above(1.1, 0.9, 1.7);
+  const Point below_rug(1, 1.1, 0);
+  const Point beside(0.2, 1.1, 0);
+  const std::vector<Segment> segments{{above, below_rug, no_polygon, 0},
+                                      {below_rug, above, 0, no_polygon},
+                                      {above, below_rug, no_polygon, 6},
+                                      {above, beside, no_polygon, 0}};
+  EXPECT_EQ(occluder.occluded(segments), (std::vector<std::uint8_t>{1, 1, 0, 0}));
+  EXPECT_TRUE(occluder.is_covered(0, Side::front, below_rug));
+  EXPECT_FALSE(occluder.is_covered(0, Side::back, below_rug));
+  EXPECT_FALSE(occluder.is_covered(6, Side::front, below_rug));
+}
+
+TEST(Occluder, ARayMeetsThePolygonThatLiesOver) {
+  // Without the coverings Embree may find either; here the rug is met in it, the floor beside it, wherever they are in
+  // the scene's order.
+  for (const bool rug_first : {false, true}) {
+    Scene scene = room_with_rug();
+    if (rug_first) std::swap(scene.polygons[0], scene.polygons[6]);
+    const PolygonIndex rug = rug_first ? 0 : 6;
+    const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept_sides(scene, Sides::front)));
+    std::vector<Ray> rays;
+    for (const auto& [u, v, s, t] : scrambled_sobol(256, 1)) {
+      const Point from(2 * u, 2 * v, 1.5);
+      rays.push_back({from, (Point(0.02 + 1.96 * s, 0.02 + 1.96 * t, 0) - from).normalized()});
+    }
+    const auto hits = occluder.first_hits(rays);
+    for (const auto& hit : hits) {
+      ASSERT_TRUE(hit);
+      const double away = std::max(std::abs(hit->point.x() - 1), std::abs(hit->point.y() - 1));
+      if (std::abs(away - 0.5) > 1e-6) EXPECT_EQ(hit->polygon == rug, away < 0.5);
+    }
+  }
+}
+
 TEST(OnConvexHull, FindsTheOuterFaces) {
   const auto on_hull = on_convex_hull(furnished_room(0.5));
   EXPECT_EQ(std::count(on_hull.begin(), on_hull.begin() + 6, 1), 6);

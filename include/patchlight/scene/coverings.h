@@ -1,0 +1,28 @@
+#pragma once
+
+#include "patchlight/scene/problem.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// Where polygons lie one on the other in the same plane, as a rug drawn on a floor, or the floors of two solids: for
+/// each side of a polygon the polygons that lie over part of it and face the same way.
+struct Coverings {
+  std::vector<std::vector<PolygonIndex>> over;  ///< at 2 * polygon + side; empty when nothing in the scene overlaps
+
+  std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const;
+};
+
+/// Of two polygons in one plane, a lamp lies over what does not emit, the smaller over the larger, the first in the
+/// scene over the later one; of two that are 1e-9 to 3e-7 of the scene's extent apart, the one in front. Only kept
+/// sides cover or are covered. Expected O(n log n) for n polygons.
+Coverings find_coverings(const Scene& scene, const KeptSides& kept);
+
+/// ProblemKind::overlapping_faces with the polygons that are covered in part; nothing when there are none.
+std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings);
+
+}  // namespace patchlight

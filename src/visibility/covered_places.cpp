@@ -1,0 +1,22 @@
+#include "visibility/covered_places.h"
+
+#include <algorithm>
+
+namespace patchlight {
+
+bool CoveredPlaces::covers(PolygonIndex polygon, Side side, const Point& place) const {
+  const auto over = coverings.over_side(polygon, side);
+  return std::any_of(over.begin(), over.end(), [&](PolygonIndex other) { return contains(polygons[other], place); });
+}
+
+bool CoveredPlaces::covers_end(const Point& from, const Point& to, PolygonIndex from_polygon,
+                               PolygonIndex to_polygon) const {
+  const auto covers_start = [&](const Point& start, const Point& end, PolygonIndex polygon) {
+    if (polygon == no_polygon) return false;
+    const bool before = polygons[polygon].normal.dot(end - start) > 0;
+    return covers(polygon, before ? Side::front : Side::back, start);
+  };
+  return covers_start(from, to, from_polygon) || covers_start(to, from, to_polygon);
+}
+
+}  // namespace patchlight

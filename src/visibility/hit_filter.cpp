@@ -1,0 +1,85 @@
+#include "visibility/hit_filter.h"
+
+#include "base/target_clones.h"
+
+#include <algorithm>
+#include <array>
+
+namespace patchlight {
+namespace {
+
+// The same for rays given in double.
+constexpr double on_plane_tolerance = 1e-9;
+
+constexpr unsigned packet_size = ShadowPacket::size;
+
+// A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
+// ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
+bool separates(const Plane& plane, const ExactRay& ray, double tolerance) {
+  if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
+  const double from = plane.height(ray.from);
+  const double to = plane.height(ray.to);
+  return (from > tolerance && to < -tolerance) || (from < -tolerance && to > tolerance);
+}
+
+// Marks the hits that are beyond doubt: the ray's ends are so far on either side of the triangle's plane, by
+// t |n . d| and (1 - t) |n . d|, that single precision tells them apart.
+template <unsigned N>
+PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, unsigned char* clear) {
+  constexpr float clear_height = 1e-4F;
+  for (unsigned k = 0; k < N; ++k) {
+    const float x = RTCHitN_Ng_x(hits.hit, N, k);
+    const float y = RTCHitN_Ng_y(hits.hit, N, k);
+    const float z = RTCHitN_Ng_z(hits.hit, N, k);
+    const float t = RTCRayN_tfar(hits.ray, N, k);
+    const float nearer = std::min(t, 1 - t);
+    const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
+                                   z * RTCRayN_dir_z(hits.ray, N, k));
+    const float least = clear_height * clear_height * (x * x + y * y + z * z);
+    clear[k] = static_cast<unsigned char>(static_cast<int>(height * height > least) & static_cast<int>(nearer > 0));
+  }
+}
+
+// Where the ray meets the plane, does another polygon lie over it?
+bool is_covered(const Plane& plane, const ExactRay& ray, const CoveredPlaces& places) {
+  const double from = plane.height(ray.from);
+  const double to = plane.height(ray.to);
+  const Point place = ray.from + from / (from - to) * (ray.to - ray.from);
+  return places.covers(plane.polygon, from > 0 ? Side::front : Side::back, place);
+}
+
+}  // namespace
+
+ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
+  const Point from(rays.from_x[k], rays.from_y[k], rays.from_z[k]);
+  const Vector toward(rays.toward_x[k], rays.toward_y[k], rays.toward_z[k]);
+  return {from, from + toward, rays.from_polygon[k], rays.to_polygon[k]};
+}
+
+PATCHLIGHT_TARGET_CLONES
+void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
+  const auto* context = reinterpret_cast<const Context*>(arguments->context);
+  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
+  std::array<unsigned char, packet_size> clear{};
+  if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
+  for (unsigned k = 0; k < arguments->N; ++k) {
+    if (arguments->valid[k] != -1) continue;
+    const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
+    if (clear[k] != 0) {
+      const PolygonIndex polygon = planes[triangle].polygon;
+      const ShadowPacket& rays = *context->packet;
+      if (polygon == rays.from_polygon[ray] || polygon == rays.to_polygon[ray]) arguments->valid[k] = 0;
+      continue;
+    }
+    const bool blocks =
+        context->packet != nullptr
+            ? separates(planes[triangle], exact_ray(*context->packet, ray), on_plane_tolerance_of_packets)
+            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
+    if (!blocks || (context->covered_places != nullptr &&
+                    is_covered(planes[triangle], context->rays[ray], *context->covered_places)))
+      arguments->valid[k] = 0;
+  }
+}
+
+}  // namespace patchlight

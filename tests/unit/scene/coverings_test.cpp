@@ -1,0 +1,86 @@
+#include "patchlight/scene/coverings.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+Quad rectangle(double x0, double y0, double x1, double y1, double z = 0) {
+  return {Point(x0, y0, z), Point(x1, y0, z), Point(x1, y1, z), Point(x0, y1, z)};
+}
+
+Quad turned(const Quad& quad) { return {quad[3], quad[2], quad[1], quad[0]}; }
+
+Scene scene_of(const std::vector<Quad>& quads) {
+  Scene scene = empty_scene({grey(0.5), grey(0.5, 1)});
+  for (const Quad& quad : quads) scene = with_quad(std::move(scene), quad);
+  return scene;
+}
+
+using Over = std::vector<PolygonIndex>;
+
+Over over(const Scene& scene, PolygonIndex polygon, Side side = Side::front, Sides sides = Sides::front) {
+  const Coverings coverings = find_coverings(scene, kept_sides(scene, sides));
+  const auto found = coverings.over_side(polygon, side);
+  return {found.begin(), found.end()};
+}
+
+const Quad floor_quad = rectangle(0, 0, 4, 4);
+
+TEST(Coverings, NeighboursInOnePlaneAndPolygonsOneAboveTheOtherCoverNothing) {
+  const Scene scene = scene_of({floor_quad, rectangle(4, 0, 8, 4), rectangle(1, 1, 2, 2, 0.001)});
+  EXPECT_TRUE(find_coverings(scene, kept_sides(scene, Sides::both)).over.empty());
+}
+
+TEST(Coverings, TheSmallerLiesOverTheLargerInAnyOrder) {
+  const Quad rug = rectangle(1, 1, 2, 5);
+  EXPECT_EQ(over(scene_of({floor_quad, rug}), 0), Over{1});
+  EXPECT_EQ(over(scene_of({floor_quad, rug}), 1), Over{});
+  EXPECT_EQ(over(scene_of({rug, floor_quad}), 1), Over{0});
+}
+
+TEST(Coverings, OfEqualOnesTheFirstLiesOver) {
+  const Quad shifted = rectangle(2, 1, 6, 5);
+  EXPECT_EQ(over(scene_of({floor_quad, shifted}), 1), Over{0});
+  EXPECT_EQ(over(scene_of({floor_quad, shifted}), 0), Over{});
+}
+
+TEST(Coverings, ALampLiesOverWhatDoesNotEmit) {
+  Scene scene = scene_of({rectangle(1, 1, 2, 2)});
+  scene = with_quad(std::move(scene), floor_quad, 1);
+  EXPECT_EQ(over(scene, 0), Over{1});
+  EXPECT_EQ(over(scene, 1), Over{});
+}
+
+TEST(Coverings, OnlySidesThatFaceTheSameWayAndAreKeptCover) {
+  const Scene scene = scene_of({floor_quad, turned(rectangle(1, 1, 2, 2))});
+  EXPECT_EQ(over(scene, 0), Over{});  // the rug's front looks down, its back is not kept
+  EXPECT_EQ(over(scene, 0, Side::front, Sides::both), Over{1});
+  EXPECT_EQ(over(scene, 0, Side::back, Sides::both), Over{1});
+}
+
+TEST(Coverings, TheOneInFrontCoversWhenRoundingSetsThemApart) {
+  // The extent is 6: 1e-7 is between 1e-9 and 3e-7 of it.
+  const Scene scene = scene_of({floor_quad, rectangle(1, 1, 2, 2, -1e-7)});
+  EXPECT_EQ(over(scene, 0, Side::front, Sides::both), Over{});
+  EXPECT_EQ(over(scene, 1, Side::front, Sides::both), Over{0});
+  EXPECT_EQ(over(scene, 0, Side::back, Sides::both), Over{1});
+  EXPECT_EQ(over(scene, 1, Side::back, Sides::both), Over{});
+}
+
+TEST(Coverings, AFrameAroundAHoleIsNotCoveredByWhatFillsTheHole) {
+  // A 4 x 4 frame around a 2 x 2 hole, joined by a seam, and the pane in it.
+  Scene scene = empty_scene({grey(0.5)});
+  scene =
+      with_polygon(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0), Point(0, 0, 0),
+                                      Point(1, 1, 0), Point(1, 3, 0), Point(3, 3, 0), Point(3, 1, 0), Point(1, 1, 0)});
+  scene = with_quad(std::move(scene), rectangle(1, 1, 3, 3));
+  EXPECT_TRUE(find_coverings(scene, kept_sides(scene, Sides::both)).over.empty());
+}
+
+}  // namespace
+}  // namespace patchlight
