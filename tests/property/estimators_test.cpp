@@ -6,6 +6,7 @@
 
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -59,31 +60,53 @@ TEST_P(Estimators, AreRightWhereNothingIsInBetween) {
   EXPECT_LT(mean.error(0, 1), 0.01) << "too wide to tell anything";
 }
 
-// A closed room with a box in it, 16 seeds, against the automatic estimator with many samples: whose own errors are
-// those of the far rule, 1e-3, and of its scatter. Of 5 x 91 pairs of polygons all are within five standard errors,
-// each found from 16 values: Student's t exceeds that in 1 of 6000.
-TEST_P(Estimators, AgreeInAFurnishedRoom) {
-  const Scene scene = furnished_room(0.5);
-  const PatchMesh mesh = fronts(scene, 1);
-  const Occluder occluder(scene);
-  const Mean reference = mean_over_seeds(mesh, occluder, {.probes = 256, .samples = 256}, 4);
-  const Mean mean = mean_over_seeds(mesh, occluder, {.probes = 4, .samples = 64, .estimator = GetParam()}, 16);
-  const Eigen::ArrayXXd allowed =
-      5 * (mean.error.square() + reference.error.square()).sqrt() + 1e-3 * reference.value + 1e-7;
-  for (Eigen::Index a = 0; a < mean.value.rows(); ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) {
-      EXPECT_NEAR(mean.value(a, b), reference.value(a, b), allowed(a, b)) << "polygons " << a << " and " << b;
-    }
-  }
-  EXPECT_LT(allowed.sum(), 0.1 * reference.value.sum()) << "too wide to tell anything";
-}
-
 INSTANTIATE_TEST_SUITE_P(All, Estimators,
                          testing::Values(Estimator::automatic, Estimator::area, Estimator::point_polygon,
                                          Estimator::hemisphere, Estimator::contour),
                          name);
 
-// The furnished room with all short cuts, and with all but some.
+class OtherEstimators : public testing::TestWithParam<Estimator> {};
+
+// A closed room with a box in it, 16 seeds, against the automatic estimator with so many probes that what they miss is
+// below its other errors: 1e-3 of the far rule, and its scatter. Each of 4 x 78 pairs of polygons is within five
+// standard errors, found from 16 values: Student's t exceeds that in 1 of 6000. Where nothing scatters as hardly a ray
+// arrives, nine rays may be missing: all of them miss with probability exp(-9).
+TEST_P(OtherEstimators, AgreeWithTheAutomaticOne) {
+  constexpr int seeds = 16;
+  const bool of_patches = GetParam() == Estimator::hemisphere;
+  const int samples = of_patches ? 512 : 64;  // of a patch, or of a pair
+  const Scene scene = furnished_room(0.5);
+  const PatchMesh mesh = fronts(scene, 1);
+  const Occluder occluder(scene);
+  const Mean reference = mean_over_seeds(mesh, occluder, {.probes = 256, .samples = 256}, 4);
+  const Mean mean = mean_over_seeds(mesh, occluder, {.probes = 4, .samples = samples, .estimator = GetParam()}, seeds);
+  const double largest = *std::max_element(mesh.area.begin(), mesh.area.end());
+  const double few_rays = of_patches ? 9 * largest / (2 * samples * seeds) : 0;
+  int pairs = 0;
+  int sharp = 0;
+  for (Eigen::Index a = 0; a < mean.value.rows(); ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      const double expected = reference.value(a, b);
+      if (expected == 0 && mean.value(a, b) == 0) continue;
+      const double allowed = 5 * std::hypot(mean.error(a, b), reference.error(a, b)) + 1e-3 * expected + few_rays;
+      EXPECT_NEAR(mean.value(a, b), expected, allowed) << "polygons " << a << " and " << b;
+      ++pairs;
+      sharp += allowed < 0.1 * expected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(pairs, 40);
+  EXPECT_GT(sharp, pairs / 2) << "too wide to tell anything";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OtherEstimators,
+                         testing::Values(Estimator::area, Estimator::point_polygon, Estimator::hemisphere,
+                                         Estimator::contour),
+                         name);
+
+// The furnished room with a screen across it.
+Scene divided_room() { return with_box(furnished_room(0.5), Point(2.1, 0.2, 0.1), Point(2.2, 2.8, 2.4), false); }
+
+// It with all short cuts, and with all but some.
 class ShortCut : public testing::Test {
  protected:
   Assembly assembled(const ShortCuts& short_cuts) const {
@@ -95,7 +118,7 @@ class ShortCut : public testing::Test {
       for (PatchIndex i = 0; i < j; ++i) use(i, j);
     }
   }
-  const Scene scene = furnished_room(0.5);
+  const Scene scene = divided_room();
   const PatchMesh mesh = fronts(scene, 0.4);
   const Occluder occluder{scene};
   const std::vector<PatchShape> shapes = patch_shapes(mesh);
@@ -112,17 +135,26 @@ TEST_F(ShortCut, HiddenChangesNothing) {
       [&](PatchIndex i, PatchIndex j) { EXPECT_EQ(without.exchange_areas.at(i, j), all.exchange_areas.at(i, j)); });
 }
 
-// Rays through empty shafts are all free.
+// Rays through empty shafts are all free. Of patches that cross each other's plane few samples lie where they see each
+// other, and perhaps none: the others run through solids, so that rays tell less than the shaft.
 TEST_F(ShortCut, FreeChangesNothing) {
   const Assembly without = assembled({.free = false});
-  EXPECT_GT(all.counts.free_pairs, 0U);
+  EXPECT_GT(all.counts.free_pairs, 1000U);
   EXPECT_EQ(without.counts.free_pairs, 0U);
   EXPECT_GT(without.counts.shadow_rays, all.counts.shadow_rays);
-  for_pairs(
-      [&](PatchIndex i, PatchIndex j) { EXPECT_EQ(without.exchange_areas.at(i, j), all.exchange_areas.at(i, j)); });
+  std::uint64_t changed = 0;
+  for_pairs([&](PatchIndex i, PatchIndex j) {
+    const float entry = all.exchange_areas.at(i, j);
+    if (without.exchange_areas.at(i, j) == entry) return;
+    ++changed;
+    EXPECT_EQ(orientation(shapes[i], shapes[j]), Orientation::straddling);
+    EXPECT_LT(without.exchange_areas.at(i, j), entry) << "no more than the unoccluded value";
+  });
+  EXPECT_LT(changed, all.counts.free_pairs / 500);
 }
 
-// Pairs whose probes disagreed took all samples anyway. Of the others 95 % are within the bound of the audit.
+// Pairs whose probes disagreed took all samples anyway, in other packets: floats are rounded differently. Of the others
+// 95 % are within the bound of the audit.
 TEST_F(ShortCut, ProbesChangeUnanimousPairsAlone) {
   const Assembly without = assembled({.probes = false});
   EXPECT_GT(without.counts.shadow_rays, 2 * all.counts.shadow_rays);
@@ -132,7 +164,7 @@ TEST_F(ShortCut, ProbesChangeUnanimousPairsAlone) {
     const double change = std::abs(without.exchange_areas.at(i, j) - all.exchange_areas.at(i, j));
     const EntryKind kind = all.entry_errors.kind(i, j);
     if (kind == EntryKind::exact || kind == EntryKind::estimated) {
-      EXPECT_EQ(change, 0);
+      EXPECT_LE(change, 1e-6 * unoccluded_exchange_area(shapes[i], shapes[j]));
       return;
     }
     const double bound = bound_on_miss(kind == EntryKind::all_visible ? all.error.visible : all.error.occluded);
