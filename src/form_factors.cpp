@@ -8,7 +8,8 @@
 #include <utility>
 
 namespace patchlight {
-FormFactors find_form_factors(const Scene& scene, const Request& request, bool close, const Observer& observer) {
+
+FormFactors find_form_factors(const Scene& scene, const Request& request, const Observer& observer) {
   const ThreadLimit threads(request.threads);
   Request used = request;
   if (used.sides == Sides::automatic && !has_lamp(scene)) used.sides = Sides::front;
@@ -18,9 +19,8 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, bool c
   require_memory(mesh.size(), used);
 
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, plan.sides));
-  Exchange exchange =
-      trace_exchange(mesh, occluder, {plan.probes, plan.samples, plan.seed}, plan.lost_share_rays, observer);
-  if (close) {
+  Exchange exchange = trace_exchange(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
+  if (plan.close) {
     ClosedExchangeAreas closed =
         close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, observer);
     exchange.exchange_areas = std::move(closed.exchange_areas);

@@ -16,20 +16,24 @@ namespace {
 // The exchange areas, in float, half of a symmetric matrix. The rest is measured: what the program and its libraries
 // take, and the mesh, the fields and the results per patch.
 constexpr double bytes_per_pair = 2;
+constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
 constexpr double bytes_per_patch = 1500;
 constexpr double bytes_of_program = 50e6;
 
 // Share of the machine's memory that may be taken when nothing is said.
 constexpr double usable_share = 0.8;
 
+double bytes_of_a_pair(bool standard_errors) { return bytes_per_pair + (standard_errors ? bytes_per_error : 0); }
+
 double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 // The number of patches for which memory_needed() is this.
-double patches_in(double bytes) {
-  const double half = bytes_per_patch / (2 * bytes_per_pair);
-  return std::max(1.0, std::sqrt(half * half + std::max(0.0, bytes - bytes_of_program) / bytes_per_pair) - half);
+double patches_in(double bytes, bool standard_errors) {
+  const double of_a_pair = bytes_of_a_pair(standard_errors);
+  const double half = bytes_per_patch / (2 * of_a_pair);
+  return std::max(1.0, std::sqrt(half * half + std::max(0.0, bytes - bytes_of_program) / of_a_pair) - half);
 }
 
 std::string gigabytes(double bytes) {
@@ -40,19 +44,19 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-double memory_needed(std::size_t patches) {
+double memory_needed(std::size_t patches, bool standard_errors) {
   const auto n = static_cast<double>(patches);
-  return bytes_per_pair * n * n + bytes_per_patch * n + bytes_of_program;
+  return bytes_of_a_pair(standard_errors) * n * n + bytes_per_patch * n + bytes_of_program;
 }
 
 void require_memory(std::size_t patches, const Request& request) {
-  const double needed = memory_needed(patches);
+  const double needed = memory_needed(patches, request.standard_errors);
   const double usable = request.memory ? *request.memory : usable_share * installed_bytes();
   if (needed <= usable) return;
-  const std::string hint =
-      usable > 2 * bytes_of_program
-          ? "ask for at most " + std::to_string(static_cast<long>(patches_in(usable))) + " patches with --patches"
-          : "the program itself takes " + gigabytes(bytes_of_program);
+  const auto fitting = static_cast<long>(patches_in(usable, request.standard_errors));
+  const std::string hint = usable > 2 * bytes_of_program
+                               ? "ask for at most " + std::to_string(fitting) + " patches with --patches"
+                               : "the program itself takes " + gigabytes(bytes_of_program);
   throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) + ", most of it for their " +
                     "form factors, and " + gigabytes(usable) +
                     (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);

@@ -37,9 +37,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
   for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
     result.plan.notes.push_back(std::move(note));
-  const AssemblyOptions sampling{plan.probes, plan.samples, plan.seed};
-  Exchange exchange =
-      known_exchange ? known_exchange(mesh) : trace_exchange(mesh, occluder, sampling, plan.lost_share_rays, observer);
+  Exchange exchange = known_exchange
+                          ? known_exchange(mesh)
+                          : trace_exchange(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
   const Eigen::VectorXd area = exchange.area;
   TransportFacts& facts = result.transport;
   facts.raw_row_sum = exchange.raw_row_sum;
@@ -49,7 +49,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::form_factors);
 
   // 4. Closure: each row sums up to what its patch sees.
-  ClosedExchangeAreas closed = close_exchange(std::move(exchange), observer);
+  ClosedExchangeAreas closed = plan.close ? close_exchange(std::move(exchange), observer)
+                                          : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
   facts.closure = closed.method;
   const auto transport = dense_transport(std::move(closed), area);
   facts.row_sum = transport->apply(Field::Ones(mesh.size(), 1)).matrix();

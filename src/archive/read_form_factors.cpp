@@ -4,6 +4,7 @@
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
+#include "archive/sampling_error_json.h"
 #include "transport/narrow.h"
 
 #include <cmath>
@@ -28,6 +29,14 @@ Sides sides_of(const std::string& name) {
     if (name == name_of(sides)) return sides;
   }
   throw InputError("sides", "found '" + name + "'; expected auto, front or both");
+}
+
+Estimator estimator_of(const std::string& name) {
+  for (const Estimator estimator :
+       {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
+    if (name == name_of(estimator)) return estimator;
+  }
+  throw InputError("estimator", "found '" + name + "'; expected one that --estimator takes");
 }
 
 FormFactorInfo info_of(const Json& json) {
@@ -55,6 +64,9 @@ FormFactorInfo info_of(const Json& json) {
   info.counts.partial_pairs = counts.at("partly_occluded_pairs").get<std::uint64_t>();
   info.counts.blocked_pairs = counts.at("blocked_pairs").get<std::uint64_t>();
   info.counts.shadow_rays = counts.at("shadow_rays").get<std::uint64_t>();
+  // Folders of earlier versions do not have these.
+  info.estimator = estimator_of(options.value("estimator", name_of(Estimator::automatic)));
+  info.error = sampling_error_of(json.value("sampling_error", Json()));
   return info;
 }
 
@@ -140,6 +152,8 @@ FormFactorInfo read_form_factor_info(const std::filesystem::path& folder) {
   }
 }
 
+bool is_closed(const FormFactorInfo& info) { return !info.closure.empty() && !info.closure.starts_with("none"); }
+
 Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
   require_same_geometry(folder, info, mesh);
   if (info.format != MatrixFormat::npy) {
@@ -157,6 +171,7 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
           std::move(raw_row_sum),
           {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays},
           info.counts,
+          info.error,
           {},
           info.closure};
 }

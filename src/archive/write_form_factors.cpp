@@ -8,6 +8,7 @@
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
+#include "archive/sampling_error_json.h"
 #include "output/write_bytes.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -29,35 +31,54 @@ void report(const Observer& observer, PatchIndex row, PatchIndex rows) {
   if (observer && !observer({.stage = Stage::write, .fraction = static_cast<double>(row) / rows})) throw Cancelled();
 }
 
-float form_factor(const Exchange& exchange, PatchIndex i, PatchIndex j) {
-  return static_cast<float>(static_cast<double>(exchange.exchange_areas.at(i, j)) / exchange.area[i]);
+// A matrix over the patches: entry (i, j).
+using Entry = std::function<double(PatchIndex i, PatchIndex j)>;
+
+struct Matrix {
+  PatchIndex size = 0;
+  std::string meaning;
+  Entry entry;
+};
+
+Matrix form_factors_of(const Exchange& exchange) {
+  return {exchange.exchange_areas.size(), "form factors from patch (row) to patch (column)",
+          [&exchange](PatchIndex i, PatchIndex j) {
+            return static_cast<double>(exchange.exchange_areas.at(i, j)) / exchange.area[i];
+          }};
 }
 
-void write_dense(const std::filesystem::path& file, const Exchange& exchange, const Observer& observer) {
-  const PatchIndex size = exchange.exchange_areas.size();
-  write_npy(file, size, size, [&](std::size_t row, std::span<float> values) {
+Matrix standard_errors_of(const Exchange& exchange) {
+  return {exchange.exchange_areas.size(),
+          "standard errors of the sampled form factors from patch (row) to patch (column)",
+          [&exchange](PatchIndex i, PatchIndex j) {
+            return exchange.entry_errors.standard_error(i, j) / exchange.area[i];
+          }};
+}
+
+void write_dense(const std::filesystem::path& file, const Matrix& matrix, const Observer& observer) {
+  write_npy(file, matrix.size, matrix.size, [&](std::size_t row, std::span<float> values) {
     const auto i = static_cast<PatchIndex>(row);
-    report(observer, i, size);
-    for (PatchIndex j = 0; j < size; ++j) values[j] = form_factor(exchange, i, j);
+    report(observer, i, matrix.size);
+    for (PatchIndex j = 0; j < matrix.size; ++j) values[j] = static_cast<float>(matrix.entry(i, j));
   });
 }
 
 // Matrix Market coordinate format (Boisvert, Pozo and Remington 1996); indices count from 1.
-void write_coordinates(const std::filesystem::path& file, const Exchange& exchange, const Observer& observer) {
-  const PatchIndex size = exchange.exchange_areas.size();
+void write_coordinates(const std::filesystem::path& file, const Matrix& matrix, const Observer& observer) {
+  const PatchIndex size = matrix.size;
   std::uint64_t entries = 0;
   for (PatchIndex i = 0; i < size; ++i) {
-    for (PatchIndex j = 0; j < size; ++j) entries += exchange.exchange_areas.at(i, j) != 0;
+    for (PatchIndex j = 0; j < size; ++j) entries += matrix.entry(i, j) != 0;
   }
   write_whole_file(file, [&](const std::filesystem::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    stream << "%%MatrixMarket matrix coordinate real general\n% form factors from patch (row) to patch (column)\n";
+    stream << "%%MatrixMarket matrix coordinate real general\n% " << matrix.meaning << '\n';
     stream << size << ' ' << size << ' ' << entries << '\n' << std::setprecision(9);
     for (PatchIndex i = 0; i < size && stream; ++i) {
       report(observer, i, size);
       for (PatchIndex j = 0; j < size; ++j) {
-        if (exchange.exchange_areas.at(i, j) == 0) continue;
-        stream << i + 1 << ' ' << j + 1 << ' ' << form_factor(exchange, i, j) << '\n';
+        const double entry = matrix.entry(i, j);
+        if (entry != 0) stream << i + 1 << ' ' << j + 1 << ' ' << static_cast<float>(entry) << '\n';
       }
     }
     stream.close();
@@ -65,10 +86,18 @@ void write_coordinates(const std::filesystem::path& file, const Exchange& exchan
   });
 }
 
+void write(const std::filesystem::path& file, const Matrix& matrix, MatrixFormat format, const Observer& observer) {
+  (format == MatrixFormat::npy ? write_dense : write_coordinates)(file, matrix, observer);
+}
+
 Json files_part(const FormFactorResult& result) {
   Json part;
   part[result.format == MatrixFormat::npy ? file_name::dense : file_name::sparse] =
       "form factors F_ij from patch i (row) to patch j (column); unit 1";
+  if (result.form_factors.exchange.entry_errors.size() > 0) {
+    part[result.format == MatrixFormat::npy ? file_name::dense_error : file_name::sparse_error] =
+        "standard error of F_ij, before closure, where it was estimated from samples; 0 elsewhere; unit 1";
+  }
   part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
   part[file_name::lost_share] =
       "per patch the share of its hemisphere that is open, that shows sides without patches, and the covered share of "
@@ -76,6 +105,16 @@ Json files_part(const FormFactorResult& result) {
   part[file_name::raw_row_sum] = "sum_j F_ij before closure; unit 1";
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
   return part;
+}
+
+// The names of the short cuts that were not taken, as on the command line.
+Json left_out(const ShortCuts& short_cuts) {
+  Json names = Json::array();
+  if (!short_cuts.hidden) names.push_back("hidden");
+  if (!short_cuts.free) names.push_back("free");
+  if (!short_cuts.probes) names.push_back("probes");
+  if (!short_cuts.far) names.push_back("far");
+  return names;
 }
 
 Json counts_part(const AssemblyCounts& counts) {
@@ -100,10 +139,16 @@ std::string info_json(const FormFactorResult& result) {
   json["patches"] = mesh.size();
   json["matrix"] = result.format == MatrixFormat::npy ? "npy" : "mtx";
   json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
-  json["options"] = {{"max_edge_m", plan.max_edge}, {"sides", name_of(request.sides)},
-                     {"probes", plan.probes},       {"samples", plan.samples},
-                     {"seed", plan.seed},           {"lost_share_rays", exchange.lost.rays_per_patch}};
+  json["options"] = {{"max_edge_m", plan.max_edge},
+                     {"sides", name_of(request.sides)},
+                     {"probes", plan.probes},
+                     {"samples", plan.samples},
+                     {"estimator", name_of(plan.estimator)},
+                     {"without", left_out(plan.short_cuts)},
+                     {"seed", plan.seed},
+                     {"lost_share_rays", exchange.lost.rays_per_patch}};
   json["counts"] = counts_part(exchange.counts);
+  json["sampling_error"] = json_of(exchange.error);
   json["files"] = files_part(result);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -111,9 +156,10 @@ std::string info_json(const FormFactorResult& result) {
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_result(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 9> names = {
-      file_name::dense, file_name::sparse, file_name::area,        file_name::lost_share, file_name::raw_row_sum,
-      file_name::mesh,  file_name::info,   file_name::by_material, file_name::by_object};
+  static constexpr std::array<std::string_view, 11> names = {
+      file_name::dense, file_name::sparse,      file_name::dense_error, file_name::sparse_error,
+      file_name::area,  file_name::lost_share,  file_name::raw_row_sum, file_name::mesh,
+      file_name::info,  file_name::by_material, file_name::by_object};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (std::find(names.begin(), names.end(), name) == names.end() || !entry.is_regular_file()) return false;
@@ -127,7 +173,7 @@ bool is_earlier_result(const std::filesystem::path& folder) {
 
 void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,
                   const Observer& observer) {
-  (format == MatrixFormat::npy ? write_dense : write_coordinates)(file, exchange, observer);
+  write(file, form_factors_of(exchange), format, observer);
 }
 
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result, const Observer& observer) {
@@ -135,6 +181,10 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
   write_whole_folder(folder, is_earlier_result, [&](const std::filesystem::path& in) {
     const bool dense = result.format == MatrixFormat::npy;
     write_matrix(in / (dense ? file_name::dense : file_name::sparse), exchange, result.format, observer);
+    if (exchange.entry_errors.size() > 0) {
+      write(in / (dense ? file_name::dense_error : file_name::sparse_error), standard_errors_of(exchange),
+            result.format, observer);
+    }
     write_npy(in / file_name::area, exchange.area);
     Eigen::MatrixXd lost(exchange.area.size(), 3);
     lost << exchange.lost.escaped, exchange.lost.at_backs, exchange.lost.covered;

@@ -23,9 +23,8 @@ std::uint32_t group_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, 
   return by == GroupBy::material ? mesh.material[i] : scene.polygons[mesh.polygon[i]].group;
 }
 
-std::string group_name(const Scene& scene, std::uint32_t group, GroupBy by) {
-  if (by == GroupBy::material) return scene.materials[group].name;
-  return group < scene.groups.size() ? scene.groups[group] : "object " + std::to_string(group);
+std::string name_of(const Scene& scene, std::uint32_t group, GroupBy by) {
+  return by == GroupBy::material ? scene.materials[group].name : group_name(scene, group);
 }
 
 }  // namespace
@@ -48,7 +47,7 @@ GroupFactors group_factors(const Scene& scene, const FormFactors& form_factors, 
   for (std::uint32_t group = 0; group < number.size(); ++group) {
     if (number[group] == none) continue;
     number[group] = static_cast<std::uint32_t>(groups.names.size());
-    groups.names.push_back(group_name(scene, group, by));
+    groups.names.push_back(name_of(scene, group, by));
   }
 
   const auto count = static_cast<std::uint32_t>(groups.names.size());

@@ -63,7 +63,6 @@ struct FormFactorArguments {
   Request request;
   std::filesystem::path output;  ///< a folder, or a file .npy or .mtx for the matrix alone
   MatrixFormat format = MatrixFormat::npy;
-  bool close = true;
   std::optional<GroupBy> by;  ///< the table of groups that is wanted
   bool quiet = false;
   std::string command_line;  ///< for the record

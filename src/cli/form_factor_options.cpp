@@ -5,6 +5,7 @@
 #include "cli/parse_value.h"
 
 #include <string>
+#include <vector>
 
 namespace patchlight::cli {
 
@@ -17,6 +18,34 @@ struct FormFactorOptions {
   bool raw = false;
   bool quiet = false;
 };
+
+namespace {
+
+void add_without(CLI::App& command, ShortCuts& short_cuts) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--without",
+          [&short_cuts](const std::vector<std::string>& names) {
+            for (const std::string& name : names) {
+              short_cuts.*choice<bool ShortCuts::*>("--without", name,
+                                                    {{"hidden", &ShortCuts::hidden},
+                                                     {"free", &ShortCuts::free},
+                                                     {"probes", &ShortCuts::probes},
+                                                     {"far", &ShortCuts::far}}) = false;
+            }
+          },
+          "leaves out a short cut, to see what it saves and errs: clusters\nof patches hidden from each other, or with "
+          "nothing between them,\nwithout rays; a few probes first; the coarse rule for far pairs;\nmay be repeated; "
+          "default: all are taken")
+      ->allow_extra_args(false)
+      ->option_text("hidden|free|probes|far");
+}
+
+bool takes_all(const ShortCuts& short_cuts) {
+  return short_cuts.hidden && short_cuts.free && short_cuts.probes && short_cuts.far;
+}
+
+}  // namespace
 
 std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   auto options = std::make_shared<FormFactorOptions>();
@@ -47,6 +76,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
           },
           "prints the form factors between materials or objects, too;\ninto the folder as CSV; default: patches only")
       ->option_text("material|object");
+  add_without(command, to.mesh.request.short_cuts);
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
   add_patch_options(command, to.mesh);
   add_sampling_options(command, to.mesh);
@@ -61,7 +91,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
-  arguments.close = !options.raw;
+  arguments.request.close = !options.raw;
   arguments.by = options.by;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {
@@ -70,6 +100,10 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   if (arguments.output.empty()) {
     throw UsageError("form-factors: nothing would be written; give -o FOLDER, or -o FILE.npy for the matrix alone");
   }
+  if (arguments.request.estimator != Estimator::automatic && !takes_all(arguments.request.short_cuts)) {
+    throw UsageError("--without: --estimator " + std::string(name_of(arguments.request.estimator)) +
+                     " takes no short cuts; give one of them");
+  }
   const std::filesystem::path extension = arguments.output.extension();
   if (extension == ".npy" || extension == ".mtx") {
     const auto named = extension == ".npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
@@ -77,6 +111,8 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
       throw UsageError("--matrix: contradicts -o '" + options.output + "'; give one of them");
     }
     arguments.format = named;
+  } else {
+    arguments.request.standard_errors = arguments.request.estimator == Estimator::automatic;
   }
   for (const std::filesystem::path& model : arguments.models) {
     if (weakly_canonical(arguments.output) != weakly_canonical(model)) continue;

@@ -45,9 +45,9 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   const Eigen::ArrayXd sums = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area).array();
   std::ostringstream text;
   text << scene.file << ": " << form_factors.mesh.size() << " patches with edges up to " << std::setprecision(3)
-       << form_factors.plan.max_edge << " m; row sums " << std::setprecision(6) << sums.minCoeff() << " to "
-       << sums.maxCoeff() << ", before closure " << exchange.raw_row_sum.minCoeff() << " to "
-       << exchange.raw_row_sum.maxCoeff()
+       << form_factors.plan.max_edge << " m; estimator " << name_of(form_factors.plan.estimator) << "; row sums "
+       << std::setprecision(6) << sums.minCoeff() << " to " << sums.maxCoeff() << ", before closure "
+       << exchange.raw_row_sum.minCoeff() << " to " << exchange.raw_row_sum.maxCoeff()
        << "; closure: " << (exchange.closure.empty() ? "not asked for" : exchange.closure) << '\n';
   return text.str();
 }
@@ -70,7 +70,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   // 1. Read the model, find the form factors
   if (!observer({.stage = Stage::read})) throw Cancelled();
   const Scene scene = read_scene(arguments.models, arguments.read);
-  const FormFactors found = find_form_factors(scene, arguments.request, arguments.close, observer);
+  const FormFactors found = find_form_factors(scene, arguments.request, observer);
   std::vector<GroupFactors> groups;
   if (arguments.by) groups.push_back(group_factors(scene, found, *arguments.by));
 

@@ -42,6 +42,19 @@ void add_sampling_options(CLI::App& command, MeshOptions& options) {
       [&request](const std::string& text) {
         request.samples = static_cast<int>(whole_number("--samples", text, 4, 65536));
       });
+  add(command, "--estimator", "auto|area|point-polygon|hemisphere|contour",
+      "how form factors are found; all but auto are slow, for study: by\npoints on both patches, by points on one and "
+      "the exact factor to\nthe other, by --samples rays over the hemisphere of each patch, or\nby the contour "
+      "integral "
+      "and the visible share; default auto",
+      [&request](const std::string& text) {
+        request.estimator = choice<Estimator>("--estimator", text,
+                                              {{"auto", Estimator::automatic},
+                                               {"area", Estimator::area},
+                                               {"point-polygon", Estimator::point_polygon},
+                                               {"hemisphere", Estimator::hemisphere},
+                                               {"contour", Estimator::contour}});
+      });
   add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
       [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
   add(command, "--threads", "N", "number of threads; default 0: one per processor",

@@ -19,7 +19,7 @@ void add_sides_option(CLI::App& command, MeshOptions& options);
 /// Adds --max-edge and --patches.
 void add_patch_options(CLI::App& command, MeshOptions& options);
 
-/// Adds --samples, --seed, --threads and --memory.
+/// Adds --samples, --estimator, --seed, --threads and --memory.
 void add_sampling_options(CLI::App& command, MeshOptions& options);
 
 /// The request in metres. \throws UsageError when options contradict each other.

@@ -62,6 +62,14 @@ KnownFormFactors known_form_factors(const SolveArguments& arguments) {
   if (known.request.sides == Sides::automatic) known.request.sides = info.sides;
   known.request.samples = info.samples;
   known.request.seed = info.seed;
+  known.request.estimator = info.estimator;
+  if (!known.request.close && is_closed(info)) {
+    throw InputError(
+        arguments.form_factors.string(),
+        "found form factors whose rows are closed (" + info.closure +
+            "); expected them as computed, for --no-closure. Make them anew: patchlight form-factors MODEL "
+            "--raw -o FOLDER");
+  }
   known.exchange = [folder = arguments.form_factors, info](const PatchMesh& mesh) {
     return read_exchange(folder, info, mesh);
   };

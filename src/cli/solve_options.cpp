@@ -115,6 +115,9 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
         if (text.empty()) throw refusal("--form-factors", text, "the name of a folder");
         options.form_factors = text;
       });
+  command.add_flag_callback(
+      "--no-closure", [&request] { request.close = false; },
+      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
   add(command, "--solver", "jacobi|gauss-seidel|progressive",
       "how the equations are solved; default gauss-seidel, with\n--series jacobi",
       [&request, &options](const std::string& text) {

@@ -1,5 +1,7 @@
 #include "cli/summary.h"
 
+#include "patchlight/transport/worst_rows.h"
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -55,13 +57,30 @@ std::string seconds(const std::vector<StageCost>& costs) {
   return text.str();
 }
 
-std::string details(const Simulation& simulation) {
+std::string worst_patches(const Scene& scene, const Simulation& simulation) {
+  constexpr std::size_t count = 5;
+  const PatchMesh& mesh = simulation.mesh;
+  std::ostringstream text;
+  text << "patches whose row sums were farthest off before closure, by area:\n";
+  for (const RowDefect& row :
+       worst_rows(simulation.transport.raw_row_sum, simulation.transport.lost, simulation.problem.area, count)) {
+    const Polygon& polygon = scene.polygons[mesh.polygon[row.patch]];
+    const Point& centre = mesh.centroid[row.patch];
+    text << "  " << place_of(scene, polygon) << ", face " << polygon.face << " of " << group_name(scene, polygon.group)
+         << ", material " << scene.materials[mesh.material[row.patch]].name << ", at " << bands(centre.array())
+         << " m: " << rounded(row.row_sum, 6) << ", expected " << rounded(row.expected, 6) << '\n';
+  }
+  return text.str();
+}
+
+std::string details(const Scene& scene, const Simulation& simulation) {
   std::ostringstream text;
   for (const Decision& decision : simulation.plan.decisions) {
     text << "decision: " << decision.effect << (decision.simulate ? ": simulated; " : ": left out; ") << decision.reason
          << '\n';
   }
   const AssemblyCounts& counts = simulation.transport.counts;
+  text << "estimator of form factors: " << name_of(simulation.plan.estimator) << '\n';
   text << "pairs of patches: " << counts.facing_pairs << " facing, of these " << counts.near_pairs << " near, "
        << counts.partial_pairs << " partly and " << counts.blocked_pairs << " fully occluded\n";
   text << "shadow rays: " << counts.shadow_rays;
@@ -79,7 +98,8 @@ std::string details(const Simulation& simulation) {
   }
   text << "\nrow sums before closure: " << rounded(simulation.transport.raw_row_sum.minCoeff(), 6) << " to "
        << rounded(simulation.transport.raw_row_sum.maxCoeff(), 6) << "; closure: " << simulation.transport.closure
-       << '\n';
+       << '\n'
+       << worst_patches(scene, simulation);
   return text.str();
 }
 
@@ -99,7 +119,7 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
   text << scene.file << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x " << rounded(size.z()) << " m, "
        << scene.polygons.size() << " polygons, " << simulation.mesh.size() << " patches with edges up to "
        << rounded(simulation.plan.max_edge) << " m\n";
-  if (long_form) text << details(simulation);
+  if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
   text << energy(simulation.balance) << '\n';
   text << seconds(simulation.costs) << '\n';

@@ -1,5 +1,7 @@
 #include "patchlight/output/write_report.h"
 
+#include "patchlight/transport/worst_rows.h"
+
 #include "output/write_bytes.h"
 
 #include <limits>
@@ -43,6 +45,8 @@ Json request_part(const Request& request) {
   part["tolerance"] = request.tolerance;
   part["max_iterations"] = request.max_iterations;
   part["samples"] = request.samples;
+  part["estimator"] = name_of(request.estimator);
+  part["close"] = request.close;
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
@@ -53,7 +57,7 @@ Json unanimous_part(const SamplingError::Unanimous& unanimous) {
   return {{"sampled_again", unanimous.pairs}, {"missed", unanimous.missed}, {"bound", bound_on_miss(unanimous)}};
 }
 
-// As shares of the unoccluded exchange area; null where no pair was sampled again, as with form factors from a file.
+// As shares of the unoccluded exchange area; null where no pair was sampled again, as when rays decide none.
 Json sampling_error_part(const SamplingError& error) {
   if (!was_audited(error)) return nullptr;
   Json part;
@@ -74,6 +78,8 @@ Json plan_part(const Plan& plan) {
   part["max_edge_m"] = plan.max_edge;
   part["probes"] = plan.probes;
   part["samples"] = plan.samples;
+  part["estimator"] = name_of(plan.estimator);
+  part["close"] = plan.close;
   part["lost_share_rays"] = plan.lost_share_rays;
   part["seed"] = plan.seed;
   part["solver"] = name_of(plan.solver.solver);
@@ -160,7 +166,28 @@ Json row_sum_part(const Eigen::VectorXd& row_sum, const Simulation& simulation) 
   return part;
 }
 
-Json transport_part(const Simulation& simulation) {
+// The patches whose form factors, before closure, are farthest off.
+Json worst_rows_part(const Scene& scene, const Simulation& simulation) {
+  constexpr std::size_t count = 5;
+  const PatchMesh& mesh = simulation.mesh;
+  Json part = Json::array();
+  for (const RowDefect& row :
+       worst_rows(simulation.transport.raw_row_sum, simulation.transport.lost, simulation.problem.area, count)) {
+    const Polygon& polygon = scene.polygons[mesh.polygon[row.patch]];
+    part.push_back({{"patch", row.patch},
+                    {"place", place_of(scene, polygon)},
+                    {"source_polygon", polygon.face},
+                    {"group", group_name(scene, polygon.group)},
+                    {"material", scene.materials[mesh.material[row.patch]].name},
+                    {"centre_m", array_of(mesh.centroid[row.patch])},
+                    {"area_m2", simulation.problem.area[row.patch]},
+                    {"raw_row_sum", row.row_sum},
+                    {"expected", row.expected}});
+  }
+  return part;
+}
+
+Json transport_part(const Scene& scene, const Simulation& simulation) {
   const TransportFacts& transport = simulation.transport;
   const Eigen::VectorXd& area = simulation.problem.area;
   Json part;
@@ -177,6 +204,7 @@ Json transport_part(const Simulation& simulation) {
   part["closure"] = transport.closure;
   part["raw_row_sum"] = row_sum_part(transport.raw_row_sum, simulation);
   part["row_sum"] = row_sum_part(transport.row_sum, simulation);
+  part["worst_rows"] = worst_rows_part(scene, simulation);
   part["lost_share"] = {{"escaped", area.dot(transport.lost.escaped) / area.sum()},
                         {"at_backs", area.dot(transport.lost.at_backs) / area.sum()}};
   return part;
@@ -234,7 +262,7 @@ void write_report(const std::filesystem::path& file, const Scene& scene, const R
   report["plan"] = plan_part(simulation.plan);
   report["mesh"] = mesh_part(simulation);
   report["materials"] = materials_part(scene, simulation);
-  report["transport"] = transport_part(simulation);
+  report["transport"] = transport_part(scene, simulation);
   report["energy_balance"] = energy_part(simulation.balance);
   report["solution"] = solution_part(simulation);
   report["costs"] = costs_part(simulation.costs);

@@ -71,8 +71,16 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.probes = std::max(plan.probes, request.samples / 4);
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
+  plan.estimator = request.estimator;
+  plan.short_cuts = request.short_cuts;
+  plan.close = request.close;
+  plan.standard_errors = request.standard_errors;
   plan.solver = {request.solver, request.tolerance, request.max_iterations};
   return plan;
+}
+
+AssemblyOptions assembly_options(const Plan& plan) {
+  return {plan.probes, plan.samples, plan.seed, plan.standard_errors, plan.estimator, plan.short_cuts};
 }
 
 }  // namespace patchlight

@@ -105,6 +105,10 @@ std::string place_of(const Scene& scene, const Polygon& polygon) {
   return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;
 }
 
+std::string group_name(const Scene& scene, std::uint32_t group) {
+  return group < scene.groups.size() ? scene.groups[group] : "object " + std::to_string(group);
+}
+
 Vector upright_axis(const Scene& scene) {
   // Floors, ceilings, table tops: rooms have more area across their upright axis than across any other.
   constexpr double much_more = 1.25;

@@ -5,6 +5,7 @@
 #include "patchlight/form_factor/patch_cluster.h"
 
 #include "transport/cluster_hull.h"
+#include "transport/estimators.h"
 #include "transport/narrow.h"
 #include "transport/pair_sampler.h"
 
@@ -27,7 +28,6 @@ std::uint32_t audit_interval(PatchIndex size) {
 struct RowFacts {
   AssemblyCounts counts;
   SamplingError error;
-  std::vector<SampledEntry> sampled;
 };
 
 struct Assembler {
@@ -44,7 +44,7 @@ struct Assembler {
   bool is_free(std::size_t row, std::size_t column) const;
   void count(const Pair& pair, RowFacts& facts) const;
   void audit(const Pair& pair, double exchange_area, RowFacts& facts) const;
-  RowFacts fill_row(std::size_t row, ExchangeAreas& S) const;
+  RowFacts fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const;
 };
 
 // Calls use(i, j, unoccluded exchange area) for the pairs of two clusters that face each other; the area is -1 where it
@@ -59,7 +59,7 @@ void Assembler::for_facing_pairs(const PatchCluster& a, const PatchCluster& b, A
       const PatchIndex j = b.patches[k];
       if (mesh.polygon[i] == mesh.polygon[j] || (&a == &b && j <= i)) continue;
       float unoccluded = row.unoccluded.at[k];
-      if ((row.exact >> k & 1) != 0) {
+      if ((row.exact >> k & 1) != 0 || !options.short_cuts.far) {
         if (orientation(shapes[i], shapes[j]) == Orientation::averted) continue;
         unoccluded = -1;
         counts.near_pairs += is_near(shapes[i], shapes[j]) ? 1 : 0;
@@ -106,8 +106,14 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   ++unanimous.by_share[static_cast<std::size_t>(std::min(std::abs(difference) * steps, steps - 1.0))];
 }
 
-// The entries of one cluster with itself and all later ones.
-RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
+EntryKind kind_of(const Pair& pair) {
+  if (pair.is_partial()) return EntryKind::estimated;
+  return pair.free_rays > 0 ? EntryKind::all_visible : EntryKind::all_hidden;
+}
+
+// The entries of one cluster with itself and all later ones. Until the sampling error is known, the unoccluded exchange
+// areas stand in place of the standard errors.
+RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const {
   RowFacts facts;
   AssemblyCounts& counts = facts.counts;
   const PatchCluster& a = clusters[row];
@@ -115,14 +121,14 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
   for (std::size_t column = row; column < clusters.size(); ++column) {
     const PatchCluster& b = clusters[column];
     if (averted(a, b)) continue;
-    if (is_free(row, column)) {
+    if (options.short_cuts.free && is_free(row, column)) {
       for_facing_pairs(a, b, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
         S.set(i, j, unoccluded < 0 ? sampler.exact(i, j) : unoccluded);
         ++counts.free_pairs;
       });
       continue;
     }
-    if (occluder.hides(hulls[row].corners, hulls[column].corners)) {
+    if (options.short_cuts.hidden && occluder.hides(hulls[row].corners, hulls[column].corners)) {
       counts.hidden_pairs += static_cast<std::uint64_t>(a.size) * static_cast<std::uint64_t>(b.size);
       continue;
     }
@@ -136,7 +142,7 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S) const {
       S.set(pair.first, pair.second, area);
       count(pair, facts);
       audit(pair, area, facts);
-      if (options.keep_sampled) facts.sampled.push_back({pair.first, pair.second, pair.unoccluded, pair.is_partial()});
+      if (options.keep_errors) errors.set(pair.first, pair.second, kind_of(pair), pair.unoccluded);
     }
   }
   return facts;
@@ -157,15 +163,12 @@ Assembly with_row(Assembly assembly, const RowFacts& row) {
   counts.blocked_pairs += row.counts.blocked_pairs;
   counts.shadow_rays += row.counts.shadow_rays;
   assembly.error += row.error;
-  assembly.sampled.insert(assembly.sampled.end(), row.sampled.begin(), row.sampled.end());
   return assembly;
 }
 
-}  // namespace
-
-Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                                 const Observer& observer) {
-  assert(options.probes >= 1 && options.samples >= options.probes);
+// Closed forms, and shadow rays where something may be in between.
+Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                       const Observer& observer) {
   const std::vector<PatchShape> shapes = patch_shapes(mesh);
   const std::vector<PatchCluster> clusters = patch_clusters(mesh, shapes);
   std::vector<ClusterHull> hulls;
@@ -176,12 +179,51 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
   const PairSampler sampler(mesh, shapes, occluder, options);
   const Assembler assembler{mesh, occluder, options, shapes, clusters, hulls, sampler};
 
-  Assembly result{ExchangeAreas(mesh.size()), {}, {}, {}};
+  Assembly result{ExchangeAreas(mesh.size()), {}, {}, options.keep_errors ? EntryErrors(mesh.area) : EntryErrors()};
   std::vector<RowFacts> rows(clusters.size());
-  parallel_for(rows.size(), Stage::form_factors, observer,
-               [&](std::size_t row) { rows[row] = assembler.fill_row(row, result.exchange_areas); });
+  parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
+    rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
+  });
   for (const RowFacts& row : rows) result = with_row(std::move(result), row);
+  result.entry_errors = with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error);
   return result;
+}
+
+}  // namespace
+
+const char* name_of(Estimator estimator) {
+  switch (estimator) {
+    case Estimator::automatic:
+      return "auto";
+    case Estimator::area:
+      return "area";
+    case Estimator::point_polygon:
+      return "point-polygon";
+    case Estimator::hemisphere:
+      return "hemisphere";
+    case Estimator::contour:
+      return "contour";
+  }
+  return "";
+}
+
+Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                                 const Observer& observer) {
+  assert(options.probes >= 1 && options.samples >= options.probes);
+  switch (options.estimator) {
+    case Estimator::automatic:
+      return by_pair_class(mesh, occluder, options, observer);
+    case Estimator::area:
+      return estimate_by_area(mesh, occluder, options, observer);
+    case Estimator::point_polygon:
+      return estimate_by_points(mesh, occluder, options, observer);
+    case Estimator::hemisphere:
+      return estimate_by_hemisphere(mesh, occluder, options, observer);
+    case Estimator::contour:
+      return estimate_by_contour(mesh, occluder, options, observer);
+  }
+  assert(false);
+  return by_pair_class(mesh, occluder, options, observer);
 }
 
 }  // namespace patchlight

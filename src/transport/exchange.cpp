@@ -10,7 +10,8 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
   LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
   const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
   const Eigen::VectorXd area = exposed_area(mesh, lost, seen);
-  return {std::move(raw.exchange_areas), area, seen.cwiseQuotient(area), std::move(lost), raw.counts, raw.error, {}};
+  return {std::move(raw.exchange_areas), area, seen.cwiseQuotient(area), std::move(lost), raw.counts, raw.error,
+          std::move(raw.entry_errors),   {}};
 }
 
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) {

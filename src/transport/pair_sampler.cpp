@@ -48,7 +48,8 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
     : mesh_(mesh),
       shapes_(shapes),
       occluder_(occluder),
-      probes_(in_packets(options.probes)),
+      far_rule_(options.short_cuts.far ? FarRule::coarse : FarRule::fine),
+      probes_(in_packets(options.short_cuts.probes ? options.probes : options.samples)),
       samples_(in_packets(options.samples)),
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
@@ -56,7 +57,7 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       table_(adjacent_factor * samples_, options.seed) {}
 
 float PairSampler::exact(PatchIndex i, PatchIndex j) const {
-  return narrow_toward_zero(unoccluded_exchange_area(shapes_[i], shapes_[j]));
+  return narrow_toward_zero(unoccluded_exchange_area(shapes_[i], shapes_[j], far_rule_));
 }
 
 // The two patches come in an order that does not depend on their numbers: of adjacent pairs the smaller first, else by

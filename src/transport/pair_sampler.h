@@ -59,6 +59,7 @@ class PairSampler {
   const PatchMesh& mesh_;
   const std::vector<PatchShape>& shapes_;
   const Occluder& occluder_;
+  FarRule far_rule_;
   std::uint32_t probes_;
   std::uint32_t samples_;
   double scale_;

@@ -55,6 +55,53 @@ class FormFactorsTest(ToolTest):
             self.assertAlmostEqual(sum(F[i * size : (i + 1) * size]), raw_row_sum[i], delta=1e-6)
         self.assertGreater(max(abs(x - 1) for x in raw_row_sum), 1e-5)
 
+    def test_standard_errors_are_those_of_the_sampled_entries(self):
+        self.find("-o", "room.ff", "--patches", "150")
+        self.find("-o", "mtx.ff", "--patches", "150", "--matrix", "mtx")
+        info = json.loads((self.folder / "room.ff/info.json").read_text())
+        size = info["patches"]
+        shape, error = load(self.folder / "room.ff/standard_error.npy")
+        self.assertEqual(shape, (size, size))
+        _, area = load(self.folder / "room.ff/area.npy")
+        self.assertEqual(sum(x > 0 for x in error), 2 * info["counts"]["partly_occluded_pairs"])
+        self.assertGreater(max(error), 0)
+        for i in range(size):
+            for j in range(i):
+                one, other = area[i] * error[i * size + j], area[j] * error[j * size + i]
+                self.assertAlmostEqual(one, other, delta=1e-6 * one)
+        lines = (self.folder / "mtx.ff/standard_error.mtx").read_text().splitlines()
+        self.assertEqual([int(word) for word in lines[2].split()], [size, size, sum(x > 0 for x in error)])
+        i, j, value = lines[3].split()
+        self.assertAlmostEqual(float(value), error[(int(i) - 1) * size + int(j) - 1], delta=1e-8)
+        for kind in ("probes_all_free", "probes_all_blocked"):
+            self.assertTrue(0 <= info["sampling_error"][kind]["bound"] <= 1)
+
+    def test_short_cuts_can_be_left_out(self):
+        self.find("-o", "all.ff", "--patches", "300")
+        counts = json.loads((self.folder / "all.ff/info.json").read_text())["counts"]
+        self.find("-o", "few.ff", "--patches", "300", "--without", "free", "--without", "probes")
+        info = json.loads((self.folder / "few.ff/info.json").read_text())
+        self.assertEqual(info["options"]["without"], ["free", "probes"])
+        self.assertGreater(info["counts"]["shadow_rays"], 2 * counts["shadow_rays"])
+        self.assertEqual(info["counts"]["free_pairs"], 0)
+
+    def test_every_estimator_finds_about_the_same(self):
+        def mean_of(estimator):
+            done = self.find("-o", "F.npy", "--patches", "60", "--raw", "--samples", "256", "--estimator", estimator)
+            self.assertIn(f"estimator {estimator}", done.stdout)
+            (size, _), F = load(self.folder / "F.npy")
+            return sum(F) / size
+
+        auto = mean_of("auto")
+        for estimator in ("area", "point-polygon", "hemisphere", "contour"):
+            # The mean row sum: some 1000 pairs with 256 samples each, and touching ones that area sampling finds badly.
+            self.assertAlmostEqual(mean_of(estimator), auto, delta=0.03, msg=estimator)
+        self.find("-o", "area.ff", "--patches", "60", "--estimator", "area")
+        self.assertFalse((self.folder / "area.ff/standard_error.npy").exists())
+        self.run_tool("solve", "room.obj", "--report", "area.json", "--form-factors", "area.ff")
+        report = json.loads((self.folder / "area.json").read_text())
+        self.assertEqual(report["plan"]["estimator"], "area")
+
     def test_matrix_alone_in_both_formats_tells_the_same(self):
         self.find("-o", "F.npy", "--patches", "60")
         self.find("-o", "F.mtx", "--patches", "60")
@@ -93,6 +140,26 @@ class FormFactorsTest(ToolTest):
             for a, b in zip(fresh["energy_balance"]["absorbed_W"], stored["energy_balance"]["absorbed_W"]):
                 self.assertAlmostEqual(a, b, delta=1e-6 * a)
 
+    def test_solve_without_closure_takes_raw_ones_alone(self):
+        self.find("-o", "closed.ff", "--max-edge", "0.5")
+        self.find("-o", "raw.ff", "--max-edge", "0.5", "--raw")
+        done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "closed.ff", "--no-closure")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("--raw", done.stderr)
+        for words in (["--form-factors", "raw.ff"], ["--max-edge", "0.5"]):
+            done = self.run_tool("solve", "room.obj", "--report", "a.json", "-v", "--no-closure", *words)
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            self.assertIn("closure: none: not wanted", done.stdout)
+            report = json.loads((self.folder / "a.json").read_text())
+            self.assertEqual(report["transport"]["closure"], "none: not wanted")
+            for key in ("min", "mean", "max", "rms_defect"):
+                self.assertAlmostEqual(report["transport"]["raw_row_sum"][key], report["transport"]["row_sum"][key], 6)
+            balance = report["energy_balance"]
+            for k in range(3):
+                gone = sum(balance[f"{way}_W"][k] for way in ("absorbed", "escaped", "lost_at_backs", "defect"))
+                self.assertAlmostEqual(gone, balance["emitted_W"][k], delta=1e-5 * balance["emitted_W"][k])
+            self.assertGreater(abs(balance["defect_W"][0]), 1e-6)
+
     def test_form_factors_of_another_geometry_are_refused(self):
         self.find("-o", "room.ff", "--patches", "60")
         self.write("room.obj", ROOM.replace("v -0.5 -0.5 1\n", "v -0.5 -0.5 1.0000001\n"))
@@ -127,6 +194,8 @@ class FormFactorsTest(ToolTest):
 
     def test_refusals(self):
         for words, code in (([], USAGE), (["-o", "a.ff", "--by", "colour"], USAGE),
+                            (["-o", "a.ff", "--estimator", "magic"], USAGE), (["-o", "a.ff", "--without", "x"], USAGE),
+                            (["-o", "a.ff", "--estimator", "area", "--without", "far"], USAGE),
                             (["-o", "F.npy", "--matrix", "mtx"], USAGE), (["-o", "room.obj"], USAGE),
                             (["-o", "a.ff", "--patches", "9", "--max-edge", "1"], USAGE),
                             (["-o", "a.ff", "--patches", "100000000"], MEMORY)):

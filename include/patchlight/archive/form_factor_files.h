@@ -31,8 +31,8 @@ void write_matrix(const std::filesystem::path& file, const Exchange& exchange, M
                   const Observer& observer = {});
 
 /// Writes a folder, whole or not at all: F.npy or F.mtx, area.npy, lost_share.npy, raw_row_sum.npy, mesh.vtp,
-/// info.json and the tables by_material.csv and by_object.csv if there are any. docs/output.md describes them. \throws
-/// OutputError, Cancelled.
+/// info.json, standard_error.npy or .mtx where Exchange::entry_errors were kept, and the tables by_material.csv and
+/// by_object.csv if there are any. docs/output.md describes them. \throws OutputError, Cancelled.
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result,
                         const Observer& observer = {});
 
@@ -51,8 +51,13 @@ struct FormFactorInfo {
   int samples = 16;
   std::uint64_t seed = 1;
   int lost_share_rays = 256;
+  Estimator estimator = Estimator::automatic;
   AssemblyCounts counts;
+  SamplingError error;  ///< of the sampled entries; empty where it was not stored
 };
+
+/// True when closure changed what was computed.
+bool is_closed(const FormFactorInfo& info);
 
 /// Reads info.json of such a folder. \throws InputError.
 FormFactorInfo read_form_factor_info(const std::filesystem::path& folder);

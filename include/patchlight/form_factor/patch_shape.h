@@ -44,8 +44,11 @@ bool is_near(const PatchShape& first, const PatchShape& second);
 /// Closer than one diameter of the larger patch: even the visible part is sampled by solid angle.
 bool is_adjacent(const PatchShape& first, const PatchShape& second);
 
+/// The quadrature between patches more than four diameters of the larger apart.
+enum class FarRule { coarse, fine };
+
 /// Unoccluded exchange area A_i F_ij in m^2 of two patches that are not averted: the contour integral for near patches,
 /// product quadrature for others; relative error below 1e-3.
-double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second);
+double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second, FarRule far = FarRule::coarse);
 
 }  // namespace patchlight

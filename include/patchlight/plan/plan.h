@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/solve/solve.h"
+#include "patchlight/transport/assemble.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,10 @@ struct Request {
   int max_iterations = 1000;  ///< after which the solver gives up
   int samples = 16;           ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
+  Estimator estimator = Estimator::automatic;
+  ShortCuts short_cuts = {};     ///< of the automatic estimator
+  bool close = true;             ///< correct the form factors so that rows sum up to what is seen
+  bool standard_errors = false;  ///< keep one for each entry: a quarter more memory
   int threads = 0;               ///< 0: all processors
   std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
 };
@@ -41,6 +46,10 @@ struct Plan {
   int samples = 16;
   int lost_share_rays = 256;  ///< hemisphere rays per patch
   std::uint64_t seed = 1;
+  Estimator estimator = Estimator::automatic;
+  ShortCuts short_cuts = {};
+  bool close = true;
+  bool standard_errors = false;
   SolverOptions solver;
   std::vector<Decision> decisions;
   std::vector<std::string> notes;  ///< what was asked and cannot be
@@ -55,5 +64,8 @@ Plan make_plan(const Scene& scene, const Request& request);
 
 /// The same for a scene that need not have a lamp, without decisions about light: what form factors take.
 Plan plan_form_factors(const Scene& scene, const Request& request);
+
+/// What the plan says about form factors.
+AssemblyOptions assembly_options(const Plan& plan);
 
 }  // namespace patchlight

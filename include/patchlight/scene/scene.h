@@ -89,6 +89,9 @@ Vector upright_axis(const Scene& scene);
 /// Where a polygon stands, for messages: "room.obj:12", or the file alone when the line is not known.
 std::string place_of(const Scene& scene, const Polygon& polygon);
 
+/// The name of an object or group; "object 3" for one without.
+std::string group_name(const Scene& scene, std::uint32_t group);
+
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
 

@@ -2,21 +2,46 @@
 
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/sampling_error.h"
 #include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace patchlight {
+
+/// How exchange areas are found. All but the first are for study: they take no short cuts, and every pair that faces
+/// each other costs rays.
+enum class Estimator {
+  automatic,      ///< closed forms, and shadow rays where something may be in between
+  area,           ///< from random points of one patch to random points of the other
+  point_polygon,  ///< from random points of the smaller patch, each with the exact form factor to the larger one
+  hemisphere,     ///< rays from each patch over its hemisphere, counted where they arrive
+  contour         ///< the contour integral times the visible share of the samples of `area`
+};
+
+/// The estimator's name as on the command line.
+const char* name_of(Estimator estimator);
+
+/// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs; docs/theory.md
+/// section 5.
+struct ShortCuts {
+  bool hidden = true;  ///< clusters that one polygon hides from each other take no rays
+  bool free = true;    ///< clusters with nothing between them take no rays
+  bool probes = true;  ///< where a few rays agree no more are traced
+  bool far = true;     ///< far pairs take the quadrature of the lowest order
+};
 
 struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
   int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; adjacent pairs take four
-                     ///< times as many. Both are rounded up to 2, 4, 8 or a multiple of 16, to fill packets
+                     ///< times as many; with Estimator::hemisphere rays of a patch. Both are rounded up to 2, 4, 8 or a
+                     ///< multiple of 16, to fill packets
   std::uint64_t seed = 1;
-  bool keep_sampled = false;  ///< fill Assembly::sampled: 16 bytes for each pair that shadow rays decided
+  bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
+  Estimator estimator = Estimator::automatic;
+  ShortCuts short_cuts = {};
 };
 
 /// How the entries of a matrix came about.
@@ -31,24 +56,16 @@ struct AssemblyCounts {
   std::uint64_t shadow_rays = 0;
 };
 
-/// A pair that shadow rays decided.
-struct SampledEntry {
-  PatchIndex first = 0;
-  PatchIndex second = 0;
-  float unoccluded = 0;  ///< exchange area without occluders, m^2; -1 where all rays were blocked and it was not found
-  bool is_partial = false;  ///< the probes disagreed: an estimate, else fully visible or fully occluded as far as seen
-};
-
 struct Assembly {
   ExchangeAreas exchange_areas;
   AssemblyCounts counts;
   SamplingError error;
-  std::vector<SampledEntry> sampled;  ///< when asked for
+  EntryErrors entry_errors;  ///< when asked for
 };
 
 /// Exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal and between
-/// patches of one plane, never more than the unoccluded value. The same bits for any number of threads. O(size^2) time.
-/// \throws Cancelled.
+/// patches of one plane, never more than the unoccluded value but by Estimator::area and hemisphere. The same bits for
+/// any number of threads. O(size^2) time. \throws Cancelled.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options = {},
                                  const Observer& observer = {});
 

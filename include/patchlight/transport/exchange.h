@@ -20,8 +20,9 @@ struct Exchange {
   Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
   LostShare lost;
   AssemblyCounts counts;
-  SamplingError error;  ///< of the sampled entries, before closure
-  std::string closure;  ///< the method that has closed the exchange areas; empty before closure
+  SamplingError error;       ///< of the sampled entries, before closure
+  EntryErrors entry_errors;  ///< of the exchange areas before closure, when asked for
+  std::string closure;       ///< the method that has closed the exchange areas; empty before closure
 };
 
 /// Exchange areas before closure, and the share of each patch's hemisphere from which no patch is seen.

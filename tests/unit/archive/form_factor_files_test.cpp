@@ -4,10 +4,12 @@
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
+#include "archive/npy.h"
 #include "support/scenes.h"
 #include "unit/output/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace patchlight {
 namespace {
@@ -15,8 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 
-Request coarse() {
+Request coarse(bool close = true) {
   Request request;
+  request.close = close;
   request.max_edge = 1;
   request.sides = Sides::front;
   request.tolerance = 1e-9;
@@ -41,7 +44,7 @@ Scene without_a_wall(Scene scene) {
 Simulation solved_from_folder(const Scene& scene, bool close) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
-  const FormFactors found = find_form_factors(scene, coarse(), close);
+  const FormFactors found = find_form_factors(scene, coarse(close));
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
   return simulate(scene, coarse(), {}, [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); });
@@ -61,6 +64,12 @@ TEST_P(StoredFormFactors, GiveTheSameSolution) {
     EXPECT_EQ(stored.transport.raw_row_sum, fresh.transport.raw_row_sum);
     EXPECT_EQ(stored.transport.lost.escaped, fresh.transport.lost.escaped);
     EXPECT_EQ(stored.transport.counts.shadow_rays, fresh.transport.counts.shadow_rays);
+    EXPECT_TRUE(was_audited(stored.transport.error));
+    EXPECT_EQ(stored.transport.error.partial_pairs, fresh.transport.error.partial_pairs);
+    EXPECT_EQ(stored.transport.error.squares, fresh.transport.error.squares);
+    EXPECT_EQ(stored.transport.error.visible.missed, fresh.transport.error.visible.missed);
+    EXPECT_EQ(stored.transport.error.visible.by_share, fresh.transport.error.visible.by_share);
+    EXPECT_EQ(bound_on_miss(stored.transport.error.occluded), bound_on_miss(fresh.transport.error.occluded));
   }
 }
 
@@ -73,7 +82,7 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   Request request = coarse();
   request.seed = ~std::uint64_t{0};
   request.samples = 32;
-  const FormFactors found = find_form_factors(scene, request, true);
+  const FormFactors found = find_form_factors(scene, request);
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
   EXPECT_EQ(info.patches, found.mesh.size());
@@ -84,11 +93,52 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   EXPECT_EQ(info.closure, "least squares");
 }
 
+// A folder from before these keys were written.
+TEST(StoredFormFactors, WithoutTheirSamplingErrorAreRead) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const Scene scene = closed_room();
+  const FormFactors found = find_form_factors(scene, coarse());
+  write_form_factors(place, {scene, found, {}, "a command"});
+  nlohmann::json info = nlohmann::json::parse(content_of(place / "info.json"));
+  info.erase("sampling_error");
+  info["options"].erase("estimator");
+  put(place / "info.json", info.dump());
+  const Exchange exchange = read_exchange(place, read_form_factor_info(place), found.mesh);
+  EXPECT_FALSE(was_audited(exchange.error));
+  EXPECT_EQ(exchange.counts.shadow_rays, found.exchange.counts.shadow_rays);
+}
+
+TEST(StoredFormFactors, HaveTheStandardErrorsThatWereKept) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const Scene scene = closed_room();
+  Request request = coarse();
+  request.standard_errors = true;
+  const FormFactors found = find_form_factors(scene, request);
+  write_form_factors(place, {scene, found, {}, "a command"});
+  const PatchIndex size = found.mesh.size();
+  const Eigen::MatrixXd errors = read_npy(place / "standard_error.npy", size, size);
+  int estimated = 0;
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = 0; j < size; ++j) {
+      const double expected = found.exchange.entry_errors.standard_error(i, j) / found.exchange.area[i];
+      EXPECT_EQ(errors(i, j), static_cast<double>(static_cast<float>(expected)));
+      estimated += errors(i, j) > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(estimated, 2 * static_cast<int>(found.exchange.counts.partial_pairs));
+  EXPECT_GT(estimated, 0);
+  // They go with an earlier result.
+  write_form_factors(place, {scene, find_form_factors(scene, coarse()), {}, "a command"});
+  EXPECT_FALSE(fs::exists(place / "standard_error.npy"));
+}
+
 TEST(StoredFormFactors, OfAnotherGeometryAreRefused) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
   Scene scene = furnished_room(0.5);
-  const FormFactors found = find_form_factors(scene, coarse(), true);
+  const FormFactors found = find_form_factors(scene, coarse());
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
   EXPECT_NO_THROW(read_exchange(place, info, found.mesh));
@@ -108,7 +158,7 @@ TEST(StoredFormFactors, OfAnotherGeometryAreRefused) {
 TEST(StoredFormFactors, DamagedFilesAreRefused) {
   const TemporaryFolder folder;
   const Scene scene = furnished_room(0.5);
-  const FormFactors found = find_form_factors(scene, coarse(), true);
+  const FormFactors found = find_form_factors(scene, coarse());
   const fs::path place = folder.path() / "room.ff";
   const FormFactorResult result{scene, found, {}, "a command"};
   const auto damage = [&](const char* name, const auto& change) {
@@ -133,7 +183,7 @@ TEST(StoredFormFactors, DamagedFilesAreRefused) {
 TEST(StoredFormFactors, ReplaceAnEarlierResultAndNothingElse) {
   const TemporaryFolder folder;
   const Scene scene = furnished_room(0.5);
-  const FormFactors found = find_form_factors(scene, coarse(), false);
+  const FormFactors found = find_form_factors(scene, coarse(false));
   const fs::path place = folder.path() / "room.ff";
   const FormFactorResult result{scene, found, {}, "a command"};
   fs::create_directory(place);
@@ -149,7 +199,7 @@ TEST(StoredFormFactors, ReplaceAnEarlierResultAndNothingElse) {
 // A room that is closed: everything that leaves a group arrives somewhere, and groups exchange equally.
 TEST(GroupFactors, AreClosedAndReciprocal) {
   const Scene scene = closed_room();
-  const FormFactors found = find_form_factors(scene, coarse(), true);
+  const FormFactors found = find_form_factors(scene, coarse());
   const GroupFactors groups = group_factors(scene, found, GroupBy::material);
   ASSERT_EQ(groups.names, (std::vector<std::string>{"wall", "lamp"}));
   EXPECT_NEAR(groups.area[0], 59, 1e-9);

@@ -73,6 +73,26 @@ TEST(WriteReport, WeighsRowSumsByArea) {
   EXPECT_NEAR(report["transport"]["row_sum"]["mean"].get<double>(), 0.5, 1e-15);
 }
 
+// Patches 1 and 2 are alike: of equals the first.
+TEST(WriteReport, NamesTheWorstPatches) {
+  const Simulation simulation = tiny_simulation();
+  Scene scene = tiny_scene();
+  scene.groups = {"table"};
+  scene.polygons[1].line = 7;
+  const nlohmann::json worst = report_of(scene, simulation)["transport"]["worst_rows"];
+  ASSERT_EQ(worst.size(), 3U);
+  EXPECT_EQ(worst[0]["patch"], 1);
+  EXPECT_EQ(worst[0]["place"], "tiny.obj:7");
+  EXPECT_EQ(worst[0]["source_polygon"], 11);
+  EXPECT_EQ(worst[0]["group"], "table");
+  EXPECT_EQ(worst[0]["material"], "lamp");
+  EXPECT_EQ(worst[0]["centre_m"][1].get<double>(), simulation.mesh.centroid[1].y());
+  EXPECT_EQ(worst[0]["raw_row_sum"], 0.75);
+  EXPECT_EQ(worst[0]["expected"], 0.5);
+  EXPECT_EQ(worst[1]["patch"], 2);
+  EXPECT_EQ(worst[2]["patch"], 0);
+}
+
 TEST(WriteReport, IsValidJsonWhateverItHolds) {
   Scene scene = tiny_scene();
   scene.materials.push_back({"not \xff UTF-8 \"quoted\"", rgb(0, 0, 0), rgb(0, 0, 0)});  // no patch has it
