@@ -37,8 +37,10 @@ Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<doub
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto& [u, v, s, t] = points[k];
-    rays.push_back(
-        {square_to_quad(corners.points, u, v), frame * square_to_cosine_hemisphere(s, t), mesh.polygon[from]});
+    const Point start = square_to_quad(corners.points, u, v);
+    if (!occluder.is_covered(mesh.polygon[from], mesh.side[from], start)) {
+      rays.push_back({start, frame * square_to_cosine_hemisphere(s, t), mesh.polygon[from]});
+    }
     if (rays.size() < batch && k + 1 < points.size()) continue;
     for (const auto& hit : occluder.first_hits(rays)) {
       const auto patch = hit ? patches.patch_at(hit->polygon, hit->side, hit->point) : std::nullopt;

@@ -8,13 +8,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <tuple>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Adjacent pairs are few and weigh much: they get this many times the samples of others.
-constexpr std::uint32_t adjacent_factor = 4;
+// Pairs with large form factors are few and weigh much: the error of a row is smallest for a given number of rays when
+// each pair gets rays in proportion to its form factor. Adjacent pairs get at least four times the usual number.
+constexpr std::uint32_t adjacent_effort = 4;
+constexpr std::uint32_t most_effort = 16;
+static const double usual_form_factor = getenv("F0") ? 1 / atof(getenv("F0")) : 1.0 / 256;
 
 constexpr std::size_t packet = ShadowPacket::size;
 
@@ -30,6 +35,17 @@ void add(Pair& pair, float weight, bool blocked) {
     ++(blocked ? pair.blocked_rays : pair.free_rays);
   } else {
     ++(blocked ? pair.idle_blocked_rays : pair.idle_free_rays);
+  }
+}
+
+// Calls use(group) for the pairs that are sampled in one way and have had equally many rays.
+template <typename Use>
+void for_groups(std::span<Pair> pairs, Use use) {
+  const auto key = [](const Pair& p) { return std::make_tuple(p.is_adjacent, p.effort, p.rays()); };
+  std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& a, const Pair& b) { return key(a) < key(b); });
+  for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
+    while (end < pairs.size() && key(pairs[end]) == key(pairs[first])) ++end;
+    use(pairs.subspan(first, end - first));
   }
 }
 
@@ -54,7 +70,7 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),
-      table_(adjacent_factor * samples_, options.seed) {}
+      table_(most_effort * samples_, options.seed) {}
 
 float PairSampler::exact(PatchIndex i, PatchIndex j) const {
   return narrow_toward_zero(unoccluded_exchange_area(shapes_[i], shapes_[j], far_rule_));
@@ -72,12 +88,13 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
           .second = j,
           .set = table_.of_pair(keys_[i], keys_[j]),
           .unoccluded = unoccluded,
+          .effort = adjacent ? adjacent_effort : 1,
           .is_adjacent = adjacent};
 }
 
 // Traces samples [begin, end) of every pair and adds up their weights. A packet holds 2, 4, 8 or 16 rays of each of its
 // pairs, so that its rays are coherent.
-void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
+void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   PairSamples next;
   for (std::uint32_t k = begin; k < end;) {
     const std::size_t step = k % 16 == 0 && end - k >= 16 ? 16
@@ -124,20 +141,45 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
   for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0);
 }
 
+// Samples [begin, end) times their effort of pairs that are all of one kind and effort.
+void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
+  if (begin >= end) return;
+  if (pairs.front().is_adjacent) return trace_adjacent(pairs, begin, end);
+  trace_packets(pairs, begin, end);
+}
+
+// By the form factor from the smaller patch: 1, 4 or 16.
+std::uint32_t PairSampler::effort_for(const Pair& pair) const {
+  const double first = shapes_[pair.first].area;
+  const double second = shapes_[pair.second].area;
+  const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded)
+                                                 : first * second * (pair.free_weight + pair.blocked_weight) /
+                                                       static_cast<double>(pair.rays());
+  const double form_factor = unoccluded / std::min(first, second);
+  std::uint32_t effort = pair.effort;
+  while (effort < most_effort && form_factor > effort * usual_form_factor) effort *= 4;
+  return effort;
+}
+
 std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
   // 1. A few probes for every pair.
-  const auto others = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_adjacent; });
-  trace_adjacent({pairs.begin(), others}, 0, adjacent_factor * probes_);
-  trace({others, pairs.end()}, 0, probes_);
+  for_groups(pairs, [&](std::span<Pair> group) { trace(group, 0, group.front().effort * probes_); });
 
-  // 2. The remaining samples where the probes disagree.
-  const auto is_partial = [](const Pair& pair) { return pair.is_partial(); };
-  const auto adjacent = std::partition(pairs.begin(), others, is_partial);
-  trace_adjacent({pairs.begin(), adjacent}, adjacent_factor * probes_, adjacent_factor * samples_);
-  const auto unanimous = std::partition(others, pairs.end(), is_partial);
-  trace({others, unanimous}, probes_, samples_);
+  // 2. More where the form factor is large.
+  const auto raised =
+      std::partition(pairs.begin(), pairs.end(), [&](const Pair& p) { return effort_for(p) > p.effort; });
+  const auto known = [](const Pair& pair) { return pair.rays(); };
+  for (auto p = pairs.begin(); p != raised; ++p) p->effort = effort_for(*p);
+  for_groups({pairs.begin(), raised},
+             [&](std::span<Pair> group) { trace(group, known(group.front()), group.front().effort * probes_); });
 
-  // 3. What was not worth computing for pairs that see nothing of each other.
+  // 3. The remaining samples where the probes disagree.
+  const auto unanimous = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_partial(); });
+  for_groups({pairs.begin(), unanimous}, [&](std::span<Pair> group) {
+    trace(group, group.front().effort * probes_, group.front().effort * samples_);
+  });
+
+  // 4. What was not worth computing for pairs that see nothing of each other.
   for (Pair& pair : pairs) {
     if (pair.unoccluded < 0 && (pair.free_rays > 0 || pair.is_partial()))
       pair.unoccluded = exact(pair.first, pair.second);
@@ -150,11 +192,7 @@ Pair PairSampler::sampled_again(const Pair& pair) const {
   again.set = table_.of_pair(keys_[pair.first], keys_[pair.second], 1);
   again.free_weight = again.blocked_weight = 0;
   again.free_rays = again.blocked_rays = again.idle_free_rays = again.idle_blocked_rays = 0;
-  if (pair.is_adjacent) {
-    trace_adjacent({&again, 1}, 0, adjacent_factor * samples_);
-  } else {
-    trace({&again, 1}, 0, samples_);
-  }
+  trace({&again, 1}, 0, pair.effort * samples_);
   if (again.unoccluded < 0) again.unoccluded = exact(pair.first, pair.second);
   return again;
 }

@@ -24,6 +24,7 @@ struct Pair {
   std::uint32_t blocked_rays = 0;    ///< the same
   std::uint32_t idle_free_rays = 0;  ///< of samples without: one end lies behind the other patch
   std::uint32_t idle_blocked_rays = 0;  ///< the same
+  std::uint32_t effort = 1;             ///< times the usual number of samples
   bool is_adjacent = false;             ///< sampled by solid angle
 
   std::uint32_t rays() const { return free_rays + blocked_rays + idle_free_rays + idle_blocked_rays; }
@@ -43,7 +44,8 @@ class PairSampler {
   /// The exchange area without occluders, by closed form or quadrature in double precision.
   float exact(PatchIndex i, PatchIndex j) const;
 
-  /// Traces a few probes for every pair, and all samples where they disagree. The pairs come out in another order.
+  /// Traces a few probes for every pair, and all samples where they disagree; more of both for large form factors. The
+  /// pairs come out in another order.
   std::vector<Pair> sampled(std::vector<Pair> pairs) const;
 
   /// All samples of one pair anew, independent of those before.
@@ -54,7 +56,9 @@ class PairSampler {
 
  private:
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
+  void trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   void trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
+  std::uint32_t effort_for(const Pair& pair) const;
 
   const PatchMesh& mesh_;
   const std::vector<PatchShape>& shapes_;
