@@ -52,7 +52,7 @@ def grid_box(model, low, high, n, inward, is_left_out):
 
 
 def closed_room(n):
-    comment = [f"A closed unit cube with two blocks on its floor; every face a grid of spacing 1/{n} halved into triangles."]
+    comment = [f"A closed unit cube with two blocks on its floor; faces are grids of spacing 1/{n} halved into triangles."]
     model = Model(f"closed_room_{n}", comment, [Material("wall", grey(0.5))])
     in_cells = [[tuple(round(x * n) for x in corner) for corner in (a, b)] + [round(h * n)] for a, b, h in BLOCKS]
     covered = {(x, y) for a, b, _ in in_cells for x in range(a[0], b[0]) for y in range(a[1], b[1])}
@@ -71,7 +71,7 @@ STANDING, HANGING, GAP = 80, 420, 0.02
 
 def boxes_room():
     """Every edge has the same corners on both of its sides: walls and standing boxes follow the floor's grid."""
-    comment = ["A closed room of 8 x 8 x 3 m with 500 boxes: 80 on the floor, which is cut out under them, 420 hang free."]
+    comment = ["A closed room of 8 x 8 x 3 m; 80 boxes stand on the floor, which is cut out under them, 420 hang free."]
     model = Model("boxes_500", comment, [Material("wall", grey(0.5)), Material("box", grey(0.5))])
     rng = random.Random(1)
     standing = standing_boxes(rng)
@@ -81,7 +81,8 @@ def boxes_room():
     for x in range(CELLS):
         for y in range(CELLS):
             if (x, y) not in covered:
-                model.face("wall", *[(CELL * u, CELL * v, 0) for u, v in ((x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1))])
+                corners = ((x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1))
+                model.face("wall", *[(CELL * u, CELL * v, 0) for u, v in corners])
     model.face("wall", (0, 0, HEIGHT), (0, size, HEIGHT), (size, size, HEIGHT), (size, 0, HEIGHT))
     grid_walls(model, "wall", ((0, 0), (CELLS, CELLS)), HEIGHT, inward=True)
     model.group("standing")
