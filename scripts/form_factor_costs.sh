@@ -32,9 +32,9 @@ measure() {
   mv "$json.part" "$json"
 }
 
-# curve ROOM PATCHES: error against cost on one thread; runs of all settings in random order, three of each.
+# curve ROOM PATCHES RUNS: error against cost on one thread; so many runs of all settings in random order.
 curve() {
-  measure form_factors curve "$1" "$2" --benchmark_filter='assemble/.*threads:1' --benchmark_repetitions=3 \
+  measure form_factors curve "$1" "$2" --benchmark_filter='assemble/.*threads:1' --benchmark_repetitions="$3" \
     --benchmark_enable_random_interleaving=true
 }
 
@@ -43,15 +43,15 @@ errors() {
   measure form_factor_errors errors "$1" "$2" "$out/$1_$2_$3.reference" "$3"
 }
 
-curve closed_room_10 0
-curve closed_room_20 0
-curve two_rooms 2000
-curve two_rooms 8000
-curve boxes_500 5000
+curve closed_room_10 0 3
+curve closed_room_20 0 3
+curve two_rooms 2000 3
+curve two_rooms 8000 1
+curve boxes_500 5000 1
 measure form_factors large closed_room_40 0 \
   --benchmark_filter='assemble/probes:(4/samples:(4|16)|8/samples:(8|16)|16/samples:16)/'
 measure form_factors rays closed_room_20 0 --benchmark_filter=shadow_rays
-measure form_factors rays two_rooms 8000 --benchmark_filter=shadow_rays
+measure form_factors rays two_rooms 2000 --benchmark_filter=shadow_rays
 measure form_factors threads closed_room_20 0 --benchmark_filter=second_thread
 errors closed_room_10 0 6400
 errors closed_room_20 0 1600

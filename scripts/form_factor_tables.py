@@ -224,7 +224,7 @@ def main():
     curves(folder, "500 boxes", ["curve_boxes_500_5000"])
     growth(folder)
     threads(folder, "threads_closed_room_20_0")
-    rays(folder, ["rays_closed_room_20_0", "rays_two_rooms_8000"])
+    rays(folder, ["rays_closed_room_20_0", "rays_two_rooms_2000"])
     entries(folder, errors)
     calibration(folder, errors)
     unoccluded(folder, errors)

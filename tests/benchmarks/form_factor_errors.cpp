@@ -140,7 +140,8 @@ int main(int count, char** values) {
   auto* const curve = add("entries", entries, work)->ArgNames({"probes", "samples"});
   for (const auto& [probes, samples] : settings()) curve->Args({probes, samples});
   const AssemblyOptions defaults;
-  add("solutions", solutions, work)->ArgNames({"probes", "samples"})->Args({defaults.probes, defaults.samples});
+  auto* const solved = add("solutions", solutions, work)->ArgNames({"probes", "samples"});
+  solved->Args({defaults.probes, defaults.samples})->Args({8, 16})->Args({16, 64});
   add("calibration", calibration, work);
   add("unoccluded", unoccluded, work);
   return run(count, values, 5);
