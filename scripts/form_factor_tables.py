@@ -10,6 +10,7 @@ import sys
 
 ROW_SUM_GOAL = 3e-4
 LARGE, SMALL = "large_closed_room_40_0", "curve_closed_room_10_0"
+ERRORS = ["errors_closed_room_10_0", "errors_closed_room_20_0", "errors_two_rooms_2000"]
 BINS = 8
 
 
@@ -149,8 +150,8 @@ def threads(folder, name):
 
 def rays(folder, names):
     print("### Shadow rays")
-    print("\nEnd to end: all rays of the assembly over all its CPU seconds. Bare: the same packets of 16, up to 200,000 from")
-    print("all over the room, through the occluder alone. One thread, in turn, medians of three.")
+    print("\nEnd to end: all rays of the assembly over all its CPU seconds. Bare: at most 200,000 of the same packets,")
+    print("from all over the room, through the occluder alone. One thread, in turn, medians of three.")
     rows = []
     for name in names:
         measured = Measured(folder, name)
@@ -179,8 +180,8 @@ def calibration(folder, names):
                 rows.append([patches, kind, count(c[kind + "_pairs"]), short(error), "", "", wrong])
     print("\nPartly visible pairs by their visible share; z = error / standard error.")
     table(["patches", "visible share", "pairs", "within 1.96", "rms z", "mean z"], bins)
-    print("Other pairs. Of free pairs the largest relative error, and how many have a blocked ray; of hidden ones how many")
-    print("have a free one.")
+    print("Other pairs. Of free pairs the largest relative error, and how many have a blocked ray among 256; of hidden")
+    print("ones how many have a free one.")
     table(["patches", "pairs", "number", "bound", "within it", "missed, audit", "missed, reference"], rows)
 
 
@@ -214,21 +215,70 @@ def solutions(folder, names):
     table(["patches", "probes / samples", "rho 0.3 and 0.8", "rho 0.99"], rows)
 
 
+def goals(folder):
+    """Whether what form factors should cost and be worth is reached: the figure, and its limit."""
+    rows = []
+
+    def goal(what, found, limit, at_least=False):
+        met = found is not None and (found >= limit if at_least else found <= limit)
+        figures = ["-" if found is None else short(found, 3), short(limit, 3)]
+        rows.append([what, *figures, "met" if met else "not met"])
+
+    for name, limits in ((SMALL, {1e-3: 0.25, 3e-4: 0.4}), ("curve_closed_room_20_0", {1e-3: 1.2, 3e-4: 3, 1e-4: 5})):
+        measured = Measured(folder, name)
+        for row_sums, limit in limits.items():
+            best = cheapest(measured, row_sums)
+            found = best[2]["cpu_s"] if best else None
+            goal(f"{count(measured.patches())} patches, CPU s to row sums within {short(row_sums)}", found, limit)
+    within = [run for run in Measured(folder, "errors_closed_room_10_0").of("entries") if run[2]["cpu_s"] <= 0.4]
+    for name, limit in (("l1", 2e-3), ("p999", 1.5e-4), ("matvec", 1e-3)):
+        found = min((run[2][name] for run in within), default=None)
+        goal(f"1,416 patches, {name} of the entries in 0.4 CPU s", found, limit)
+    small, large = cheapest(Measured(folder, SMALL)), cheapest(Measured(folder, LARGE))
+    if small and large:
+        ends = [(c["patches"], c["cpu_s"]) for _, _, c in (small, large)]
+        goal("exponent of the growth", exponent(*ends), 2.1)
+    both = [c for _, _, c in Measured(folder, LARGE).of("assemble.*threads:2") if c["row_sum_rms"] <= ROW_SUM_GOAL]
+    goal("22,656 patches, wall s on two threads", min((c["wall_s"] for c in both), default=None), 30)
+    goal("22,656 patches, peak memory in GB", min((c["peak_bytes"] / 1e9 for c in both), default=None), 1.3)
+    for p, s, c in Measured(folder, "rays_closed_room_20_0").of("shadow_rays"):
+        goal(f"rays end to end / bare, {p} / {s}", c["share"], 0.5, at_least=True)
+    for p, s, c in Measured(folder, "threads_closed_room_20_0").of("second_thread"):
+        goal(f"gain of the second thread, {p} / {s}", c["gain"], 1.8, at_least=True)
+    for name in ERRORS:
+        measured = Measured(folder, name)
+        for _, _, c in measured.of("calibration"):
+            label = f"{count(measured.patches())} patches"
+            goal(f"{label}, groups of partial pairs out of calibration", wrong_groups(c), 0)
+            least = min(c["visible_within"], c["occluded_within"])
+            goal(f"{label}, unanimous pairs within their bound", least, 0.95, at_least=True)
+        for p, s, c in measured.of("solutions"):
+            goal(f"{count(measured.patches())} patches, {p} / {s}, solution", max(c["mixed"], c["bright"]), 1e-3)
+    table(["", "found", "limit", ""], rows)
+
+
+def wrong_groups(c):
+    """Of all partial pairs and of the bins with at least 300: less than 90 or more than 99 % within, or a wrong rms z."""
+    groups = [g for g in ("partial", *(f"bin{b}" for b in range(BINS))) if c[g + "_pairs"] >= 300]
+    return sum(not (0.9 <= c[g + "_within"] <= 0.99 and 0.8 <= c[g + "_rms_z"] <= 1.25) for g in groups)
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[1])
-    errors = ["errors_closed_room_10_0", "errors_closed_room_20_0", "errors_two_rooms_2000"]
     curves(folder, "Two blocks", [SMALL, "curve_closed_room_20_0", LARGE])
     curves(folder, "Two rooms with furniture", ["curve_two_rooms_2000", "curve_two_rooms_8000"])
     curves(folder, "500 boxes", ["curve_boxes_500_5000"])
     growth(folder)
     threads(folder, "threads_closed_room_20_0")
     rays(folder, ["rays_closed_room_20_0", "rays_two_rooms_2000"])
-    entries(folder, errors)
-    calibration(folder, errors)
-    unoccluded(folder, errors)
-    solutions(folder, errors)
+    entries(folder, ERRORS)
+    calibration(folder, ERRORS)
+    unoccluded(folder, ERRORS)
+    solutions(folder, ERRORS)
+    print("### Goals")
+    goals(folder)
 
 
 if __name__ == "__main__":
