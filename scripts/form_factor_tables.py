@@ -258,7 +258,7 @@ def goals(folder):
 
 
 def wrong_groups(c):
-    """Of all partial pairs and of the bins with at least 300: less than 90 or more than 99 % within, or a wrong rms z."""
+    """Of all partial pairs and the bins with at least 300: not 90 to 99 % within, or an rms z not near 1."""
     groups = [g for g in ("partial", *(f"bin{b}" for b in range(BINS))) if c[g + "_pairs"] >= 300]
     return sum(not (0.9 <= c[g + "_within"] <= 0.99 and 0.8 <= c[g + "_rms_z"] <= 1.25) for g in groups)
 
