@@ -7,6 +7,7 @@ import pathlib
 import sys
 
 MESHES = pathlib.Path(__file__).resolve().parent.parent / "meshes"
+SCRIPT = pathlib.Path(sys.argv[0]).name
 
 
 class Material:
@@ -41,7 +42,7 @@ class Model:
 
     def obj(self):
         head = [f"# {line}" for line in self.comment]
-        head.append(f"# {self.faces} polygons, {len(self.vertices)} vertices. Written by scripts/make_meshes.py")
+        head.append(f"# {self.faces} polygons, {len(self.vertices)} vertices. Written by scripts/{SCRIPT}")
         head.append(f"mtllib {self.name}.mtl")
         vertices = ["v " + " ".join(v) for v in self.vertices]
         return "\n".join(head + vertices + self.lines) + "\n"

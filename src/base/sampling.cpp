@@ -79,7 +79,8 @@ Point square_to_quad(const std::array<Point, 4>& corners, double u, double v) {
   const double first_area = (p1 - p0).cross(p2 - p0).norm();
   const double second_area = (p2 - p0).cross(p3 - p0).norm();
   const double first_share = first_area / (first_area + second_area);
-  const bool in_first = u < first_share;
+  // A triangle has no second one, not even for u = 1, to which single precision may round.
+  const bool in_first = u < first_share || !(second_area > 0);
   const double stretched = in_first ? u / first_share : (u - first_share) / (1 - first_share);
   const Eigen::Vector2d b = square_to_triangle(stretched, v);
   return in_first ? p0 + b[0] * (p1 - p0) + b[1] * (p2 - p0) : p0 + b[0] * (p2 - p0) + b[1] * (p3 - p0);

@@ -58,7 +58,8 @@ std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int gr
   std::vector<Ray> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto& start = samples[k / static_cast<std::size_t>(size) * static_cast<std::size_t>(size)];
+    // The first points of the sequence, as every eighth alone would lie in an eighth of the patch.
+    const auto& start = samples[k / static_cast<std::size_t>(size)];
     rays.push_back({square_to_quad(corners.points, start[0], start[1]),
                     frame * square_to_cosine_hemisphere(samples[k][2], samples[k][3]), mesh.polygon[patch]});
   }

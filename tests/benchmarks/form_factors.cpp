@@ -1,79 +1,145 @@
-// What the accuracy of form factors costs: raw row sums and, where a reference file is given, the entries of the closed
-// room against CPU seconds of the assembly alone.
-// usage: benchmark_form_factors ROOM.obj MAX_EDGE [--benchmark_...]    with a MAX_EDGE of 9 every polygon is one patch
+// What form factors cost: the error of raw row sums against CPU seconds of the assembly alone, what a second thread
+// gains, memory, and how much of the time rays take.
+// usage: benchmark_form_factors ROOM.obj PATCHES [--benchmark_...]    with 0 PATCHES every polygon is one patch
 #include "patchlight/base/parallel.h"
-#include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 
+#include "benchmarks/room.h"
+#include "benchmarks/shadow_packets.h"
+
 #include <benchmark/benchmark.h>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <utility>
 
 namespace {
 
 using namespace patchlight;
+using namespace patchlight::benchmarks;
 
-struct Room {
-  Scene scene;
-  PatchMesh mesh;
+struct Cost {
+  Assembly assembly;
+  double cpu = 0;
+  double wall = 0;
 };
 
-Room read_room(const char* file, double max_edge) {
-  Room room{read_scene(file, {}), {}};
-  room.mesh = tessellate(room.scene, kept_sides(room.scene, Sides::front), max_edge);
-  return room;
+// Set-up of the occluder included; seconds.
+Cost measured_assembly(const Room& room, const AssemblyOptions& options, int threads) {
+  const ThreadLimit limit(threads);
+  const double cpu = cpu_seconds();
+  const double wall = wall_seconds();
+  const Occluder occluder(room.scene);
+  Assembly assembly = assemble_exchange_areas(room.mesh, occluder, options);
+  return {std::move(assembly), cpu_seconds() - cpu, wall_seconds() - wall};
 }
 
-// Root mean square of the row sums' distance from 1, by patch: the room is closed.
-double row_sum_error(const PatchMesh& mesh, const ExchangeAreas& S) {
-  const Eigen::VectorXd sums = row_sums(S);
-  double square = 0;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) square += std::pow(sums[i] / mesh.area[i] - 1, 2);
-  return std::sqrt(square / mesh.size());
+AssemblyOptions options_of(const benchmark::State& state) {
+  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 1};
 }
 
 void assemble(benchmark::State& state, const Room& room) {
-  const auto probes = static_cast<int>(state.range(0));
-  const auto samples = static_cast<int>(state.range(1));
-  const ThreadLimit threads(static_cast<int>(state.range(2)));
   for (auto _ : state) {
-    const double start = cpu_seconds();
-    const Occluder occluder(room.scene);
-    const Assembly assembly = assemble_exchange_areas(room.mesh, occluder, {probes, samples, 1});
-    state.SetIterationTime(cpu_seconds() - start);
-    state.counters["row_sum_rms"] = row_sum_error(room.mesh, assembly.exchange_areas);
-    state.counters["rays_M"] = 1e-6 * static_cast<double>(assembly.counts.shadow_rays);
-    state.counters["facing_M"] = 1e-6 * static_cast<double>(assembly.counts.facing_pairs);
-    state.counters["near_M"] = 1e-6 * static_cast<double>(assembly.counts.near_pairs);
-    state.counters["free_M"] = 1e-6 * static_cast<double>(assembly.counts.free_pairs);
-    state.counters["partial_M"] = 1e-6 * static_cast<double>(assembly.counts.partial_pairs);
+    const Cost cost = measured_assembly(room, options_of(state), static_cast<int>(state.range(2)));
+    state.SetIterationTime(cost.cpu);
+    const RowSumError error = row_sum_error(room, cost.assembly.exchange_areas);
+    const AssemblyCounts& counts = cost.assembly.counts;
+    state.counters["patches"] = room.mesh.size();
+    state.counters["cpu_s"] = cost.cpu;
+    state.counters["wall_s"] = cost.wall;
+    state.counters["row_sum_rms"] = error.rms;
+    state.counters["row_sum_max"] = error.largest;
+    state.counters["rays"] = static_cast<double>(counts.shadow_rays);
+    state.counters["facing"] = static_cast<double>(counts.facing_pairs);
+    state.counters["near"] = static_cast<double>(counts.near_pairs);
+    state.counters["free"] = static_cast<double>(counts.free_pairs);
+    state.counters["partial"] = static_cast<double>(counts.partial_pairs);
+    state.counters["hidden"] = static_cast<double>(counts.hidden_pairs);
+    state.counters["peak_bytes"] = peak_memory();
   }
+}
+
+// Three pairs of runs, one after the other, so that other work on the machine hits both alike.
+void second_thread(benchmark::State& state, const Room& room) {
+  for (auto _ : state) {
+    std::vector<double> gain;
+    std::vector<double> one_wall;
+    std::vector<double> two_wall;
+    std::vector<double> processors;
+    for (int k = 0; k < 3; ++k) {
+      const Cost one = measured_assembly(room, options_of(state), 1);
+      const Cost two = measured_assembly(room, options_of(state), 2);
+      gain.push_back(one.wall / two.wall);
+      one_wall.push_back(one.wall);
+      two_wall.push_back(two.wall);
+      processors.push_back(two.cpu / two.wall);
+    }
+    state.SetIterationTime(median(two_wall));
+    state.counters["patches"] = room.mesh.size();
+    state.counters["gain"] = median(gain);
+    state.counters["wall_1"] = median(one_wall);
+    state.counters["wall_2"] = median(two_wall);
+    state.counters["processors_2"] = median(processors);
+  }
+}
+
+double seconds_to_trace(const Occluder& occluder, const std::vector<ShadowPacket>& packets) {
+  const double start = cpu_seconds();
+  for (const ShadowPacket& packet : packets) benchmark::DoNotOptimize(occluder.occluded(packet));
+  return cpu_seconds() - start;
+}
+
+// Rays per second of the whole assembly and of the tracing of the same rays alone, in turn, on one thread.
+void shadow_rays(benchmark::State& state, const Room& room) {
+  constexpr std::size_t most_packets = 200000;
+  AssemblyOptions keeping = options_of(state);
+  keeping.keep_sampled = true;
+  const Occluder occluder(room.scene);
+  const auto packets = shadow_packets(room, occluder.frame(), keeping,
+                                      measured_assembly(room, keeping, 0).assembly.sampled, most_packets);
+  const double traced = static_cast<double>(packets.size() * ShadowPacket::size);
+  const ThreadLimit one(1);
+  for (auto _ : state) {
+    std::vector<double> whole;
+    std::vector<double> bare;
+    std::vector<double> share;
+    for (int k = 0; k < 3; ++k) {
+      const Cost cost = measured_assembly(room, options_of(state), 1);
+      whole.push_back(static_cast<double>(cost.assembly.counts.shadow_rays) / cost.cpu);
+      bare.push_back(traced / seconds_to_trace(occluder, packets));
+      share.push_back(whole.back() / bare.back());
+    }
+    state.SetIterationTime(traced / median(bare));
+    state.counters["patches"] = room.mesh.size();
+    state.counters["rays_per_s"] = median(whole);
+    state.counters["bare_rays_per_s"] = median(bare);
+    state.counters["share"] = median(share);
+  }
+}
+
+template <typename Function>
+benchmark::internal::Benchmark* add(const char* name, Function function, const std::shared_ptr<Room>& room) {
+  return benchmark::RegisterBenchmark(name, [=](benchmark::State& state) { function(state, *room); })
+      ->Iterations(1)
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace
 
 int main(int count, char** values) {
   if (count < 3) {
-    std::fprintf(stderr, "usage: benchmark_form_factors ROOM.obj MAX_EDGE [--benchmark_...]\n");
+    std::fprintf(stderr, "usage: benchmark_form_factors ROOM.obj PATCHES [--benchmark_...]\n");
     return 1;
   }
-  const auto room = std::make_shared<Room>(read_room(values[1], std::stod(values[2])));
-  std::printf("%s: %u patches\n", values[1], room->mesh.size());
-  auto* const runs =
-      benchmark::RegisterBenchmark("assemble", [room](benchmark::State& state) { assemble(state, *room); });
-  runs->ArgNames({"probes", "samples", "threads"})->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
-  for (const auto& [probes, samples] :
-       {std::pair{2, 2}, {2, 8}, {4, 4}, {4, 16}, {8, 8}, {8, 16}, {16, 64}, {16, 128}}) {
-    runs->Args({probes, samples, 1});
+  const auto room = std::make_shared<Room>(read_room(values[1], std::stoul(values[2])));
+  auto* const curve = add("assemble", assemble, room)->ArgNames({"probes", "samples", "threads"});
+  auto* const gain = add("second_thread", second_thread, room)->ArgNames({"probes", "samples"});
+  auto* const rays = add("shadow_rays", shadow_rays, room)->ArgNames({"probes", "samples"});
+  for (const auto& [probes, samples] : settings()) {
+    curve->Args({probes, samples, 1});
+    curve->Args({probes, samples, 2});
+    gain->Args({probes, samples});
+    rays->Args({probes, samples});
   }
-  runs->Args({8, 16, 2});
-  values[2] = values[0];
-  int left = count - 2;
-  benchmark::Initialize(&left, values + 2);
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  return run(count, values, 3);
 }

@@ -67,6 +67,14 @@ TEST(SquareToQuad, HasTheAreaCentroidAsMean) {
   EXPECT_LT((mean - area_centroid(kite)).norm(), 3.0 / (1 << 10));
 }
 
+// Single precision rounds coordinates just below 1 to 1: the far side of the triangle, and of the quadrilateral.
+TEST(SquareToQuad, StaysInItAtTheEndOfTheSquare) {
+  const std::array<Point, 4> triangle{Point(0, 0, 0), Point(2, 0, 0), Point(0, 1, 0), Point(0, 1, 0)};
+  EXPECT_LT((square_to_quad(triangle, 1, 0.5) - Point(1, 0.5, 0)).norm(), 1e-15);
+  const std::array<Point, 4> square{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
+  EXPECT_LT((square_to_quad(square, 1, 0.5) - Point(0.5, 1, 0)).norm(), 1e-15);
+}
+
 TEST(SquareToCosineHemisphere, HasItsDensity) {
   // P(cos theta > c) = 1 - c^2; and the density integrates to 1 over the hemisphere (midpoint rule in cos theta).
   const auto points = scrambled_sobol(4096, 11);
