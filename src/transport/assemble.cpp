@@ -19,9 +19,20 @@ namespace patchlight {
 namespace {
 
 // One of so many sampled pairs is sampled a second time, to learn the error of all: some thousand pairs, or one in 256.
-std::uint32_t audit_interval(PatchIndex size) {
+// Of estimates, which are fewer and differ more, at least one in 16.
+std::uint32_t audit_interval(PatchIndex size, bool estimated) {
   const double pairs = static_cast<double>(size) * size;
-  return static_cast<std::uint32_t>(std::clamp(pairs / 16384, 4.0, 256.0));
+  return static_cast<std::uint32_t>(std::clamp(pairs / 16384, 4.0, estimated ? 16.0 : 256.0));
+}
+
+// Of pairs of which no ray carries weight, because their ends hardly ever see each other's fronts, all rays count
+// alike.
+EntryKind kind_of(const Pair& pair) {
+  const bool weightless = pair.free_rays + pair.blocked_rays == 0;
+  const bool any_free = (weightless ? pair.idle_free_rays : pair.free_rays) > 0;
+  const bool any_blocked = (weightless ? pair.idle_blocked_rays : pair.blocked_rays) > 0;
+  if (any_free && any_blocked) return EntryKind::estimated;
+  return any_free ? EntryKind::all_visible : EntryKind::all_hidden;
 }
 
 // What one row of clusters adds to the result.
@@ -80,35 +91,32 @@ bool Assembler::is_free(std::size_t row, std::size_t column) const {
 
 void Assembler::count(const Pair& pair, RowFacts& facts) const {
   facts.counts.shadow_rays += pair.rays();
-  facts.counts.partial_pairs += pair.is_partial() ? 1 : 0;
-  facts.counts.blocked_pairs += pair.free_rays == 0 && pair.blocked_rays > 0 ? 1 : 0;
+  facts.counts.partial_pairs += kind_of(pair) == EntryKind::estimated ? 1 : 0;
+  facts.counts.blocked_pairs += kind_of(pair) == EntryKind::all_hidden ? 1 : 0;
 }
 
 // Samples one of many pairs again, independently: the difference tells the error of pairs like it.
 void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) const {
-  if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size()) != 0) return;
+  const bool estimated = kind_of(pair) == EntryKind::estimated;
+  if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size(), estimated) != 0) return;
   const Pair again = sampler.sampled_again(pair);
   facts.counts.shadow_rays += again.rays();
   // Patches nearly in one plane may have nothing to compare with.
   if (!(again.unoccluded > 0)) return;
   const double share = exchange_area / again.unoccluded;
   const double difference = share - sampler.exchange_area(again) / again.unoccluded;
-  if (pair.is_partial()) {
+  if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
     ++facts.error.partial_pairs[bin];
-    facts.error.squares[bin] += difference * difference / 2;
+    facts.error.squares[bin] += pair.effort * difference * difference / 2;
     return;
   }
-  SamplingError::Unanimous& unanimous = pair.free_rays > 0 ? facts.error.visible : facts.error.occluded;
+  const bool visible = kind_of(pair) == EntryKind::all_visible;
+  SamplingError::Unanimous& unanimous = visible ? facts.error.visible : facts.error.occluded;
   ++unanimous.pairs;
-  unanimous.missed += (pair.free_rays > 0 ? again.blocked_rays : again.free_rays) > 0 ? 1 : 0;
+  unanimous.missed += (visible ? again.blocked_rays : again.free_rays) > 0 ? 1 : 0;
   constexpr std::size_t steps = SamplingError::Unanimous::steps;
   ++unanimous.by_share[static_cast<std::size_t>(std::min(std::abs(difference) * steps, steps - 1.0))];
-}
-
-EntryKind kind_of(const Pair& pair) {
-  if (pair.is_partial()) return EntryKind::estimated;
-  return pair.free_rays > 0 ? EntryKind::all_visible : EntryKind::all_hidden;
 }
 
 // The entries of one cluster with itself and all later ones. Until the sampling error is known, the unoccluded exchange
@@ -185,7 +193,8 @@ Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const As
     rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
   });
   for (const RowFacts& row : rows) result = with_row(std::move(result), row);
-  result.entry_errors = with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error);
+  result.entry_errors =
+      with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error, mesh.area);
   return result;
 }
 

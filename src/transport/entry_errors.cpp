@@ -47,7 +47,8 @@ void EntryErrors::set(PatchIndex i, PatchIndex j, EntryKind kind, double standar
   codes_[offset(i, j)] = static_cast<std::uint8_t>(code);
 }
 
-EntryErrors with_sampling_error(EntryErrors unoccluded, const ExchangeAreas& S, const SamplingError& error) {
+EntryErrors with_sampling_error(EntryErrors unoccluded, const ExchangeAreas& S, const SamplingError& error,
+                                std::span<const double> area) {
   EntryErrors errors = std::move(unoccluded);
   parallel_for(errors.size(), [&](std::size_t row) {
     const auto j = static_cast<PatchIndex>(row);
@@ -55,7 +56,8 @@ EntryErrors with_sampling_error(EntryErrors unoccluded, const ExchangeAreas& S, 
       if (errors.kind(i, j) != EntryKind::estimated) continue;
       const double U = errors.standard_error(i, j);
       const double visible_share = static_cast<double>(S.at(i, j)) / U;
-      errors.set(i, j, EntryKind::estimated, U * standard_error(error, visible_share));
+      const std::uint32_t effort = sampling_effort(U / std::min(area[i], area[j]));
+      errors.set(i, j, EntryKind::estimated, U * standard_error(error, visible_share, effort));
     }
   });
   return errors;

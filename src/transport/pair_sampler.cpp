@@ -8,18 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <tuple>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Pairs with large form factors are few and weigh much: the error of a row is smallest for a given number of rays when
-// each pair gets rays in proportion to its form factor. Adjacent pairs get at least four times the usual number.
-constexpr std::uint32_t adjacent_effort = 4;
 constexpr std::uint32_t most_effort = 16;
-static const double usual_form_factor = getenv("F0") ? 1 / atof(getenv("F0")) : 1.0 / 256;
 
 constexpr std::size_t packet = ShadowPacket::size;
 
@@ -88,7 +83,6 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
           .second = j,
           .set = table_.of_pair(keys_[i], keys_[j]),
           .unoccluded = unoccluded,
-          .effort = adjacent ? adjacent_effort : 1,
           .is_adjacent = adjacent};
 }
 
@@ -121,6 +115,11 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
 // The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
 void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   const std::size_t count = end - begin;
+  constexpr std::size_t most_segments = 4096;
+  if (pairs.size() > 1 && pairs.size() * count > most_segments) {
+    trace_adjacent(pairs.first(pairs.size() / 2), begin, end);
+    return trace_adjacent(pairs.subspan(pairs.size() / 2), begin, end);
+  }
   std::vector<Segment> segments;
   std::vector<float> weights;
   segments.reserve(pairs.size() * count);
@@ -141,48 +140,46 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
   for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0);
 }
 
-// Samples [begin, end) times their effort of pairs that are all of one kind and effort.
+// Samples [begin, end) of pairs that are sampled in one way; none when there are that many already.
 void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
-  if (begin >= end) return;
+  if (pairs.empty() || begin >= end) return;
   if (pairs.front().is_adjacent) return trace_adjacent(pairs, begin, end);
   trace_packets(pairs, begin, end);
 }
 
-// By the form factor from the smaller patch: 1, 4 or 16.
+// By the form factor from the smaller patch, or what the rays so far tell of it.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
   const double first = shapes_[pair.first].area;
   const double second = shapes_[pair.second].area;
-  const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded)
-                                                 : first * second * (pair.free_weight + pair.blocked_weight) /
-                                                       static_cast<double>(pair.rays());
-  const double form_factor = unoccluded / std::min(first, second);
-  std::uint32_t effort = pair.effort;
-  while (effort < most_effort && form_factor > effort * usual_form_factor) effort *= 4;
-  return effort;
+  const double mean_weight = static_cast<double>(pair.free_weight + pair.blocked_weight) / pair.rays();
+  const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded) : first * second * mean_weight;
+  return sampling_effort(unoccluded / std::min(first, second));
 }
 
 std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
   // 1. A few probes for every pair.
-  for_groups(pairs, [&](std::span<Pair> group) { trace(group, 0, group.front().effort * probes_); });
+  const auto others = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_adjacent; });
+  trace({pairs.begin(), others}, 0, probes_);
+  trace({others, pairs.end()}, 0, probes_);
 
   // 2. More where the form factor is large.
-  const auto raised =
-      std::partition(pairs.begin(), pairs.end(), [&](const Pair& p) { return effort_for(p) > p.effort; });
-  const auto known = [](const Pair& pair) { return pair.rays(); };
-  for (auto p = pairs.begin(); p != raised; ++p) p->effort = effort_for(*p);
-  for_groups({pairs.begin(), raised},
-             [&](std::span<Pair> group) { trace(group, known(group.front()), group.front().effort * probes_); });
+  for (Pair& pair : pairs) pair.effort = effort_for(pair);
+  const auto usual = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.effort > 1; });
+  for_groups({pairs.begin(), usual},
+             [&](std::span<Pair> group) { trace(group, probes_, group.front().effort * probes_); });
 
   // 3. The remaining samples where the probes disagree.
-  const auto unanimous = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_partial(); });
-  for_groups({pairs.begin(), unanimous}, [&](std::span<Pair> group) {
-    trace(group, group.front().effort * probes_, group.front().effort * samples_);
-  });
+  const auto partial = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_partial(); });
+  for (auto pair = pairs.begin(); pair != partial; ++pair) {
+    if (pair->unoccluded < 0) pair->unoccluded = exact(pair->first, pair->second);
+    pair->effort = effort_for(*pair);
+  }
+  for_groups({pairs.begin(), partial},
+             [&](std::span<Pair> group) { trace(group, group.front().rays(), group.front().effort * samples_); });
 
   // 4. What was not worth computing for pairs that see nothing of each other.
-  for (Pair& pair : pairs) {
-    if (pair.unoccluded < 0 && (pair.free_rays > 0 || pair.is_partial()))
-      pair.unoccluded = exact(pair.first, pair.second);
+  for (auto pair = partial; pair != pairs.end(); ++pair) {
+    if (pair->unoccluded < 0 && pair->free_rays > 0) pair->unoccluded = exact(pair->first, pair->second);
   }
   return pairs;
 }

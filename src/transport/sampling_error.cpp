@@ -26,7 +26,12 @@ bool was_audited(const SamplingError& error) {
                          error.visible.pairs + error.occluded.pairs) > 0;
 }
 
-double standard_error(const SamplingError& error, double visible_share) {
+std::uint32_t sampling_effort(double form_factor) {
+  constexpr double large = 1.0 / 256;
+  return form_factor > 4 * large ? 16 : form_factor > large ? 4 : 1;
+}
+
+double standard_error(const SamplingError& error, double visible_share, std::uint32_t effort) {
   constexpr std::uint64_t enough = 30;
   const auto bin = static_cast<std::size_t>(
       std::clamp(visible_share * SamplingError::bins, 0.0, static_cast<double>(SamplingError::bins - 1)));
@@ -36,7 +41,7 @@ double standard_error(const SamplingError& error, double visible_share) {
     square = std::accumulate(error.squares.begin(), error.squares.end(), 0.0);
     pairs = std::accumulate(error.partial_pairs.begin(), error.partial_pairs.end(), std::uint64_t{0});
   }
-  return pairs > 0 ? std::sqrt(square / static_cast<double>(pairs)) : 1;
+  return pairs > 0 ? std::sqrt(square / static_cast<double>(pairs) / effort) : 1;
 }
 
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {

@@ -49,14 +49,15 @@ TracedRays traced_rays(const Room& room, const Occluder& occluder, PatchIndex i,
 
 }  // namespace
 
-PartialPairs partial_pairs(const Assembly& assembly, const ExchangeAreas& reference) {
+PartialPairs partial_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,
+                           const ExchangeAreas& reference) {
   PartialPairs result;
-  for (const SampledEntry& entry : assembly.sampled) {
+  for (const SampledEntry& entry : sampled) {
     if (!entry.is_partial || entry.unoccluded <= 0) continue;
     const double found = assembly.exchange_areas.at(entry.first, entry.second);
     const double share = found / entry.unoccluded;
     const double error = found - reference.at(entry.first, entry.second);
-    const double z = error / (standard_error(assembly.error, share) * entry.unoccluded);
+    const double z = error / assembly.entry_errors.standard_error(entry.first, entry.second);
     const double bin = std::clamp(share * SamplingError::bins, 0.0, SamplingError::bins - 1.0);
     add(result.all, z);
     add(result.bins[static_cast<std::size_t>(bin)], z);
@@ -66,17 +67,17 @@ PartialPairs partial_pairs(const Assembly& assembly, const ExchangeAreas& refere
   return result;
 }
 
-UnanimousPairs unanimous_pairs(const Assembly& assembly, const ExchangeAreas& reference, bool visible) {
+UnanimousPairs unanimous_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,
+                               const ExchangeAreas& reference, bool visible) {
   const SamplingError::Unanimous& audit = visible ? assembly.error.visible : assembly.error.occluded;
   UnanimousPairs result;
   result.bound = bound_on_miss(audit);
   result.audited_rate = static_cast<double>(audit.missed) / std::max(1.0, static_cast<double>(audit.pairs));
-  for (const SampledEntry& entry : assembly.sampled) {
+  for (const SampledEntry& entry : sampled) {
     const double found = assembly.exchange_areas.at(entry.first, entry.second);
     if (entry.is_partial || (found > 0) != visible) continue;
     const double exact = reference.at(entry.first, entry.second);
-    // Of a pair that counts as hidden the unoccluded value may be unknown: then the reference is at most that.
-    const double unoccluded = std::max<double>(entry.unoccluded, exact);
+    const double unoccluded = std::max(entry.unoccluded, exact);
     ++result.pairs;
     result.within += std::abs(found - exact) <= result.bound * unoccluded ? 1 : 0;
     result.rate += std::abs(found - exact) > 1e-6 * unoccluded ? 1 : 0;
@@ -88,11 +89,6 @@ UnanimousPairs unanimous_pairs(const Assembly& assembly, const ExchangeAreas& re
 
 DecidedPairs decided_pairs(const Room& room, const Assembly& assembly) {
   const PatchMesh& mesh = room.mesh;
-  const std::size_t size = mesh.size();
-  std::vector<bool> is_sampled(size * size, false);
-  for (const SampledEntry& entry : assembly.sampled) {
-    is_sampled[std::min(entry.first, entry.second) * size + std::max(entry.first, entry.second)] = true;
-  }
   const std::vector<PatchShape> shapes = patch_shapes(mesh);
   const Occluder occluder(room.scene);
   DecidedPairs result;
@@ -102,7 +98,7 @@ DecidedPairs decided_pairs(const Room& room, const Assembly& assembly) {
     const PatchIndex b = hash({draw, 1}) % mesh.size();
     const PatchIndex i = std::min(a, b);
     const PatchIndex j = std::max(a, b);
-    if (mesh.polygon[i] == mesh.polygon[j] || is_sampled[i * size + j]) continue;
+    if (mesh.polygon[i] == mesh.polygon[j] || assembly.entry_errors.kind(i, j) != EntryKind::exact) continue;
     if (orientation(shapes[i], shapes[j]) == Orientation::averted) continue;
     const double found = assembly.exchange_areas.at(i, j);
     if (found > 0 && result.free < drawn_pairs) {

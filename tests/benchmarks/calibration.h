@@ -3,6 +3,7 @@
 #include "patchlight/transport/assemble.h"
 
 #include "benchmarks/room.h"
+#include "benchmarks/sampled_entries.h"
 
 #include <array>
 #include <cstddef>
@@ -22,7 +23,8 @@ struct PartialPairs {
   Spread all;
   std::array<Spread, SamplingError::bins> bins;
 };
-PartialPairs partial_pairs(const Assembly& assembly, const ExchangeAreas& reference);
+PartialPairs partial_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,
+                           const ExchangeAreas& reference);
 
 /// Every pair whose probes agreed.
 struct UnanimousPairs {
@@ -32,7 +34,8 @@ struct UnanimousPairs {
   double audited_rate = 0;  ///< share of the audited ones where the probes missed something
   double rate = 0;          ///< share of all where they did, by the reference
 };
-UnanimousPairs unanimous_pairs(const Assembly& assembly, const ExchangeAreas& reference, bool visible);
+UnanimousPairs unanimous_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,
+                               const ExchangeAreas& reference, bool visible);
 
 /// Pairs that were decided without a ray, of which some thousand are drawn and have rays traced between them.
 struct DecidedPairs {

@@ -10,6 +10,7 @@
 #include "benchmarks/entry_errors.h"
 #include "benchmarks/reference.h"
 #include "benchmarks/room.h"
+#include "benchmarks/sampled_entries.h"
 #include "benchmarks/solution_error.h"
 #include "benchmarks/unoccluded.h"
 
@@ -34,7 +35,7 @@ Assembly assembled(const Work& work, const AssemblyOptions& options) {
 
 Assembly assembled_by_default(const Work& work) {
   AssemblyOptions options;
-  options.keep_sampled = true;
+  options.keep_errors = true;
   return assembled(work, options);
 }
 
@@ -44,7 +45,7 @@ void entries(benchmark::State& state, const Work& work) {
     const double start = cpu_seconds();
     const Assembly assembly = assembled(work, {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 1});
     state.counters["cpu_s"] = cpu_seconds() - start;
-    const EntryErrors errors = entry_errors(work.room.mesh, assembly.exchange_areas, work.reference);
+    const auto errors = entry_errors(work.room.mesh, assembly.exchange_areas, work.reference);
     state.counters["patches"] = work.room.mesh.size();
     state.counters["row_sum_rms"] = row_sum_error(work.room, assembly.exchange_areas).rms;
     state.counters["l1"] = errors.l1;
@@ -74,14 +75,15 @@ void add(benchmark::State& state, const std::string& prefix, const Spread& sprea
 void calibration(benchmark::State& state, const Work& work) {
   for (auto _ : state) {
     const Assembly assembly = assembled_by_default(work);
-    const PartialPairs partial = partial_pairs(assembly, work.reference);
+    const std::vector<SampledEntry> sampled = sampled_entries(work.room, assembly);
+    const PartialPairs partial = partial_pairs(sampled, assembly, work.reference);
     state.counters["patches"] = work.room.mesh.size();
     add(state, "partial", partial.all);
     for (std::size_t bin = 0; bin < partial.bins.size(); ++bin) {
       add(state, "bin" + std::to_string(bin), partial.bins[bin]);
     }
     for (const bool visible : {true, false}) {
-      const UnanimousPairs pairs = unanimous_pairs(assembly, work.reference, visible);
+      const UnanimousPairs pairs = unanimous_pairs(sampled, assembly, work.reference, visible);
       const std::string prefix = visible ? "visible" : "occluded";
       state.counters[prefix + "_pairs"] = pairs.pairs;
       state.counters[prefix + "_within"] = pairs.within;

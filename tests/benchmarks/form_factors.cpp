@@ -92,10 +92,10 @@ double seconds_to_trace(const Occluder& occluder, const std::vector<ShadowPacket
 void shadow_rays(benchmark::State& state, const Room& room) {
   constexpr std::size_t most_packets = 200000;
   AssemblyOptions keeping = options_of(state);
-  keeping.keep_sampled = true;
+  keeping.keep_errors = true;
   const Occluder occluder(room.scene);
-  const auto packets = shadow_packets(room, occluder.frame(), keeping,
-                                      measured_assembly(room, keeping, 0).assembly.sampled, most_packets);
+  const auto sampled = sampled_entries(room, measured_assembly(room, keeping, 0).assembly);
+  const auto packets = shadow_packets(room, occluder.frame(), keeping, sampled, most_packets);
   const double traced = static_cast<double>(packets.size() * ShadowPacket::size);
   const ThreadLimit one(1);
   for (auto _ : state) {

@@ -4,6 +4,7 @@
 #include "patchlight/visibility/occluder.h"
 
 #include "benchmarks/room.h"
+#include "benchmarks/sampled_entries.h"
 
 #include <vector>
 

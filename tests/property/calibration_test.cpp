@@ -76,16 +76,20 @@ TEST_F(Calibration, StandardErrorsOfPartlyVisiblePairsHold) {
   EXPECT_LT(std::sqrt(squares / pairs), 1.25);
 }
 
-// They are the unoccluded value times the audit's error at the visible share. The share's bin can be the next one, as U
-// is right to 6 %; the result is right to 12 %.
+// They are the unoccluded value times the audit's error at the visible share and effort. The share's bin and the effort
+// can be the next ones, as U is right to 6 %; the result is right to 12 %.
 TEST_F(Calibration, StandardErrorsAreThoseOfTheAudit) {
   for_pairs(EntryKind::estimated, [&](PatchIndex i, PatchIndex j) {
     const double U = unoccluded(i, j);
+    const double smaller = std::min(shapes[i].area, shapes[j].area);
     double lowest = 1;
     double highest = 0;
     for (const double share : {0.94 * entry(i, j) / U, entry(i, j) / U, 1.07 * entry(i, j) / U}) {
-      lowest = std::min(lowest, standard_error(assembly->error, share));
-      highest = std::max(highest, standard_error(assembly->error, share));
+      for (const double form_factor : {0.94 * U / smaller, 1.07 * U / smaller}) {
+        const double stated = standard_error(assembly->error, share, sampling_effort(form_factor));
+        lowest = std::min(lowest, stated);
+        highest = std::max(highest, stated);
+      }
     }
     EXPECT_GT(assembly->entry_errors.standard_error(i, j), 0.88 * U * lowest);
     EXPECT_LT(assembly->entry_errors.standard_error(i, j), 1.13 * U * highest);

@@ -35,7 +35,7 @@ struct ShortCuts {
 
 struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
-  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; adjacent pairs take four
+  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; of both sampling_effort()
                      ///< times as many; with Estimator::hemisphere rays of a patch. Both are rounded up to 2, 4, 8 or a
                      ///< multiple of 16, to fill packets
   std::uint64_t seed = 1;

@@ -14,7 +14,8 @@ struct SamplingError {
 
   /// Pairs whose probes disagreed, so that all samples were taken.
   std::array<std::uint64_t, bins> partial_pairs{};
-  std::array<double, bins> squares{};  ///< summed squares of half the difference of both estimates over U, times 2
+  std::array<double, bins> squares{};  ///< summed squares of half the difference of both estimates over U, times 2 and
+                                       ///< times the pair's effort
 
   /// Pairs whose probes agreed: counted as fully visible, or as fully occluded.
   struct Unanimous {
@@ -32,9 +33,14 @@ struct SamplingError {
 /// True when some pair was sampled a second time, so that there is something to tell.
 bool was_audited(const SamplingError& error);
 
-/// Standard error of an entry whose probes disagreed, as a share of U; that of all such pairs where fewer than 30 have
-/// about this visible share.
-double standard_error(const SamplingError& error, double visible_share);
+/// How many times the usual number of samples a pair takes: 1, 4 or 16, by its form factor without occluders, from the
+/// smaller patch. For a given number of rays the error of a row is smallest when each pair gets rays in proportion to
+/// its form factor.
+std::uint32_t sampling_effort(double form_factor);
+
+/// Standard error of an entry whose probes disagreed, as a share of U, when it took `effort` times the usual number of
+/// samples; from all such pairs where fewer than 30 have about this visible share.
+double standard_error(const SamplingError& error, double visible_share, std::uint32_t effort = 1);
 
 /// An upper bound, about 95 % sure for a pair chosen at random, of what probes that agreed had wrong, as a share of
 /// U: what 97 % of the pairs that were sampled again stayed below. 1 when fewer than 100 were.
