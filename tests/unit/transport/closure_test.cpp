@@ -1,0 +1,46 @@
+#include "patchlight/transport/closure.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+// An open scene whose raw entries are far off for one patch: patch 0 of 0.5 m^2 has exchange areas that add up to 2
+// m^2. One of them is 1 m^2, and as the least change weighs entries by their squares, nearly all of the 1.5 m^2 would
+// be taken from it: it would become negative. Patches 4 and 5 exceed their area by 4 %, as noise may.
+TEST(CloseExchangeAreas, CutsRowsFarAboveTheirAreaWhereTheLeastChangeIsNegative) {
+  constexpr PatchIndex size = 102;
+  ExchangeAreas raw(size);
+  raw.set(0, 1, 1.0F);
+  for (PatchIndex j = 2; j < size; ++j) raw.set(0, j, 0.01F);
+  raw.set(2, 3, 0.3F);
+  raw.set(4, 5, 1.03F);
+  Eigen::VectorXd area = Eigen::VectorXd::Ones(size);
+  area[0] = 0.5;
+  area[1] = 10;
+  const Eigen::VectorXd escaped = (1 - row_sums(raw).array() / area.array()).max(0.0).matrix();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
+
+  const ClosedExchangeAreas closed = close_exchange_areas(raw, area, {escaped, zero, zero, 256});
+
+  EXPECT_EQ(closed.method.find("rows above 1.1 cut to 1"), 0U) << closed.method;
+  const ExchangeAreas& S = closed.exchange_areas;
+  EXPECT_NEAR(row_sums(S)[0], 0.5, 1e-6);
+  EXPECT_NEAR(S.at(0, 1), 0.25, 1e-6);  // every entry of the row by the same factor, and still symmetric
+  EXPECT_NEAR(S.at(1, 0), 0.25, 1e-6);
+  EXPECT_NEAR(S.at(7, 0), 0.0025, 1e-8);
+  EXPECT_EQ(S.at(2, 3), raw.at(2, 3));
+  EXPECT_EQ(S.at(4, 5), raw.at(4, 5));
+  EXPECT_EQ(closed.remainder.cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(KeepExchangeAreas, ChangesNothingAndSaysWhy) {
+  ExchangeAreas raw(2);
+  raw.set(0, 1, 0.3F);
+  const ClosedExchangeAreas kept = keep_exchange_areas(raw, "not wanted");
+  EXPECT_EQ(kept.exchange_areas.at(0, 1), 0.3F);
+  EXPECT_EQ(kept.method, "none: not wanted");
+}
+
+}  // namespace
+}  // namespace patchlight
