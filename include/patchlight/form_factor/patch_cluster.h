@@ -59,7 +59,7 @@ struct ClusterRow {
                              ///< or so near in clusters so wide that single precision is too coarse
 };
 
-/// The exchange areas of patch `lane` of cluster `first` with the patches of `second`. Relative error below 1e-3: that
+/// The exchange areas of patch `lane` of cluster `first` with the patches of `second`. Relative error below 3e-3: that
 /// of the quadrature of unoccluded_exchange_area(), and rounding of 1e-6.
 ClusterRow cluster_row(const PatchCluster& first, int lane, const PatchCluster& second);
 
