@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what form factors cost and what they are worth, and prints the tables of docs/accuracy.md. Takes about half
+# Measures what form factors cost and what they are worth, and prints the tables of docs/form_factors.md. Takes about half
 # an hour. usage: scripts/form_factor_costs.sh OUT [--resume]
 # OUT takes the rooms, Google Benchmark's JSON, and the references: matrices with many more samples. References that are
 # there already are used again, with --resume JSON too; remove them when the sampling has changed.

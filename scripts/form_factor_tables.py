@@ -150,7 +150,8 @@ def threads(folder, name):
 
 def rays(folder, names):
     print("### Shadow rays")
-    print("\nEnd to end: all rays of the assembly over all its CPU seconds. Bare: at most 200,000 of the same packets,")
+    print("\nEnd to end: all rays of the assembly over all its CPU seconds. Bare: at most 200,000 packets of such")
+    print("rays, as if every pair took the usual number,")
     print("from all over the room, through the occluder alone. One thread, in turn, medians of three.")
     rows = []
     for name in names:

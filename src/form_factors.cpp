@@ -18,7 +18,9 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, const 
   PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
   require_memory(mesh.size(), used);
 
-  const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, plan.sides));
+  const Coverings coverings = find_coverings(scene, plan.sides);
+  for (const Problem& problem : problems_with_overlaps(scene, coverings)) plan.notes.push_back(problem.what);
+  const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
   Exchange exchange = trace_exchange(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
   if (plan.close) {
     ClosedExchangeAreas closed =

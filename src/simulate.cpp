@@ -5,6 +5,7 @@
 #include "patchlight/plan/close_lamps.h"
 #include "patchlight/solve/energy.h"
 #include "patchlight/transport/dense.h"
+#include "patchlight/transport/ray_rate.h"
 #include "patchlight/visibility/occluder.h"
 
 #include "memory.h"
@@ -47,6 +48,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   facts.counts = exchange.counts;
   facts.error = exchange.error;
   clock.finish(Stage::form_factors);
+  if (!known_exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
 
   // 4. Closure: each row sums up to what its patch sees.
   ClosedExchangeAreas closed = plan.close ? close_exchange(std::move(exchange), observer)

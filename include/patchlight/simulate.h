@@ -25,8 +25,9 @@ struct TransportFacts {
   Eigen::VectorXd row_sum;      ///< after
   LostShare lost;
   AssemblyCounts counts;
-  SamplingError error;  ///< of the sampled exchange areas, before closure
-  std::string closure;  ///< which method closed the rows
+  double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when too few rays were traced, or none
+  SamplingError error;              ///< of the sampled exchange areas, before closure
+  std::string closure;              ///< which method closed the rows
 };
 
 /// A solved scene.

@@ -40,7 +40,7 @@ void add_sampling_options(CLI::App& command, MeshOptions& options) {
   Request& request = options.request;
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
       [&request](const std::string& text) {
-        request.samples = static_cast<int>(whole_number("--samples", text, 4, 65536));
+        request.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
       });
   add(command, "--estimator", "auto|area|point-polygon|hemisphere|contour",
       "how form factors are found; all but auto are slow, for study: by\npoints on both patches, by points on one and "

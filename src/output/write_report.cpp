@@ -196,6 +196,7 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
   part["partly_occluded_pairs"] = transport.counts.partial_pairs;
   part["blocked_pairs"] = transport.counts.blocked_pairs;
   part["shadow_rays"] = transport.counts.shadow_rays;
+  part["bare_shadow_rays_per_second"] = transport.bare_rays_per_second;
   part["hidden_pairs"] = transport.counts.hidden_pairs;
   part["free_pairs"] = transport.counts.free_pairs;
   part["sampling_error"] = sampling_error_part(transport.error);

@@ -68,7 +68,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
     plan.max_edge = max_edge_for(scene, plan.sides, wanted);
   }
   // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
-  plan.probes = std::max(plan.probes, request.samples / 4);
+  plan.probes = std::max(plan.probes, request.samples / 2);
   plan.samples = std::max(request.samples, plan.probes);
   plan.seed = request.seed;
   plan.estimator = request.estimator;

@@ -7,18 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <tuple>
 #include <unsupported/Eigen/BVH>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// Heights above a plane as shares of the scene's extent: what counts as in the plane, and what as on the other's place.
-// They are those by which shadow rays tell before from behind.
+// Height above a plane, as a share of the scene's extent, that counts as in it: that by which shadow rays in single
+// precision tell before from behind.
 constexpr double in_plane_tolerance = 3e-7;
-constexpr double same_height_tolerance = 1e-9;
 
 // Overlaps smaller than this share of the smaller polygon are rounding at a common edge.
 constexpr double least_overlap = 1e-6;
@@ -31,11 +28,10 @@ struct Face {
   Vector normal;
   Box box;
   double area = 0;
-  std::array<bool, 2> emits{};  // per side
 };
 
-Face face_of(const Scene& scene, PolygonIndex p, bool emit_from_back) {
-  Face face{corner_points(scene, p), {}, {}, {}, 0, {}};
+Face face_of(const Scene& scene, PolygonIndex p) {
+  Face face{corner_points(scene, p), {}, {}, {}, 0};
   for (const auto& [a, b, c] : triangulate(face.corners)) {
     face.triangles.push_back({face.corners[a], face.corners[b], face.corners[c]});
   }
@@ -43,10 +39,6 @@ Face face_of(const Scene& scene, PolygonIndex p, bool emit_from_back) {
   face.area = area.norm();
   face.normal = area / face.area;
   for (const Point& corner : face.corners) face.box.extend(corner);
-  const Polygon& polygon = scene.polygons[p];
-  const auto emits = [&](MaterialIndex material) { return (scene.materials[material].exitance > 0).any(); };
-  face.emits[0] = emits(polygon.material);
-  face.emits[1] = polygon.back_material ? emits(*polygon.back_material) : emit_from_back && face.emits[0];
   return face;
 }
 
@@ -68,40 +60,24 @@ bool overlap(const Face& a, const Face& b) {
   return area > least_overlap * std::min(a.area, b.area);
 }
 
-// The height of `upper` along the normal of `lower` where both lie in one plane.
-std::optional<double> height_in_plane(const Face& lower, const Face& upper, double tolerance) {
-  if (std::abs(lower.normal.dot(upper.normal)) < parallel) return {};
-  const bool lower_is_larger = lower.area >= upper.area;
-  const Face& plane = lower_is_larger ? lower : upper;
-  const Face& other = lower_is_larger ? upper : lower;
-  double sum = 0;
-  for (const Point& corner : other.corners) {
-    const double height = plane.normal.dot(corner - plane.corners[0]);
-    if (std::abs(height) > tolerance) return {};
-    sum += height;
-  }
-  const double mean = sum / static_cast<double>(other.corners.size());
-  return lower_is_larger ? mean : -mean * (lower.normal.dot(upper.normal) > 0 ? 1 : -1);
+// The corners of the smaller one are measured over the plane of the larger one.
+bool in_one_plane(const Face& smaller, const Face& larger, double tolerance) {
+  return std::abs(smaller.normal.dot(larger.normal)) >= parallel &&
+         std::all_of(smaller.corners.begin(), smaller.corners.end(), [&](const Point& corner) {
+           return std::abs(larger.normal.dot(corner - larger.corners[0])) <= tolerance;
+         });
 }
 
-struct FaceSide {
-  PolygonIndex polygon;
-  Side side;
-};
-
-// Does `a` lie over `b` when both are at one height?
-bool comes_first(const std::vector<Face>& faces, const FaceSide& a, const FaceSide& b) {
-  const Face& first = faces[a.polygon];
-  const Face& second = faces[b.polygon];
-  const auto larger = [](const Face& p, const Face& q) { return p.area > (1 + 1e-9) * q.area; };
-  const auto rank = [](const Face& face, const FaceSide& of, bool is_larger) {
-    return std::make_tuple(!face.emits[static_cast<std::size_t>(of.side)], is_larger, of.polygon);
-  };
-  return rank(first, a, larger(first, second)) < rank(second, b, larger(second, first));
+// Does `a` lie over `b`? A strict order: of two polygons exactly one lies over the other.
+bool comes_first(const std::vector<Face>& faces, PolygonIndex a, PolygonIndex b) {
+  constexpr double rounding = 1 + 1e-9;
+  if (faces[a].area > rounding * faces[b].area) return false;
+  if (faces[b].area > rounding * faces[a].area) return true;
+  return a < b;
 }
 
-bool is_kept(const KeptSides& kept, const FaceSide& of) {
-  return (of.side == Side::front ? kept.front : kept.back)[of.polygon] != 0;
+bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
+  return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
 }
 
 // Visits all pairs of polygons whose boxes meet.
@@ -125,17 +101,14 @@ struct Search {
 
 // Notes on which sides of `lower` the other lies. True would end the search.
 bool Search::intersectObjectObject(PolygonIndex lower, PolygonIndex upper) {
-  if (lower == upper || !meet(faces[lower].box, faces[upper].box)) return false;
-  const auto height = height_in_plane(faces[lower], faces[upper], slack());
-  if (!height) return false;
-  const bool same_front = faces[lower].normal.dot(faces[upper].normal) > 0;
+  const Face& below = faces[lower];
+  const Face& over = faces[upper];
+  if (lower == upper || !meet(below.box, over.box) || !comes_first(faces, upper, lower)) return false;
+  if (!in_one_plane(over, below, slack()) || !overlap(below, over)) return false;
+  const bool same_front = below.normal.dot(over.normal) > 0;
   for (const Side side : {Side::front, Side::back}) {
-    const FaceSide below{lower, side};
-    const FaceSide over{upper, (side == Side::front) == same_front ? Side::front : Side::back};
-    if (!is_kept(kept, below) || !is_kept(kept, over)) continue;
-    const double above = (side == Side::front ? 1 : -1) * *height / extent;
-    const bool covers = std::abs(above) > same_height_tolerance ? above > 0 : comes_first(faces, over, below);
-    if (!covers || !overlap(faces[lower], faces[upper])) continue;
+    const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
+    if (!is_kept(kept, lower, side) || !is_kept(kept, upper, other_side)) continue;
     if (found.over.empty()) found.over.resize(2 * faces.size());
     found.over[2 * std::size_t{lower} + static_cast<std::size_t>(side)].push_back(upper);
   }
@@ -154,7 +127,7 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   std::vector<PolygonIndex> numbers;
   std::vector<Box> boxes;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    faces.push_back(face_of(scene, p, kept.emit_from_back));
+    faces.push_back(face_of(scene, p));
     numbers.push_back(p);
     boxes.push_back(faces.back().box);
   }
@@ -167,17 +140,29 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
 
 std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
   std::vector<ProblemFace> faces;
-  for (std::size_t k = 0; k < coverings.over.size(); k += 2) {
-    if (coverings.over[k].empty() && coverings.over[k + 1].empty()) continue;
-    faces.push_back(problem_face(scene, scene.polygons[k / 2]));
+  std::vector<ProblemFace> lamps;
+  const auto emits = [&](MaterialIndex material) { return (scene.materials[material].exitance > 0).any(); };
+  for (PolygonIndex p = 0; 2 * std::size_t{p} < coverings.over.size(); ++p) {
+    const bool front = !coverings.over_side(p, Side::front).empty();
+    const bool back = !coverings.over_side(p, Side::back).empty();
+    const Polygon& polygon = scene.polygons[p];
+    if (front || back) faces.push_back(problem_face(scene, polygon));
+    if ((front && emits(polygon.material)) || (back && polygon.back_material && emits(*polygon.back_material))) {
+      lamps.push_back(problem_face(scene, polygon));
+    }
   }
-  if (faces.empty()) return {};
-  const std::size_t count = faces.size();
-  const std::string what =
-      listed(scene, faces) + (count == 1 ? " lies" : " lie") +
-      " in part under another in the same plane; where they overlap a lamp counts before others, " +
-      "then the smaller face, then the first";
-  return {{ProblemKind::overlapping_faces, count, what, std::move(faces)}};
+  std::vector<Problem> problems;
+  const auto add = [&](ProblemKind kind, std::vector<ProblemFace> concerned, const std::string& what) {
+    if (concerned.empty()) return;
+    const std::size_t count = concerned.size();
+    const std::string text = listed(scene, concerned) + (count == 1 ? " lies" : " lie") + what;
+    problems.push_back({kind, count, text, std::move(concerned)});
+  };
+  add(ProblemKind::covered_lamp, std::move(lamps),
+      " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
+  add(ProblemKind::overlapping_faces, std::move(faces),
+      " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first");
+  return problems;
 }
 
 }  // namespace patchlight

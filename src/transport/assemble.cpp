@@ -161,19 +161,6 @@ bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occlud
                      [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
 }
 
-Assembly with_row(Assembly assembly, const RowFacts& row) {
-  AssemblyCounts& counts = assembly.counts;
-  counts.facing_pairs += row.counts.facing_pairs;
-  counts.near_pairs += row.counts.near_pairs;
-  counts.hidden_pairs += row.counts.hidden_pairs;
-  counts.free_pairs += row.counts.free_pairs;
-  counts.partial_pairs += row.counts.partial_pairs;
-  counts.blocked_pairs += row.counts.blocked_pairs;
-  counts.shadow_rays += row.counts.shadow_rays;
-  assembly.error += row.error;
-  return assembly;
-}
-
 // Closed forms, and shadow rays where something may be in between.
 Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                        const Observer& observer) {
@@ -192,13 +179,27 @@ Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const As
   parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
     rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
   });
-  for (const RowFacts& row : rows) result = with_row(std::move(result), row);
+  for (const RowFacts& row : rows) {
+    result.counts += row.counts;
+    result.error += row.error;
+  }
   result.entry_errors =
       with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error, mesh.area);
   return result;
 }
 
 }  // namespace
+
+AssemblyCounts& AssemblyCounts::operator+=(const AssemblyCounts& other) {
+  facing_pairs += other.facing_pairs;
+  near_pairs += other.near_pairs;
+  hidden_pairs += other.hidden_pairs;
+  free_pairs += other.free_pairs;
+  partial_pairs += other.partial_pairs;
+  blocked_pairs += other.blocked_pairs;
+  shadow_rays += other.shadow_rays;
+  return *this;
+}
 
 const char* name_of(Estimator estimator) {
   switch (estimator) {

@@ -171,7 +171,7 @@ Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const
   const Eigen::Map<const Eigen::ArrayXd> area(mesh.area.data(), mesh.size());
   const Eigen::ArrayXd measured = area * (1 - lost.covered.array());
   const Eigen::ArrayXd shown = (lost.covered.array() > 0).select(seen.array(), 0.0);
-  return measured.max(shown).max(smallest_share * area);
+  return measured.max(shown.min(area)).max(smallest_share * area);
 }
 
 }  // namespace patchlight

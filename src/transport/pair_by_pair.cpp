@@ -77,14 +77,6 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
   return counts;
 }
 
-void add(AssemblyCounts& sum, const AssemblyCounts& counts) {
-  sum.facing_pairs += counts.facing_pairs;
-  sum.near_pairs += counts.near_pairs;
-  sum.partial_pairs += counts.partial_pairs;
-  sum.blocked_pairs += counts.blocked_pairs;
-  sum.shadow_rays += counts.shadow_rays;
-}
-
 // The pairs of patch i with all later ones.
 AssemblyCounts PairLoop::fill_row(PatchIndex i, ExchangeAreas& S) const {
   AssemblyCounts counts;
@@ -94,10 +86,10 @@ AssemblyCounts PairLoop::fill_row(PatchIndex i, ExchangeAreas& S) const {
     counts.near_pairs += is_near(shapes[i], shapes[j]) ? 1 : 0;
     pairs.push_back(draw(i, j));
     if (pairs.size() * pairs.front().samples.size() < batch) continue;
-    add(counts, trace(pairs, S));
+    counts += trace(pairs, S);
     pairs.clear();
   }
-  add(counts, trace(pairs, S));
+  counts += trace(pairs, S);
   return counts;
 }
 
@@ -113,7 +105,7 @@ Assembly pair_by_pair(const PatchMesh& mesh, const Occluder& occluder, const Ass
   parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
     rows[row] = loop.fill_row(static_cast<PatchIndex>(row), result.exchange_areas);
   });
-  for (const AssemblyCounts& row : rows) add(result.counts, row);
+  for (const AssemblyCounts& row : rows) result.counts += row;
   return result;
 }
 

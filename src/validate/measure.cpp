@@ -13,7 +13,8 @@
 namespace patchlight::validation {
 namespace {
 
-// What unoccluded_exchange_area() and contour_exchange_area() promise of the relative error of one pair.
+// What unoccluded_exchange_area() and contour_exchange_area() promise of the relative error of one pair; the cases have
+// no far patches at grazing angles.
 constexpr double quadrature_error = 1e-3;
 constexpr double closed_form_error = 1e-6;
 // Entries are floats, narrowed toward zero.

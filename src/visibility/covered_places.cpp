@@ -1,8 +1,15 @@
 #include "visibility/covered_places.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace patchlight {
+namespace {
+
+// A segment that rises less, as a share of the scene's extent, lies in the plane.
+constexpr double in_plane_tolerance = 3e-7;
+
+}  // namespace
 
 bool CoveredPlaces::covers(PolygonIndex polygon, Side side, const Point& place) const {
   const auto over = coverings.over_side(polygon, side);
@@ -13,8 +20,10 @@ bool CoveredPlaces::covers_end(const Point& from, const Point& to, PolygonIndex 
                                PolygonIndex to_polygon) const {
   const auto covers_start = [&](const Point& start, const Point& end, PolygonIndex polygon) {
     if (polygon == no_polygon) return false;
-    const bool before = polygons[polygon].normal.dot(end - start) > 0;
-    return covers(polygon, before ? Side::front : Side::back, start);
+    const double rise = polygons[polygon].normal.dot(end - start);
+    // Along the surface neither side is seen.
+    if (std::abs(rise) <= in_plane_tolerance) return false;
+    return covers(polygon, rise > 0 ? Side::front : Side::back, start);
   };
   return covers_start(from, to, from_polygon) || covers_start(to, from, to_polygon);
 }

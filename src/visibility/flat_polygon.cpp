@@ -7,8 +7,11 @@ namespace patchlight {
 FlatPolygon flat_polygon(std::span<const Point> corners) {
   const Vector normal = area_vector(corners).normalized();
   const Vector u = normal.unitOrthogonal();
-  FlatPolygon polygon{corners[0], u, normal.cross(u), normal, {}};
-  for (const Point& corner : corners) polygon.corners.push_back(polygon.in_plane(corner));
+  FlatPolygon polygon{corners[0], u, normal.cross(u), normal, {}, {}};
+  for (const Point& corner : corners) {
+    polygon.corners.push_back(polygon.in_plane(corner));
+    polygon.box.extend(polygon.corners.back());
+  }
   return polygon;
 }
 
@@ -23,6 +26,7 @@ bool touches(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& a, const Eig
 
 // Even-odd rule: the seam of a hole is crossed twice.
 bool is_inside(const FlatPolygon& polygon, const Eigen::Vector2d& point) {
+  if (!polygon.box.contains(point)) return false;
   bool inside = false;
   for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
     const Eigen::Vector2d& a = polygon.corners[k];

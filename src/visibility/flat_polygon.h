@@ -12,6 +12,7 @@ struct FlatPolygon {
   Point origin;
   Vector u, v, normal;
   std::vector<Eigen::Vector2d> corners;
+  Eigen::AlignedBox2d box;  ///< of the corners
 
   double height(const Point& point) const { return normal.dot(point - origin); }
   Eigen::Vector2d in_plane(const Point& point) const { return {u.dot(point - origin), v.dot(point - origin)}; }

@@ -161,7 +161,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint
     rays.flags[k] = 0;
     valid[k] = k < segments.size() ? -1 : 0;
   }
-  Context context{new_context(), exact, nullptr, nullptr};
+  Context context{new_context(), exact, nullptr, covered_places.any() ? &covered_places : nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k) {

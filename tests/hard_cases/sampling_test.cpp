@@ -64,9 +64,9 @@ double reference_estimate(const PatchMesh& mesh, const Occluder& occluder, doubl
   return exact - blocked_weight / rays;
 }
 
-// Near pairs take four times `samples` rays (AssemblyOptions). With fewer the variance would be larger: with a quarter
-// five to six times, with half 2.3 times. The ratio of two variances of 256 replicates has a standard error of
-// sqrt(2 * 2 / 256) = 1/8: 1.5 is four of these.
+// These pairs, with form factors of 0.2, take 16 times `samples` rays (sampling_effort). With fewer the variance would
+// be larger: with a quarter five to six times, with half 2.3 times. The ratio of two variances of 256 replicates has a
+// standard error of sqrt(2 * 2 / 256) = 1/8: 1.5 is four of these.
 TEST(NearPairs, HaveTheVarianceOfAllTheirSamples) {
   const std::vector<Quad> seconds{{Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)},   // opposite
                                   {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 1), Point(0, 0, 1)}};  // sharing an edge
@@ -83,7 +83,7 @@ TEST(NearPairs, HaveTheVarianceOfAllTheirSamples) {
         return static_cast<double>(assemble_exchange_areas(mesh, occluder, {4, samples, seed}).exchange_areas.at(0, 1));
       });
       const Moments reference = moments([&](std::uint64_t seed) {
-        return reference_estimate(mesh, occluder, exact, 4 * static_cast<std::uint32_t>(samples), hash({seed, 77}));
+        return reference_estimate(mesh, occluder, exact, 16 * static_cast<std::uint32_t>(samples), hash({seed, 77}));
       });
       EXPECT_GT(assembled.variance, 0);
       EXPECT_LT(assembled.variance, 1.5 * reference.variance) << "pair " << k << ", " << samples << " samples";

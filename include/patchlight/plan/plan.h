@@ -42,7 +42,7 @@ struct Decision {
 struct Plan {
   KeptSides sides;
   double max_edge = 0;  ///< metres
-  int probes = 4;       ///< first shadow rays of a pair that rays decide
+  int probes = 8;       ///< first shadow rays of a pair that rays decide
   int samples = 16;
   int lost_share_rays = 256;  ///< hemisphere rays per patch
   std::uint64_t seed = 1;

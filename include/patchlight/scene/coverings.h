@@ -17,12 +17,13 @@ struct Coverings {
   std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const;
 };
 
-/// Of two polygons in one plane, a lamp lies over what does not emit, the smaller over the larger, the first in the
-/// scene over the later one; of two that are 1e-9 to 3e-7 of the scene's extent apart, the one in front. Only kept
-/// sides cover or are covered. Expected O(n log n) for n polygons.
+/// Of two polygons within 3e-7 of the scene's extent of one plane the smaller lies over the larger, of equal ones the
+/// first in the scene over the later one, so that geometry alone decides. Only kept sides cover or are covered.
+/// Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 
-/// ProblemKind::overlapping_faces with the polygons that are covered in part; nothing when there are none.
+/// ProblemKind::overlapping_faces with the polygons that are covered in part, and ProblemKind::covered_lamp with those
+/// of them that emit there; nothing when there are none.
 std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings);
 
 }  // namespace patchlight

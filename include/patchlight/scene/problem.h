@@ -13,7 +13,7 @@ namespace patchlight {
 enum class ProblemKind : std::uint8_t {
   // Something the model means is lost.
   no_lamp,                ///< nothing emits
-  covered_lamp,           ///< a lamp coincides with an earlier face that does not emit
+  covered_lamp,           ///< a lamp lies under another face in the same plane
   missing_material_file,  ///< an mtllib that is nowhere
   unknown_material,       ///< a usemtl that no material file defines
   self_intersecting,      ///< a face whose outline crosses itself

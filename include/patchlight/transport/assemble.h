@@ -35,9 +35,9 @@ struct ShortCuts {
 
 struct AssemblyOptions {
   int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
-  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`; of both sampling_effort()
-                     ///< times as many; with Estimator::hemisphere rays of a patch. Both are rounded up to 2, 4, 8 or a
-                     ///< multiple of 16, to fill packets
+  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`. The automatic estimator rounds both
+                     ///< up to 2, 4, 8 or a multiple of 16, to fill packets, and takes sampling_effort() times as many.
+                     ///< The others take just this many for every pair, Estimator::hemisphere for every patch
   std::uint64_t seed = 1;
   bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
   Estimator estimator = Estimator::automatic;
@@ -54,6 +54,8 @@ struct AssemblyCounts {
   std::uint64_t partial_pairs = 0;  ///< of these, partly occluded: Monte Carlo
   std::uint64_t blocked_pairs = 0;  ///< of these, fully occluded
   std::uint64_t shadow_rays = 0;
+
+  AssemblyCounts& operator+=(const AssemblyCounts& other);
 };
 
 struct Assembly {
@@ -64,8 +66,8 @@ struct Assembly {
 };
 
 /// Exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal and between
-/// patches of one plane, never more than the unoccluded value but by Estimator::area and hemisphere. The same bits for
-/// any number of threads. O(size^2) time. \throws Cancelled.
+/// patches of one plane, with the automatic estimator and Estimator::contour never more than the unoccluded value. The
+/// same bits for any number of threads. O(size^2) time. \throws Cancelled.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options = {},
                                  const Observer& observer = {});
 

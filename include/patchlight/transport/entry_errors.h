@@ -41,7 +41,8 @@ class EntryErrors {
 
 /// The standard errors of estimated entries S_ij from the unoccluded exchange areas U_ij, which stand in `unoccluded`
 /// in their place: those of `error` at the visible share S_ij / U_ij and the effort of U_ij / A, with the smaller area.
-/// As both are kept in sixths of an octave, the result is right to 12 %.
+/// As both are kept in sixths of an octave, the result is right to 12 %, but where U is so near to a step of the share
+/// or the effort that it falls on the wrong side.
 EntryErrors with_sampling_error(EntryErrors unoccluded, const ExchangeAreas& S, const SamplingError& error,
                                 std::span<const double> area);
 

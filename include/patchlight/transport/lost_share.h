@@ -28,7 +28,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
                              const Observer& observer = {});
 
 /// The area in m^2 that takes part in the exchange of light: what is not covered. It is never below what the exchange
-/// areas S_ij, given by their row sums in m^2, show to be seen, nor below 1e-6 of the patch.
+/// areas S_ij, given by their row sums in m^2, show to be seen of the patch, nor below 1e-6 of it.
 Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen);
 
 }  // namespace patchlight

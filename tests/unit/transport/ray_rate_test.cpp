@@ -1,0 +1,27 @@
+#include "patchlight/transport/ray_rate.h"
+
+#include "patchlight/mesh/mesher.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// The rate itself is the machine's affair: it is finite, and only stated when there were rays enough to time.
+TEST(BareRayRate, IsStatedForEnoughRaysOnly) {
+  const Scene scene = furnished_room(0.5);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.5);
+  const Occluder occluder(scene);
+  EXPECT_EQ(bare_ray_rate(mesh, occluder, 0), 0);
+  EXPECT_EQ(bare_ray_rate(mesh, occluder, 1000), 0);
+  const double rate = bare_ray_rate(mesh, occluder, 1U << 20);
+  EXPECT_GT(rate, 1e3);
+  EXPECT_LT(rate, 1e12);
+}
+
+}  // namespace
+}  // namespace patchlight
