@@ -65,7 +65,9 @@ TEST(Overlapping, NothingIsSeenTwice) {
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, kept));
   const Exchange exchange = trace_exchange(mesh, occluder, {}, 256);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    if (exchange.lost.covered[i] < 1) EXPECT_NEAR(exchange.raw_row_sum[i], 1, 0.05) << i;
+    if (exchange.lost.covered[i] < 1) {
+      EXPECT_NEAR(exchange.raw_row_sum[i], 1, 0.05) << i;
+    }
   }
   // The floor's patches that the rug covers take no part.
   double covered = 0;

@@ -113,7 +113,9 @@ TEST(Occluder, ARayMeetsThePolygonThatLiesOver) {
     for (const auto& hit : hits) {
       ASSERT_TRUE(hit);
       const double away = std::max(std::abs(hit->point.x() - 1), std::abs(hit->point.y() - 1));
-      if (std::abs(away - 0.5) > 1e-6) EXPECT_EQ(hit->polygon == rug, away < 0.5);
+      if (std::abs(away - 0.5) > 1e-6) {
+        EXPECT_EQ(hit->polygon == rug, away < 0.5);
+      }
     }
   }
 }
