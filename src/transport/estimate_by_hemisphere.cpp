@@ -5,6 +5,7 @@
 
 #include "transport/estimators.h"
 #include "transport/narrow.h"
+#include "transport/patch_frame.h"
 
 #include <map>
 #include <vector>
@@ -28,11 +29,7 @@ struct Hemisphere {
 
 Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<double, 4>>& points) const {
   const PatchCorners corners = mesh.corner_points(from);
-  Eigen::Matrix3d frame;
-  frame.col(2) = mesh.normal[from];
-  frame.col(1) = frame.col(2).cross(corners.points[1] - corners.points[0]).normalized();
-  frame.col(0) = frame.col(1).cross(frame.col(2));
-
+  const Eigen::Matrix3d frame = patch_frame(mesh, from);
   Arrivals arrived;
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < points.size(); ++k) {

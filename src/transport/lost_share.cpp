@@ -4,6 +4,8 @@
 #include "patchlight/base/sampling.h"
 #include "patchlight/form_factor/patch_keys.h"
 
+#include "transport/patch_frame.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -39,16 +41,6 @@ struct Observatory {
   std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
-
-// A right-handed frame that turns with the patch: along its first edge, across it, and along the normal.
-Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch) {
-  const PatchCorners corners = mesh.corner_points(patch);
-  Eigen::Matrix3d frame;
-  frame.col(2) = mesh.normal[patch];
-  frame.col(1) = frame.col(2).cross(corners.points[1] - corners.points[0]).normalized();
-  frame.col(0) = frame.col(1).cross(frame.col(2));
-  return frame;
-}
 
 // `groups` starting points, each with `size` directions.
 std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint32_t seed) {

@@ -24,8 +24,8 @@ Field smooth_field(const PatchMesh& mesh) {
 
 }  // namespace
 
-EntryErrors entry_errors(const PatchMesh& mesh, const ExchangeAreas& S, const ExchangeAreas& reference) {
-  EntryErrors errors;
+EntryDeviations entry_errors(const PatchMesh& mesh, const ExchangeAreas& S, const ExchangeAreas& reference) {
+  EntryDeviations errors;
   double difference = 0;
   double sum = 0;
   std::vector<float> of_pairs;
