@@ -54,9 +54,14 @@ void require_memory(std::size_t patches, const Request& request) {
   const double usable = request.memory ? *request.memory : usable_share * installed_bytes();
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_in(usable, request.standard_errors));
-  const std::string hint = usable > 2 * bytes_of_program
-                               ? "ask for at most " + std::to_string(fitting) + " patches with --patches"
-                               : "the program itself takes " + gigabytes(bytes_of_program);
+  // Small faces take a patch each, however few are asked for.
+  const bool too_many_faces =
+      !request.max_edge && static_cast<long>(request.patches.value_or(default_patches)) <= fitting;
+  const std::string hint =
+      usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
+      : too_many_faces
+          ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
+          : "ask for at most " + std::to_string(fitting) + " patches with --patches";
   throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) + ", most of it for their " +
                     "form factors, and " + gigabytes(usable) +
                     (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);

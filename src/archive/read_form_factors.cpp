@@ -43,6 +43,7 @@ FormFactorInfo info_of(const Json& json) {
   FormFactorInfo info;
   info.geometry_sha256 = json.at("geometry_sha256").get<std::string>();
   info.model = json.at("input").at("file").get<std::string>();
+  info.metres_per_unit = json.at("input").value("metres_per_unit", 1.0);
   info.patches = json.at("patches").get<PatchIndex>();
   info.format = json.at("matrix").get<std::string>() == "npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
   if (!json.at("closure").is_null()) info.closure = json.at("closure").get<std::string>();
@@ -79,8 +80,7 @@ void require_same_geometry(const std::filesystem::path& folder, const FormFactor
        << name_of(info.sides) << "; expected those of " << mesh.size() << " patches with geometry "
        << wanted.substr(0, 12) << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
        << ". Give the same model, --unit and --sides as then, and neither --max-edge nor --patches; with --sides auto "
-          "the "
-          "lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
+          "the lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
        << folder.string();
   throw InputError(folder.string(), text.str());
 }

@@ -97,6 +97,14 @@ std::string problem_lines(const Scene& scene, const SceneReport& report) {
   return text.str();
 }
 
+const char* verdict(const SceneReport& report) {
+  if (!report.usable) return "cannot be solved as it is";
+  const bool has_errors = std::any_of(report.problems.begin(), report.problems.end(), [](const Problem& problem) {
+    return severity_of(problem.kind) == Severity::error;
+  });
+  return has_errors ? "can be solved, but something of it is lost: see its errors" : "can be solved";
+}
+
 }  // namespace
 
 ExitCode check(const CheckArguments& arguments) {
@@ -112,7 +120,7 @@ ExitCode check(const CheckArguments& arguments) {
   if (arguments.json_on_stdout) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
-    std::cout << scene.file << ": " << (report.usable ? "can be solved" : "cannot be solved as it is") << '\n'
+    std::cout << scene.file << ": " << verdict(report) << '\n'
               << size_line(scene, report) << counts_lines(report) << material_lines(report) << lamp_lines(report)
               << problem_lines(scene, report) << std::flush;
   }

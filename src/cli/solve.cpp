@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -54,10 +55,16 @@ struct KnownFormFactors {
 };
 
 // Stored form factors bring the options that they were made with.
-KnownFormFactors known_form_factors(const SolveArguments& arguments) {
+KnownFormFactors known_form_factors(const SolveArguments& arguments, const Scene& scene) {
   KnownFormFactors known{arguments.request, {}};
   if (arguments.form_factors.empty()) return known;
   const FormFactorInfo info = read_form_factor_info(arguments.form_factors);
+  if (info.metres_per_unit != scene.metres_per_unit) {
+    std::ostringstream text;
+    text << "found form factors of a model with " << info.metres_per_unit << " m per unit; this one is read with "
+         << scene.metres_per_unit << ". Give the same --unit as then";
+    throw InputError(arguments.form_factors.string(), text.str());
+  }
   if (!known.request.max_edge && !known.request.patches) known.request.max_edge = info.max_edge;
   if (known.request.sides == Sides::automatic) known.request.sides = info.sides;
   known.request.samples = info.samples;
@@ -88,7 +95,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   reading.finish(Stage::read);
 
   // 2. Solve
-  const KnownFormFactors known = known_form_factors(arguments);
+  const KnownFormFactors known = known_form_factors(arguments, results.scene);
   const auto keep_iterates = [&](const Progress& progress) {
     if (progress.irradiance && !arguments.series.empty())
       results.iterates.emplace_back(progress.irradiance->cast<float>());

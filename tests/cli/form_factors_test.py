@@ -203,6 +203,10 @@ class FormFactorsTest(ToolTest):
         done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "missing.ff")
         self.assertEqual(done.returncode, INPUT)
         self.assertIn("info.json", done.stderr)
+        self.find("-o", "mm.ff", "--patches", "60", "--unit", "mm")
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "mm.ff")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("0.001 m per unit", done.stderr)
 
 
 if __name__ == "__main__":

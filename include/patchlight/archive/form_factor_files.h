@@ -43,6 +43,7 @@ void check_form_factors_writable(const std::filesystem::path& folder);
 struct FormFactorInfo {
   std::string geometry_sha256;  ///< of the patches
   std::string model;            ///< the model's file
+  double metres_per_unit = 1;   ///< of the model
   PatchIndex patches = 0;
   MatrixFormat format = MatrixFormat::npy;
   std::string closure;  ///< the method that closed them; empty if none did
