@@ -47,8 +47,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   facts.lost = exchange.lost;
   facts.counts = exchange.counts;
   facts.error = exchange.error;
-  clock.finish(Stage::form_factors);
   if (!known_exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
+  clock.finish(Stage::form_factors);
 
   // 4. Closure: each row sums up to what its patch sees.
   ClosedExchangeAreas closed = plan.close ? close_exchange(std::move(exchange), observer)

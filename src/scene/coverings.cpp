@@ -13,10 +13,6 @@
 namespace patchlight {
 namespace {
 
-// Height above a plane, as a share of the scene's extent, that counts as in it: that by which shadow rays in single
-// precision tell before from behind.
-constexpr double in_plane_tolerance = 3e-7;
-
 // Overlaps smaller than this share of the smaller polygon are rounding at a common edge.
 constexpr double least_overlap = 1e-6;
 

@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace patchlight {
-namespace {
-
-// A segment that rises less, as a share of the scene's extent, lies in the plane.
-constexpr double in_plane_tolerance = 3e-7;
-
-}  // namespace
 
 bool CoveredPlaces::covers(PolygonIndex polygon, Side side, const Point& place) const {
   const auto over = coverings.over_side(polygon, side);

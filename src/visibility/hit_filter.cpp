@@ -8,7 +8,7 @@
 namespace patchlight {
 namespace {
 
-// The same for rays given in double.
+// in_plane_tolerance for rays whose ends are given in double.
 constexpr double on_plane_tolerance = 1e-9;
 
 constexpr unsigned packet_size = ShadowPacket::size;
@@ -72,10 +72,9 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
       if (polygon == rays.from_polygon[ray] || polygon == rays.to_polygon[ray]) arguments->valid[k] = 0;
       continue;
     }
-    const bool blocks =
-        context->packet != nullptr
-            ? separates(planes[triangle], exact_ray(*context->packet, ray), on_plane_tolerance_of_packets)
-            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
+    const bool blocks = context->packet != nullptr
+                            ? separates(planes[triangle], exact_ray(*context->packet, ray), in_plane_tolerance)
+                            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
     if (!blocks || (context->covered_places != nullptr &&
                     is_covered(planes[triangle], context->rays[ray], *context->covered_places)))
       arguments->valid[k] = 0;

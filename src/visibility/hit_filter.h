@@ -10,10 +10,6 @@
 
 namespace patchlight {
 
-/// A point nearer to a plane than this share of the scene's extent lies on it, when a ray's ends are given in single
-/// precision: what rounding a point of the scene leaves of its height.
-constexpr double on_plane_tolerance_of_packets = 3e-7;
-
 /// The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
 struct Plane {
   Vector normal;

@@ -228,9 +228,9 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
   const auto met = tracer_->first_polygon(middle(from), middle(to));
   if (!met) return false;
   const std::vector<FlatPolygon>& polygons = tracer_->covered_places.polygons;
-  if (cuts_all(polygons[*met], from, to, on_plane_tolerance_of_packets)) return true;
+  if (cuts_all(polygons[*met], from, to, in_plane_tolerance)) return true;
   const auto other = tracer_->first_polygon(middle(to), middle(from));
-  return other && *other != *met && cuts_all(polygons[*other], from, to, on_plane_tolerance_of_packets);
+  return other && *other != *met && cuts_all(polygons[*other], from, to, in_plane_tolerance);
 }
 
 const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }

@@ -9,6 +9,10 @@
 
 namespace patchlight {
 
+/// A point nearer to a plane than this share of the scene's extent counts as in it, where only single precision tells:
+/// what rounding leaves of its height.
+constexpr double in_plane_tolerance = 3e-7;
+
 /// Where polygons lie one on the other in the same plane, as a rug drawn on a floor, or the floors of two solids: for
 /// each side of a polygon the polygons that lie over part of it and face the same way.
 struct Coverings {
@@ -17,7 +21,7 @@ struct Coverings {
   std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const;
 };
 
-/// Of two polygons within 3e-7 of the scene's extent of one plane the smaller lies over the larger, of equal ones the
+/// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the
 /// first in the scene over the later one, so that geometry alone decides. Only kept sides cover or are covered.
 /// Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
