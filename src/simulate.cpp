@@ -60,7 +60,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
 
   // 5. Solve B = E + rho o F B, and see where the light went.
   result.problem = problem_of(scene, mesh, area, plan.sides.emit_from_back);
-  result.solution = solve(*transport, result.problem, plan.solver, observer);
+  SolverOptions solver = plan.solver;
+  solver.largest_row_sum = facts.row_sum.maxCoeff();
+  result.solution = solve(*transport, result.problem, solver, observer);
   result.balance = energy_balance(result.problem, result.solution, facts.row_sum, facts.lost);
   clock.finish(Stage::solve);
 

@@ -83,4 +83,16 @@ double unit_length(const std::string& text) {
   return choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
 }
 
+Solver solver_named(const std::string& option, const std::string& text) {
+  std::vector<std::pair<std::string, Solver>> allowed;
+  for (const Solver solver : all_solvers()) allowed.emplace_back(name_of(solver), solver);
+  return choice<Solver>(option, text, allowed);
+}
+
+std::string solver_names(const std::string& separator) {
+  std::string names;
+  for (const Solver solver : all_solvers()) names += (names.empty() ? "" : separator) + name_of(solver);
+  return names;
+}
+
 }  // namespace patchlight::cli

@@ -36,6 +36,12 @@ Point point(const std::string& option, const std::string& text);
 /// The value of --unit, m, cm, mm, in or ft, in metres. \throws UsageError.
 double unit_length(const std::string& text);
 
+/// What a solver's name stands for. \throws UsageError.
+Solver solver_named(const std::string& option, const std::string& text);
+
+/// The solvers' names.
+std::string solver_names(const std::string& separator);
+
 /// The sentence that refuses a value.
 UsageError refusal(const std::string& option, const std::string& found, const std::string& expected);
 

@@ -118,13 +118,16 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
   command.add_flag_callback(
       "--no-closure", [&request] { request.close = false; },
       "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
-  add(command, "--solver", "jacobi|gauss-seidel|progressive",
-      "how the equations are solved; default gauss-seidel, with\n--series jacobi",
+  add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
       [&request, &options](const std::string& text) {
         options.solver_given = true;
-        request.solver = choice<Solver>(
-            "--solver", text,
-            {{"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}, {"progressive", Solver::progressive}});
+        request.solver = solver_named("--solver", text);
+      });
+  add(command, "--relaxation", "NUMBER",
+      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
+      [&request](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 2; };
+        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
       });
   add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
       [&request](const std::string& text) {
@@ -163,6 +166,9 @@ void require_consistent(const SolveOptions& options) {
   }
   if (options.camera && options.camera->eye == options.camera->target) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
+  }
+  if (options.mesh.request.relaxation && options.mesh.request.solver != Solver::sor) {
+    throw UsageError("--relaxation needs --solver sor");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());

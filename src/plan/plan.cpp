@@ -75,7 +75,10 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.short_cuts = request.short_cuts;
   plan.close = request.close;
   plan.standard_errors = request.standard_errors;
-  plan.solver = {request.solver, request.tolerance, request.max_iterations};
+  plan.solver = {.solver = request.solver,
+                 .relative_error = request.tolerance,
+                 .max_iterations = request.max_iterations,
+                 .relaxation = request.relaxation};
   return plan;
 }
 

@@ -1,11 +1,81 @@
 #include "patchlight/solve/solve.h"
 
-#include "patchlight/solve/relaxation.h"
-#include "patchlight/solve/southwell.h"
+#include "solve/iterations.h"
+#include "solve/krylov.h"
+#include "solve/relaxation.h"
+#include "solve/solved_bands.h"
+#include "solve/southwell.h"
 
 #include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace patchlight {
+namespace {
+
+Solution solution_by(Solver solver, Iterations iterations, const RowTransport& transport) {
+  switch (solver) {
+    case Solver::jacobi:
+      return jacobi(std::move(iterations));
+    case Solver::gauss_seidel:
+      return gauss_seidel(std::move(iterations), transport);
+    case Solver::sor:
+      return sor(std::move(iterations), transport);
+    case Solver::symmetric_gauss_seidel:
+      return symmetric_gauss_seidel(std::move(iterations), transport);
+    case Solver::chebyshev:
+      return chebyshev(std::move(iterations));
+    case Solver::progressive:
+      return progressive_refinement(std::move(iterations), transport, Shot::unshot);
+    case Solver::overshooting:
+      return progressive_refinement(std::move(iterations), transport, Shot::overshot);
+    case Solver::cg:
+      return cg(std::move(iterations));
+    case Solver::deflated_cg:
+      return deflated_cg(std::move(iterations));
+    case Solver::gmres:
+      return gmres(std::move(iterations));
+    case Solver::bicgstab:
+      return bicgstab(std::move(iterations));
+  }
+  assert(false);
+  return {};
+}
+
+// An observer of the solved bands that tells the one of all bands.
+Observer for_all_bands(const Observer& observer, const SolvedBands& bands) {
+  if (!observer) return {};
+  return [&observer, &bands](const Progress& progress) {
+    Progress all = progress;
+    const Field irradiance = expanded(*progress.irradiance, bands);
+    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
+    all.irradiance = &irradiance;
+    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
+    return observer(all);
+  };
+}
+
+// The light of the lamps, and nothing more: for a system without a solution.
+Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem& problem, std::string why) {
+  Solution solution;
+  solution.radiosity = problem.exitance;
+  solution.direct_irradiance = transport.apply(problem.exitance);
+  solution.irradiance = solution.direct_irradiance;
+  solution.trapped = std::move(why);
+  const double unknown = std::numeric_limits<double>::infinity();
+  solution.history.push_back({.number = 0, .relative_residual = 1, .error_bound = unknown, .seconds = 0, .work = 1});
+  return solution;
+}
+
+}  // namespace
+
+std::vector<Solver> all_solvers() {
+  return {Solver::jacobi,      Solver::gauss_seidel, Solver::sor,          Solver::symmetric_gauss_seidel,
+          Solver::chebyshev,   Solver::progressive,  Solver::overshooting, Solver::cg,
+          Solver::deflated_cg, Solver::gmres,        Solver::bicgstab};
+}
 
 const char* name_of(Solver solver) {
   switch (solver) {
@@ -13,11 +83,29 @@ const char* name_of(Solver solver) {
       return "jacobi";
     case Solver::gauss_seidel:
       return "gauss-seidel";
+    case Solver::sor:
+      return "sor";
+    case Solver::symmetric_gauss_seidel:
+      return "symmetric-gauss-seidel";
+    case Solver::chebyshev:
+      return "chebyshev";
     case Solver::progressive:
       return "progressive";
+    case Solver::overshooting:
+      return "overshooting";
+    case Solver::cg:
+      return "cg";
+    case Solver::deflated_cg:
+      return "deflated-cg";
+    case Solver::gmres:
+      return "gmres";
+    case Solver::bicgstab:
+      return "bicgstab";
   }
   return "";
 }
+
+bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) {
   return (x.square().colwise() * area.array()).colwise().sum().sqrt().transpose();
@@ -28,15 +116,27 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
   assert(problem.exitance.rows() == static_cast<Eigen::Index>(transport.size()));
   assert(problem.reflectance.rows() == problem.exitance.rows() &&
          problem.reflectance.cols() == problem.exitance.cols());
-  switch (options.solver) {
-    case Solver::jacobi:
-      return jacobi(transport, problem, options, observer);
-    case Solver::gauss_seidel:
-      return gauss_seidel(transport, problem, options, observer);
-    case Solver::progressive:
-      return progressive_refinement(transport, problem, options, observer);
+
+  // 1. Only the bands that need it.
+  const SolvedBands bands = solved_bands(problem);
+  const RadiosityProblem needed{reduced(problem.reflectance, bands), reduced(problem.exitance, bands), problem.area};
+  SolverOptions used = options;
+  if (options.reference) used.reference = reduced(*options.reference, bands);
+  const Observer of_needed = for_all_bands(observer, bands);
+
+  // 2. A singular system is said before any iteration. What shoots does not look at the whole transport.
+  const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
+  std::string trapped = known ? trapped_light(transport, needed) : std::string();
+  Solution solution = trapped.empty()
+                          ? solution_by(options.solver, Iterations(transport, needed, used, of_needed), transport)
+                          : lamps_alone(transport, needed, std::move(trapped));
+
+  // 3. All bands again.
+  for (Field* field :
+       {&solution.radiosity, &solution.irradiance, &solution.direct_irradiance, &solution.ambient, &solution.error}) {
+    *field = expanded(*field, bands);
   }
-  return {};
+  return solution;
 }
 
 }  // namespace patchlight

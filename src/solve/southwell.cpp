@@ -1,18 +1,11 @@
-#include "patchlight/solve/southwell.h"
-
-#include "solve/stopping.h"
+#include "solve/southwell.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace patchlight {
 namespace {
-
-// Flux that still waits to be shot, summed over the bands, decides who shoots next.
-Eigen::Index brightest(const Field& unshot, const Eigen::VectorXd& area) {
-  Eigen::Index patch = 0;
-  (unshot.rowwise().sum() * area.array()).maxCoeff(&patch);
-  return patch;
-}
 
 // Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly:
 // sum_i A_i dB_i / sum_i A_i / (1 - mean rho). Cohen et al. 1988, section 3.2.
@@ -23,42 +16,67 @@ Field ambient_irradiance(const Field& unshot, const RadiosityProblem& problem) {
   return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
 }
 
+// The lamps' light where it arrives first, and the number of their patches.
+struct Lamps {
+  Field irradiance;
+  Eigen::Index patches = 0;
+};
+
+Lamps lamps_shot(const RowTransport& transport, const Field& exitance) {
+  Lamps lamps{Field::Zero(exitance.rows(), exitance.cols())};
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
+    if (!(exitance.row(i) > 0).any()) continue;
+    const auto index = static_cast<PatchIndex>(i);
+    lamps.irradiance += transport.shoot({index, index + 1}, exitance.row(i));
+    ++lamps.patches;
+  }
+  return lamps;
+}
+
+// Flux that waits to be shot, summed over the bands, decides who shoots next.
+Eigen::Index brightest(const Field& waiting, const Eigen::VectorXd& area) {
+  Eigen::Index patch = 0;
+  (waiting.rowwise().sum().abs() * area.array()).maxCoeff(&patch);
+  return patch;
+}
+
 }  // namespace
 
-Solution progressive_refinement(const RowTransport& transport, const RadiosityProblem& problem,
-                                const SolverOptions& options, const Observer& observer) {
-  Stopping stopping(transport, problem, options);
+Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot) {
+  const RadiosityProblem& problem = iterations.problem();
   const Eigen::Index n = problem.exitance.rows();
-  Field unshot = problem.exitance;
-  Solution solution{.radiosity = problem.exitance,
-                    .irradiance = Field::Zero(n, unshot.cols()),
-                    .direct_irradiance = transport.apply(problem.exitance),
-                    .ambient = {},
-                    .history = {}};
+  Lamps lamps = lamps_shot(transport, problem.exitance);
+  iterations.count(static_cast<double>(lamps.patches) / static_cast<double>(n));
+  Field H = lamps.irradiance;
+  // With X the radiosity shot so far, B = E + K X: the residual of X, and what B lacks before one reflection, is
+  // unshot.
+  Field unshot = problem.reflectance * H;
+  Field ambient = ambient_irradiance(unshot, problem);
+  iterations.show(ambient);
+  if (iterations.start(std::move(lamps.irradiance))) return iterations.finish();
 
-  // With X = B - unshot, the radiosity shot so far, B = E + K X: the residual of X is what is unshot. Iteration 0 is X
-  // = E.
-  solution.history.push_back(stopping.measure(solution, problem.reflectance * solution.direct_irradiance, 2, observer));
-  solution.converged = stopping.reached(solution.history.back());
-  for (int k = 1; k <= options.max_iterations && !solution.converged; ++k) {
-    for (Eigen::Index shot = 0; shot < n; ++shot) {
-      const Eigen::Index source = brightest(unshot, problem.area);
-      const Field flash = unshot.row(source);
-      if (!(flash > 0).any()) break;
-      const auto index = static_cast<PatchIndex>(source);
-      const Field H = transport.shoot({index, index + 1}, flash);
-      unshot.row(source) = 0;
-      unshot += problem.reflectance * H;
-      solution.irradiance += H;
-    }
-    solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
-    solution.history.push_back(stopping.measure(solution, unshot, 2.0 + k, observer));
-    solution.converged = stopping.reached(solution.history.back());
+  const std::int64_t most = static_cast<std::int64_t>(iterations.options().max_iterations) * n;
+  std::int64_t next_record = 1;
+  for (std::int64_t shots = 1; shots <= most && !iterations.good(); ++shots) {
+    const Field waiting =
+        shot == Shot::unshot ? unshot : Field(unshot + problem.reflectance.rowwise() * ambient.row(0));
+    const Eigen::Index source = brightest(waiting, problem.area);
+    const Field flash = waiting.row(source);
+    const auto index = static_cast<PatchIndex>(source);
+    const Field arriving = transport.shoot({index, index + 1}, flash);
+    unshot.row(source) -= flash;
+    unshot += problem.reflectance * arriving;
+    H += arriving;
+    iterations.count(1.0 / static_cast<double>(n));
+    const bool to_record = shots >= next_record || shots == most;
+    if (shot == Shot::overshot || to_record) ambient = ambient_irradiance(unshot, problem);
+    if (!to_record) continue;
+    iterations.show(ambient);
+    iterations.record({problem.exitance + problem.reflectance * H, H, unshot}, static_cast<int>(shots));
+    // Ever longer pauses, up to an eighth of all patches.
+    next_record = shots + std::clamp<std::int64_t>(shots / 10, 1, std::max<Eigen::Index>(1, n / 8));
   }
-  if (solution.history.size() == 1) solution.irradiance = solution.direct_irradiance;
-  solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
-  solution.ambient = ambient_irradiance(unshot, problem);
-  return solution;
+  return iterations.finish();
 }
 
 }  // namespace patchlight

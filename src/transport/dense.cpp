@@ -2,12 +2,10 @@
 
 #include "patchlight/base/parallel.h"
 
-#include "base/target_clones.h"
+#include "transport/tile_kernel.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <numeric>
 #include <utility>
 
 namespace patchlight {
@@ -15,8 +13,8 @@ namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
-// Partial sums of a gather are kept per stripe of source blocks, a fixed number.
-constexpr std::size_t stripes = 8;
+// Partial sums of a gather are kept per stripe of blocks, a fixed number.
+constexpr PatchIndex stripes = 8;
 
 class DenseTransport : public RowTransport {
  public:
@@ -33,63 +31,111 @@ class DenseTransport : public RowTransport {
   Field gather(PatchRange receivers, const FieldView& radiosity) const override;
   Field shoot(PatchRange sources, const FieldView& radiosity) const override;
   Eigen::MatrixXd form_factors(PatchRange from, PatchRange to) const override;
+  Sweep sweep(Sweep from, const Relax& there, const Relax& back) const override;
 
  private:
-  // Adds the sum over the patches j of block J of S_ij B_j to the receivers' rows of `sum`.
-  void gather_block(PatchRange receivers, PatchIndex J, const FieldView& radiosity, Field& sum) const;
+  PatchRange range_of(PatchIndex I) const { return {I * edge, std::min(size(), (I + 1) * edge)}; }
+  Field gather_row(PatchIndex I, const PackedField& b) const;
+  Field push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const;
+  Field irradiance_of(PatchIndex I, const Field& sum, const PackedField& b) const;
+  void relax_block(PatchIndex I, const Field& irradiance, const Relax& relax, PackedField& b) const;
 
   ExchangeAreas S_;
   Eigen::VectorXd remainder_;
   Eigen::VectorXd area_;
 };
 
-// out += T b, with T a tile or, for one left of the diagonal, its transpose. Loops become vector instructions.
-PATCHLIGHT_TARGET_CLONES
-void gather_tile(const float* tile, bool transposed, const double* b, double* out) {
-  for (std::size_t r = 0; r < edge; ++r) {
-    const float* const row = tile + r * edge;
-    if (transposed) {
-      for (std::size_t c = 0; c < edge; ++c) out[c] += static_cast<double>(row[c]) * b[r];
-      continue;
+// sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones.
+Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
+  PackedField partial(stripes, b.bands);
+  parallel_for(stripes, [&](std::size_t stripe) {
+    for (auto J = I + static_cast<PatchIndex>(stripe); J < S_.blocks(); J += stripes) {
+      gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), partial.block(static_cast<PatchIndex>(stripe)));
     }
-    std::array<double, 16> sum{};
-    for (std::size_t c = 0; c < edge; c += 16) {
-      for (std::size_t k = 0; k < 16; ++k) sum[k] += static_cast<double>(row[c + k]) * b[c + k];
-    }
-    out[r] += std::accumulate(sum.begin(), sum.end(), 0.0);
-  }
+  });
+  const PatchRange range = range_of(I);
+  return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
 }
 
-void DenseTransport::gather_block(PatchRange receivers, PatchIndex J, const FieldView& radiosity, Field& sum) const {
-  const Eigen::Index first = static_cast<Eigen::Index>(J) * edge;
-  const Eigen::Index columns = std::min<Eigen::Index>(edge, size() - first);
-  for (PatchIndex I = receivers.begin / edge; I * edge < receivers.end; ++I) {
-    const std::span<const float> tile = I <= J ? S_.tile(I, J) : S_.tile(J, I);
-    // The receivers' rows of this tile.
-    const Eigen::Index from = std::max<Eigen::Index>(receivers.begin, static_cast<Eigen::Index>(I) * edge);
-    const Eigen::Index to = std::min<Eigen::Index>(receivers.end, static_cast<Eigen::Index>(I + 1) * edge);
-    for (Eigen::Index band = 0; band < radiosity.cols(); ++band) {
-      Eigen::Matrix<double, edge, 1> b = Eigen::Matrix<double, edge, 1>::Zero();
-      Eigen::Matrix<double, edge, 1> out = Eigen::Matrix<double, edge, 1>::Zero();
-      b.head(columns) = radiosity.col(band).segment(first, columns).matrix();
-      gather_tile(tile.data(), I > J, b.data(), out.data());
-      sum.col(band).segment(from - receivers.begin, to - from) += out.segment(from % edge, to - from).array();
+// Adds what the patches of block I send to those of all later blocks, and gathers for the next block: the threads meet
+// once per block row.
+Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const {
+  const PatchIndex next = I + 1;
+  PackedField partial(stripes, b.bands);
+  parallel_for(stripes, [&](std::size_t stripe) {
+    for (auto J = next + static_cast<PatchIndex>(stripe); J < S_.blocks(); J += stripes) {
+      push_tile(S_.tile(I, J).data(), b.bands, b.block(I), pushed.block(J));
+      gather_tile(S_.tile(next, J).data(), b.bands, b.block(J), partial.block(static_cast<PatchIndex>(stripe)));
     }
+  });
+  if (next == S_.blocks()) return Field(0, b.bands);
+  const PatchRange range = range_of(next);
+  return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
+}
+
+// H_i = (sum + d_i B_i) / A_i for the patches of block I.
+Field DenseTransport::irradiance_of(PatchIndex I, const Field& sum, const PackedField& b) const {
+  const PatchRange range = range_of(I);
+  const Eigen::Index rows = range.end - range.begin;
+  const Field own = b.rows(range.begin, rows).colwise() * remainder_.segment(range.begin, rows).array();
+  return (sum + own).colwise() / area_.segment(range.begin, rows).array();
+}
+
+void DenseTransport::relax_block(PatchIndex I, const Field& irradiance, const Relax& relax, PackedField& b) const {
+  const PatchRange range = range_of(I);
+  b.set_rows(range.begin,
+             relax({range, b.rows(range.begin, irradiance.rows()), irradiance, form_factors(range, range)}));
+}
+
+// Block row by block row: gathers from the blocks that are still to come, relaxes, and pushes the new radiosities to
+// them while the tiles are in the cache. What has been pushed to a block before, with the radiosities of now, is what
+// the next sweep needs to know F B of them without another pass.
+Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) const {
+  PackedField b(from.radiosity, S_.blocks());
+  PackedField pushed(S_.blocks(), b.bands);
+  Field irradiance(from.from_earlier.rows(), from.from_earlier.cols());
+  Field later = gather_row(0, b);
+  for (PatchIndex I = 0; I < S_.blocks(); ++I) {
+    const PatchRange range = range_of(I);
+    const Eigen::Index rows = range.end - range.begin;
+    if (irradiance.size() > 0) {
+      const Field sum = from.from_earlier.middleRows(range.begin, rows) + later;
+      irradiance.middleRows(range.begin, rows) = irradiance_of(I, sum, b);
+    }
+    relax_block(I, irradiance_of(I, pushed.rows(range.begin, rows) + later, b), there, b);
+    later = push_and_gather_next(I, b, pushed);
   }
+  if (!back) return {b.rows(0, size()), std::move(irradiance), pushed.rows(0, size())};
+
+  for (PatchIndex I = S_.blocks(); I-- > 0;) {
+    const PatchRange range = range_of(I);
+    const Field sum = pushed.rows(range.begin, range.end - range.begin) + gather_row(I, b);
+    relax_block(I, irradiance_of(I, sum, b), back, b);
+  }
+  return {b.rows(0, size()), {}, {}};
 }
 
 Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) const {
   assert(receivers.begin <= receivers.end && receivers.end <= size());
-  const Eigen::Index rows = receivers.end - receivers.begin;
-  std::vector<Field> partial(stripes, Field::Zero(rows, radiosity.cols()));
-  parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto J = static_cast<PatchIndex>(stripe); J < S_.blocks(); J += stripes) {
-      gather_block(receivers, J, radiosity, partial[stripe]);
+  const PatchIndex first = receivers.begin / edge;
+  const PatchIndex blocks = receivers.begin < receivers.end ? (receivers.end - 1) / edge + 1 - first : 0;
+  const PackedField b(radiosity, S_.blocks());
+  PackedField sum(blocks, b.bands);
+  parallel_for(blocks, [&](std::size_t block) {
+    const PatchIndex I = first + static_cast<PatchIndex>(block);
+    double* const out = sum.block(static_cast<PatchIndex>(block));
+    for (PatchIndex J = 0; J < S_.blocks(); ++J) {
+      if (I <= J) {
+        gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), out);
+      } else {
+        push_tile(S_.tile(J, I).data(), b.bands, b.block(J), out);
+      }
     }
   });
-  Field sum = radiosity.middleRows(receivers.begin, rows).colwise() * remainder_.segment(receivers.begin, rows).array();
-  for (const Field& part : partial) sum += part;
-  return sum.colwise() / area_.segment(receivers.begin, rows).array();
+  const Eigen::Index rows = receivers.end - receivers.begin;
+  const Field own =
+      radiosity.middleRows(receivers.begin, rows).colwise() * remainder_.segment(receivers.begin, rows).array();
+  return (sum.rows(receivers.begin % edge, rows) + own).colwise() / area_.segment(receivers.begin, rows).array();
 }
 
 Field DenseTransport::shoot(PatchRange sources, const FieldView& radiosity) const {

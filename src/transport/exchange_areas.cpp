@@ -2,7 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
-#include "base/target_clones.h"
+#include "transport/tile_kernel.h"
 
 #include <algorithm>
 #include <array>
@@ -15,33 +15,33 @@ namespace {
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
 // Partial sums are kept per stripe of block rows; their number is fixed, so that the bits do not depend on the threads.
-constexpr std::size_t stripes = 16;
+constexpr PatchIndex stripes = 8;
 
-// Bands side by side in rows padded to whole tiles.
-using Bands = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// Written so that the compiler turns the loops into vector instructions.
-// out_I += T b_J and, for J > I, out_J += T^T b_I for one band.
-PATCHLIGHT_TARGET_CLONES
-void multiply_tile(std::span<const float> tile, bool diagonal, const double* b_I, const double* b_J, double* out_I,
-                   double* out_J) {
-  for (std::size_t r = 0; r < edge; ++r) {
-    const float* row = &tile[r * edge];
-    std::array<double, 8> sum{};
-    for (std::size_t c = 0; c < edge; c += 8) {
-      for (std::size_t k = 0; k < 8; ++k) sum[k] += static_cast<double>(row[c + k]) * b_J[c + k];
-    }
-    out_I[r] += ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-    if (diagonal) continue;
-    for (std::size_t c = 0; c < edge; ++c) out_J[c] += static_cast<double>(row[c]) * b_I[r];
-  }
+std::array<float, std::size_t{edge} * edge> squared(std::span<const float> tile) {
+  std::array<float, std::size_t{edge} * edge> squares;
+  for (std::size_t k = 0; k < squares.size(); ++k) squares[k] = tile[k] * tile[k];
+  return squares;
 }
 
-void multiply_squared_tile(std::span<const float> tile, bool diagonal, const double* b_I, const double* b_J,
-                           double* out_I, double* out_J) {
-  std::array<float, edge * edge> squared;
-  for (std::size_t k = 0; k < squared.size(); ++k) squared[k] = tile[k] * tile[k];
-  multiply_tile(squared, diagonal, b_I, b_J, out_I, out_J);
+// Adds the products of the tiles of block row I with b to the sums, whose blocks begin at `first`.
+struct Sums {
+  PackedField& field;
+  PatchIndex first;
+  double* block(PatchIndex I) const { return field.block(first + I); }
+};
+
+void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, int power, const Sums& sum) {
+  for (PatchIndex J = I; J < S.blocks(); ++J) {
+    const auto multiply_with = [&](const float* tile) {
+      if (I == J) return gather_tile(tile, b.bands, b.block(J), sum.block(I));
+      multiply_tile(tile, b.bands, {b.block(I), b.block(J), sum.block(I), sum.block(J)});
+    };
+    if (power == 1) {
+      multiply_with(S.tile(I, J).data());
+    } else {
+      multiply_with(squared(S.tile(I, J)).data());
+    }
+  }
 }
 
 }  // namespace
@@ -83,27 +83,16 @@ void ExchangeAreas::set(PatchIndex i, PatchIndex j, float value) {
 
 Field multiply(const ExchangeAreas& S, const FieldView& B, int power) {
   assert(B.rows() == static_cast<Eigen::Index>(S.size()) && (power == 1 || power == 2));
-  const Eigen::Index padded = static_cast<Eigen::Index>(S.blocks()) * edge;
-  Bands b = Bands::Zero(B.cols(), padded);
-  b.leftCols(B.rows()) = B.matrix().transpose();
+  const PackedField b(B, S.blocks());
 
   // Stripe s takes the block rows s, s + stripes, ...: long and short rows spread evenly.
-  std::vector<Bands> partial(stripes);
+  PackedField partial(stripes * S.blocks(), b.bands);
   parallel_for(stripes, [&](std::size_t stripe) {
-    Bands& sum = partial[stripe];
-    sum = Bands::Zero(B.cols(), padded);
-    for (PatchIndex I = static_cast<PatchIndex>(stripe); I < S.blocks(); I += stripes) {
-      for (PatchIndex J = I; J < S.blocks(); ++J) {
-        const auto kernel = power == 1 ? multiply_tile : multiply_squared_tile;
-        for (Eigen::Index band = 0; band < B.cols(); ++band) {
-          kernel(S.tile(I, J), I == J, &b(band, I * edge), &b(band, J * edge), &sum(band, I * edge),
-                 &sum(band, J * edge));
-        }
-      }
+    for (auto I = static_cast<PatchIndex>(stripe); I < S.blocks(); I += stripes) {
+      multiply_row(S, I, b, power, {partial, static_cast<PatchIndex>(stripe) * S.blocks()});
     }
   });
-  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
-  return partial[0].leftCols(B.rows()).transpose().array();
+  return summed(std::move(partial), stripes).rows(0, B.rows());
 }
 
 Eigen::VectorXd row_sums(const ExchangeAreas& S) {

@@ -37,7 +37,7 @@ RadiosityProblem problem_in(const PatchMesh& mesh, const Eigen::VectorXd& area) 
 Field radiosity(const PatchMesh& mesh, const ExchangeAreas& raw, const LostShare& lost) {
   const Eigen::VectorXd area = exposed_area(mesh, lost, row_sums(raw));
   const auto transport = dense_transport(close_exchange_areas(raw, area, lost), area);
-  return solve(*transport, problem_in(mesh, area), {Solver::gauss_seidel, 1e-6, 10000}).radiosity;
+  return solve(*transport, problem_in(mesh, area), {.max_iterations = 10000}).radiosity;
 }
 
 }  // namespace

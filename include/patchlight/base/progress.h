@@ -3,6 +3,7 @@
 #include "patchlight/base/field.h"
 
 #include <functional>
+#include <limits>
 
 namespace patchlight {
 
@@ -19,6 +20,7 @@ struct Iteration {
   double error_bound = 0;        ///< bound on ||B - B_k||_A / ||B_k - E||_A, worst band; infinite when none is known
   double seconds = 0;            ///< wall time since the solver started
   double work = 0;               ///< operator applications so far; N shots or N rows count as one
+  double true_error = std::numeric_limits<double>::quiet_NaN();  ///< against SolverOptions::reference, worst band
 };
 
 /// What an observer is told.
@@ -27,6 +29,7 @@ struct Progress {
   double fraction = 0;                   ///< of this stage, 0 to 1
   const Iteration* iteration = nullptr;  ///< in Stage::solve only
   const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
+  const Field* ambient = nullptr;        ///< goes with it for progressive refinement: Solution::ambient of this iterate
 };
 
 /// Called while a stage goes on, about ten times a second where its work is cut finely enough, never from two threads

@@ -18,10 +18,11 @@ struct Request {
   std::optional<double> max_edge = {};      ///< longest patch edge, metres
   std::optional<std::size_t> patches = {};  ///< or the number of kept patches
   Sides sides = Sides::automatic;
-  Solver solver = Solver::gauss_seidel;
-  double tolerance = 1e-6;    ///< the solver's relative error
-  int max_iterations = 1000;  ///< after which the solver gives up
-  int samples = 16;           ///< shadow rays of a partly occluded pair of patches
+  Solver solver = Solver::cg;
+  double tolerance = 1e-6;                ///< the solver's relative error
+  int max_iterations = 1000;              ///< after which the solver gives up
+  std::optional<double> relaxation = {};  ///< of SOR; without it estimated
+  int samples = 16;                       ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};     ///< of the automatic estimator

@@ -4,6 +4,8 @@
 #include "patchlight/base/progress.h"
 
 #include <Eigen/Core>
+#include <limits>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -22,6 +24,10 @@ struct Solution {
   Field ambient;  ///< one row: progressive refinement's estimate of the irradiance still under way, for display
   std::vector<Iteration> history;  ///< from iteration 0
   bool converged = false;
+  std::string
+      trapped;  ///< light that can neither leave nor be absorbed: why the system is singular; empty if it is not
+  Field error;  ///< per-patch bound on the error of `radiosity`, W/m^2; empty where none is known
+  double patch_bound = std::numeric_limits<double>::infinity();  ///< ||error||_A / ||B - E||_A, worst band
 };
 
 /// Where the light goes, in W per band. emitted = absorbed + escaped + lost_at_backs + defect + imbalance.

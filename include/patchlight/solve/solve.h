@@ -4,26 +4,54 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/transport_operator.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace patchlight {
 
-enum class Solver { jacobi, gauss_seidel, progressive };
+/// docs/solvers.md has a paragraph on each.
+enum class Solver {
+  jacobi,
+  gauss_seidel,
+  sor,
+  symmetric_gauss_seidel,
+  chebyshev,
+  progressive,
+  overshooting,
+  cg,
+  deflated_cg,
+  gmres,
+  bicgstab
+};
+
+/// All of them, in this order.
+std::vector<Solver> all_solvers();
 
 /// The solver's name as on the command line.
 const char* name_of(Solver solver);
 
+/// True for the two that shoot: they take single rows of the transport, never all at once.
+bool is_shooting(Solver solver);
+
 struct SolverOptions {
-  Solver solver = Solver::gauss_seidel;
+  Solver solver = Solver::cg;
   double relative_error = 1e-6;  ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below
   int max_iterations = 1000;     ///< for progressive refinement one iteration is as many shots as there are patches
+  std::optional<double> relaxation = {};       ///< of SOR, above 0 and below 2; without it estimated
+  int restart = 30;                            ///< directions that GMRES keeps
+  std::optional<double> largest_row_sum = {};  ///< of F, where it is known: saves an application. Infinite: not to be
+                                               ///< found, so that there is no bound
+  std::optional<Field> reference = {};  ///< a solution to be met: stop when ||B_ref - B_k||_A / ||B_ref - E||_A, worst
+                                        ///< band, is below relative_error
 };
 
-/// Solves B = E + rho o F B for all bands at once. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times the
-/// largest row sum of F, of docs/theory.md section 7. Where kappa is not below 1 there is no bound: the relative
-/// residual decides instead, and the history's error_bound is infinite. What cannot converge ends after max_iterations
-/// with converged = false and its history. \throws Cancelled.
+/// Solves B = E + rho o F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
+/// by a factor once. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times the largest row sum of F, of
+/// docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of the same section; where that is
+/// not known either, by the relative residual, with an infinite error_bound in the history. What cannot converge ends
+/// after max_iterations with converged = false and its history; a singular system at once, with Solution::trapped.
+/// \throws Cancelled.
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

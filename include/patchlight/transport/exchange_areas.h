@@ -1,11 +1,11 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/base/large_array.h"
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace patchlight {
 
@@ -35,7 +35,7 @@ class ExchangeAreas {
   std::size_t offset(PatchIndex I, PatchIndex J) const;
 
   PatchIndex size_;
-  std::vector<float> entries_;
+  LargeArray<float> entries_;
 };
 
 /// Sums S B over j for every row, all bands, in double: (S B)_i = sum_j S_ij B_j, with the entries raised to `power` (1

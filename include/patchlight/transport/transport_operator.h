@@ -3,6 +3,7 @@
 #include "patchlight/base/field.h"
 
 #include <Eigen/Core>
+#include <functional>
 
 namespace patchlight {
 
@@ -15,6 +16,25 @@ class TransportOperator {
   virtual Field apply(const FieldView& radiosity) const = 0;
 };
 
+/// What a sweep comes to: some patches with their radiosities of now, the irradiance by the radiosities of now, their
+/// own among them, one row each, and the form factors from each of them (rows) to each (columns).
+struct SweptPatches {
+  PatchRange range;
+  Field radiosity;
+  Field irradiance;
+  Eigen::MatrixXd own_form_factors;
+};
+
+/// The new radiosities of such patches.
+using Relax = std::function<Field(const SweptPatches& patches)>;
+
+/// What a sweep leaves, and where the next one starts.
+struct Sweep {
+  Field radiosity;     ///< B after the sweep
+  Field irradiance;    ///< F B of the radiosities before it; empty when it is not known
+  Field from_earlier;  ///< private to the transport: sums that the next sweep starts from; empty to begin with
+};
+
 /// A transport whose rows can be had one by one.
 class RowTransport : public TransportOperator {
  public:
@@ -24,6 +44,10 @@ class RowTransport : public TransportOperator {
   virtual Field shoot(PatchRange sources, const FieldView& radiosity) const = 0;
   /// Form factors F_ij from the patches of `from` (rows) to the patches of `to` (columns).
   virtual Eigen::MatrixXd form_factors(PatchRange from, PatchRange to) const = 0;
+  /// Relaxes all patches, block by block from the first to the last, each with the newest radiosities of all others;
+  /// then, where `back` is not empty, from the last to the first with that. Costs up to two applications; there and
+  /// back twice as many.
+  virtual Sweep sweep(Sweep from, const Relax& there, const Relax& back) const;
 };
 
 }  // namespace patchlight

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "patchlight/solve/solve.h"
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+namespace patchlight {
+
+/// Positive weights v with g = v - K v > 0: for any non-negative K, |B* - B|_i <= v_i max_j |r_j| / g_j. One column per
+/// band.
+struct PatchWeights {
+  Field v;
+  Field g;
+};
+
+/// What a residual says about the error.
+struct Bounds {
+  Eigen::ArrayXd contraction;           ///< per band, a bound on ||K||_A; infinite when none is known
+  std::optional<PatchWeights> weights;  ///< where the contraction is not below 1, if they exist
+
+  /// True when a band contracts: ||B* - B||_A <= ||r||_A / (1 - contraction).
+  bool contracts(Eigen::Index band) const;
+  /// True when all do.
+  bool contracts() const;
+};
+
+/// rho_max times the largest row sum, which `options` tells or one application finds. docs/theory.md section 7.
+Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
+                              const SolverOptions& options);
+
+/// Weights from a loose solution of (I - K) v = 1. Nothing when none is found: then K does not contract. Costs some
+/// five applications.
+std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem);
+
+/// Per patch and band a bound on the error of E + rho o F B, W/m^2, for the residual r of B: (K |B* - B|)_i <=
+/// (v_i - g_i) max_j |r_j| / g_j.
+Field patch_errors(const PatchWeights& weights, const FieldView& residual);
+
+/// Bands in which light is emitted where it can neither leave nor be absorbed: patches that reflect all of it, see
+/// nothing but each other and lose nothing. A sentence for the user; empty when there are none. Costs a few
+/// applications where some patch reflects all light, else nothing.
+std::string trapped_light(const TransportOperator& transport, const RadiosityProblem& problem);
+
+}  // namespace patchlight

@@ -1,0 +1,138 @@
+#include "solve/iterations.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/solve/spectral_radius.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+// 0 / 0 is 0: nothing is wrong where there is nothing.
+double ratio(double error, double size) { return error == 0 ? 0 : error / size; }
+
+// The irradiance H for which an iterate is E + rho o H; F B where nothing is reflected.
+Field arrived(const RadiosityProblem& problem, const Iterate& iterate) {
+  return (problem.reflectance > 0)
+      .select((iterate.radiosity - problem.exitance) / problem.reflectance, iterate.irradiance);
+}
+
+}  // namespace
+
+Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance) {
+  Field residual = problem.exitance + problem.reflectance * irradiance - radiosity;
+  return {std::move(radiosity), std::move(irradiance), std::move(residual)};
+}
+
+Iterations::Iterations(const TransportOperator& transport, const RadiosityProblem& problem,
+                       const SolverOptions& options, const Observer& observer)
+    : transport_(transport), problem_(problem), options_(options), observer_(observer), start_(wall_seconds()) {
+  bounds_.contraction = contraction_of(transport, problem, options);
+  if (!options.largest_row_sum) count(1);
+  if (!bounds_.contracts() && bounds_.contraction.isFinite().all()) bounds_.weights = patch_weights(transport, problem);
+}
+
+Field Iterations::apply(const FieldView& radiosity) {
+  count(1);
+  return transport_.apply(radiosity);
+}
+
+Eigen::ArrayXd Iterations::spectral_radius(int steps) {
+  count(steps);
+  return patchlight::spectral_radius(transport_, problem_, steps);
+}
+
+Iteration Iterations::measured(const Iterate& iterate, int number) const {
+  const Eigen::ArrayXd norm = area_norm(iterate.residual, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - problem_.exitance, problem_.area);
+  Iteration iteration{number, 0, 0, wall_seconds() - start_, work_};
+  for (Eigen::Index band = 0; band < norm.size(); ++band) {
+    double bound = unknown;
+    if (bounds_.contracts(band)) {
+      bound = norm[band] / (1 - bounds_.contraction[band]);
+    } else if (bounds_.weights) {
+      const auto v = bounds_.weights->v.col(band);
+      const double worst = (iterate.residual.col(band).abs() / bounds_.weights->g.col(band)).maxCoeff();
+      bound = std::sqrt((problem_.area.array() * v.square()).sum()) * worst;
+    }
+    iteration.relative_residual = std::max(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
+    if (norm[band] > 0) iteration.error_bound = std::max(iteration.error_bound, bound / reflected[band]);
+  }
+  if (options_.reference) {
+    const Field& B = *options_.reference;
+    const Eigen::ArrayXd error = area_norm(B - iterate.radiosity, problem_.area);
+    const Eigen::ArrayXd size = area_norm(B - problem_.exitance, problem_.area);
+    iteration.true_error = 0;
+    for (Eigen::Index band = 0; band < error.size(); ++band) {
+      iteration.true_error = std::max(iteration.true_error, ratio(error[band], size[band]));
+    }
+  }
+  return iteration;
+}
+
+void Iterations::tell(const Iterate& iterate) {
+  if (!observer_) return;
+  // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
+  const Iteration& iteration = solution_.history.back();
+  const double wanted = std::log(options_.relative_error);
+  const double residual = std::isfinite(iteration.relative_residual) ? iteration.relative_residual : 1;
+  const double reached = std::log(std::clamp(residual, options_.relative_error, 1.0));
+  const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
+  arrived_.resize(0, 0);
+  const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
+  if (!observer_({Stage::solve, reached / wanted, &iteration, &shown, ambient})) throw Cancelled();
+}
+
+bool Iterations::start(Field direct_irradiance) {
+  solution_.direct_irradiance = std::move(direct_irradiance);
+  Iterate lamps = iterate_of(problem_, problem_.exitance, solution_.direct_irradiance);
+  first_residual_ = area_norm(lamps.residual, problem_.area);
+  // The light of the lamps has arrived nowhere yet.
+  show_irradiance(Field::Zero(problem_.exitance.rows(), problem_.exitance.cols()));
+  return record(std::move(lamps), 0);
+}
+
+bool Iterations::record(Iterate iterate, int number, Residual residual) {
+  Iteration iteration = measured(iterate, number);
+  const auto is_good = [this](const Iteration& row) {
+    if (options_.reference) return row.true_error <= options_.relative_error;
+    const bool bounded = bounds_.contracts() || bounds_.weights;
+    return (bounded ? row.error_bound : row.relative_residual) <= options_.relative_error;
+  };
+  solution_.converged = is_good(iteration);
+  if (solution_.converged && residual == Residual::recurred) {
+    Field irradiance = apply(iterate.radiosity);
+    iterate = iterate_of(problem_, std::move(iterate.radiosity), std::move(irradiance));
+    iteration = measured(iterate, number);
+    solution_.converged = is_good(iteration);
+  }
+  solution_.history.push_back(iteration);
+  tell(iterate);
+  last_ = std::move(iterate);
+  return solution_.converged;
+}
+
+Solution Iterations::finish() {
+  Solution solution = std::move(solution_);
+  solution.irradiance = last_.irradiance;
+  solution.radiosity = problem_.exitance + problem_.reflectance * last_.irradiance;
+  solution.ambient = std::move(ambient_);
+  if (!bounds_.weights && bounds_.contracts()) bounds_.weights = patch_weights(transport_, problem_);
+  if (!bounds_.weights) return solution;
+  solution.error = patch_errors(*bounds_.weights, last_.residual);
+  const Eigen::ArrayXd error = area_norm(solution.error, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem_.exitance, problem_.area);
+  solution.patch_bound = 0;
+  for (Eigen::Index band = 0; band < error.size(); ++band) {
+    solution.patch_bound = std::max(solution.patch_bound, ratio(error[band], reflected[band]));
+  }
+  return solution;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "patchlight/solve/solve.h"
+
+#include "solve/bounds.h"
+
+#include <Eigen/Core>
+
+namespace patchlight {
+
+/// One step of a solver.
+struct Iterate {
+  Field radiosity;   ///< B_k
+  Field irradiance;  ///< F B_k; for what shoots, the irradiance by what has been shot
+  Field residual;    ///< r, where ||B* - B_k||_A <= ||r||_A / (1 - kappa)
+};
+
+/// B_k with the residual E + rho o H - B_k, H = F B_k.
+Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance);
+
+/// Whether residuals are computed anew from an application, or are carried along by recurrences, which drift.
+enum class Residual { applied, recurred };
+
+/// What the iterations of one run have in common: applies the transport and counts, measures iterates, keeps the
+/// history, tells when to stop.
+class Iterations {
+ public:
+  Iterations(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
+             const Observer& observer);
+
+  const RadiosityProblem& problem() const { return problem_; }
+  const SolverOptions& options() const { return options_; }
+  const Bounds& bounds() const { return bounds_; }
+
+  /// F B; counts as one application.
+  Field apply(const FieldView& radiosity);
+  /// The spectral radius of K per band; counts its applications.
+  Eigen::ArrayXd spectral_radius(int steps);
+  /// Counts work that was done otherwise, in applications.
+  void count(double applications) { work_ += applications; }
+
+  /// Puts E into the history, with F E as it is found from the lamps. True when that is good enough.
+  bool start(Field direct_irradiance);
+  /// Puts the next iterate into the history. True when it is good enough; one with a recurred residual is measured once
+  /// more, by an application, before that is said. `number` is the iteration's.
+  bool record(Iterate iterate, int number, Residual residual = Residual::applied);
+  /// What goes with the next iterate for display: Solution::ambient, and the irradiance that has arrived, where it is
+  /// not (B - E) / rho.
+  void show(Field ambient) { ambient_ = std::move(ambient); }
+  void show_irradiance(Field arrived) { arrived_ = std::move(arrived); }
+
+  const Field& direct_irradiance() const { return solution_.direct_irradiance; }
+  bool good() const { return solution_.converged; }
+  /// B = E + rho o H with the H of the last iterate.
+  Solution finish();
+
+ private:
+  Iteration measured(const Iterate& iterate, int number) const;
+  void tell(const Iterate& iterate);
+
+  const TransportOperator& transport_;
+  const RadiosityProblem& problem_;
+  const SolverOptions& options_;
+  const Observer& observer_;
+  Bounds bounds_;
+  double start_;
+  double work_ = 0;
+  Eigen::ArrayXd first_residual_;
+  Iterate last_;
+  Field ambient_, arrived_;
+  Solution solution_;
+};
+
+}  // namespace patchlight
