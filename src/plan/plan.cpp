@@ -62,6 +62,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
 }
 
 KeptSides sides_for(const Scene& scene, const Request& request) {
+  assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
   return request.kept_sides ? *request.kept_sides : kept_sides(scene, request.sides);
 }
 

@@ -31,7 +31,8 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
                         int lost_share_rays, const Observer& observer = {});
 
 /// Closes what is not closed yet, see close_exchange_areas(). In a closed scene what the storage of closed rows as
-/// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws Cancelled.
+/// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws
+/// Cancelled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 
 }  // namespace patchlight
