@@ -70,7 +70,7 @@ void require_memory(std::size_t patches, const Request& request) {
 void require_memory(const Scene& scene, const Request& request) {
   if (request.max_edge) {
     const double largest = *request.max_edge * *request.max_edge;
-    const double least = kept_area(scene, kept_sides(scene, request.sides)) / largest;
+    const double least = kept_area(scene, sides_for(scene, request)) / largest;
     // Too many to count are as good as the largest number.
     require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request);
   } else {

@@ -11,6 +11,7 @@ inline constexpr const char* area = "area.npy";
 inline constexpr const char* lost_share = "lost_share.npy";
 inline constexpr const char* raw_row_sum = "raw_row_sum.npy";
 inline constexpr const char* mesh = "mesh.vtp";
+inline constexpr const char* scene = "scene.json";
 inline constexpr const char* info = "info.json";
 inline constexpr const char* by_material = "by_material.csv";
 inline constexpr const char* by_object = "by_object.csv";

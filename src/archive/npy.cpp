@@ -139,20 +139,20 @@ NpyReader::NpyReader(const std::filesystem::path& file) : file_(file), stream_(f
   if (!fits) refuse(file, std::to_string(bytes) + " bytes after the header " + text.substr(0, text.find('\n')));
 }
 
-std::vector<double> NpyReader::next_row() {
-  std::vector<char> bytes(columns_ * bytes_per_value_);
-  stream_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream_) throw InputError(file_.string(), "cannot be read to its end");
-  std::vector<double> values(columns_);
-  for (std::size_t k = 0; k < columns_; ++k) {
-    if (bytes_per_value_ == sizeof(double)) {
-      std::memcpy(&values[k], &bytes[k * sizeof(double)], sizeof(double));
-    } else {
-      float value = 0;
-      std::memcpy(&value, &bytes[k * sizeof(float)], sizeof(float));
-      values[k] = static_cast<double>(value);
-    }
+std::vector<double> NpyReader::next_rows(std::size_t count) {
+  const auto read = [this](auto& values) {
+    stream_.read(reinterpret_cast<char*>(values.data()),
+                 static_cast<std::streamsize>(values.size() * sizeof(values[0])));
+    if (!stream_) throw InputError(file_.string(), "cannot be read to its end");
+  };
+  std::vector<double> values(count * columns_);
+  if (bytes_per_value_ == sizeof(double)) {
+    read(values);
+    return values;
   }
+  std::vector<float> narrow(values.size());
+  read(narrow);
+  std::copy(narrow.begin(), narrow.end(), values.begin());
   return values;
 }
 
@@ -163,12 +163,9 @@ Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, st
                                         std::to_string(reader.columns()) + " values; expected " + std::to_string(rows) +
                                         " x " + std::to_string(columns));
   }
-  Eigen::MatrixXd values(rows, columns);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::vector<double> next = reader.next_row();
-    values.row(static_cast<Eigen::Index>(row)) = Eigen::Map<const Eigen::RowVectorXd>(next.data(), values.cols());
-  }
-  return values;
+  const std::vector<double> values = reader.next_rows(rows);
+  return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+      values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
 }
 
 }  // namespace patchlight

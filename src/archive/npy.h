@@ -27,8 +27,8 @@ class NpyReader {
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }
-  /// The next row; it must be there. \throws InputError when the file cannot be read.
-  std::vector<double> next_row();
+  /// The next rows, one after the other; they must be there. \throws InputError when the file cannot be read.
+  std::vector<double> next_rows(std::size_t count);
 
  private:
   std::filesystem::path file_;

@@ -1,5 +1,6 @@
 #include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
 
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
@@ -7,6 +8,7 @@
 #include "archive/sampling_error_json.h"
 #include "transport/narrow.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -95,19 +97,65 @@ void require_shares(const std::filesystem::path& file, const Eigen::MatrixXd& va
   throw InputError(file.string(), "found a share outside 0 to 1; make the form factors anew");
 }
 
-// Refuses an entry of F that cannot be: `other` is A_j F_ji in m^2.
-void require_plausible(const std::filesystem::path& file, double form_factor, double exchange_area, double other) {
+// Can this be an entry of F? `exchange_area` is A_i F_ij and `other` A_j F_ji, in m^2.
+bool is_plausible(double form_factor, double exchange_area, double other) {
   const double rounding =
       reciprocity_tolerance * std::max(exchange_area, other) + static_cast<double>(std::numeric_limits<float>::min());
-  if (std::isfinite(form_factor) && form_factor >= 0 && std::abs(exchange_area - other) <= rounding) return;
-  std::ostringstream text;
-  text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
-       << " where A_j F_ji = " << other
-       << "; expected equal numbers, finite and not negative. Make the form factors anew";
-  throw InputError(file.string(), text.str());
+  return std::isfinite(form_factor) && form_factor >= 0 && std::abs(exchange_area - other) <= rounding;
 }
 
-// S_ij = A_i F_ij from the rows of F.
+// Some rows of F, all within one block row of S, and what turns them into exchange areas.
+struct Rows {
+  PatchIndex begin;
+  PatchIndex count;
+  std::vector<double> F;
+  const Eigen::VectorXd& area;
+
+  double form_factor(PatchIndex r, PatchIndex j) const { return F[r * static_cast<std::size_t>(area.size()) + j]; }
+};
+
+// Fills the tile of block column J on or right of the diagonal, S_ij = A_i F_ij, or compares one left of it with its
+// mirror image. Returns false when an entry cannot be.
+bool take_tile(const Rows& rows, PatchIndex J, ExchangeAreas& S) {
+  const PatchIndex I = rows.begin / edge;
+  const std::span<float> tile = J < I ? S.tile(J, I) : S.tile(I, J);
+  const PatchIndex columns = std::min(edge, S.size() - J * edge);
+  bool plausible = true;
+  for (PatchIndex r = 0; r < rows.count; ++r) {
+    for (PatchIndex c = 0; c < columns; ++c) {
+      const double form_factor = rows.form_factor(r, J * edge + c);
+      const double exchange_area = rows.area[rows.begin + r] * form_factor;
+      const bool is_mirrored = J < I || (J == I && c < r);
+      const double other = is_mirrored ? static_cast<double>(tile[c * edge + r]) : exchange_area;
+      plausible &= is_plausible(form_factor, exchange_area, other);
+      if (is_mirrored) continue;
+      tile[r * edge + c] = narrow_toward_zero(exchange_area);
+      if (I == J) tile[c * edge + r] = tile[r * edge + c];
+    }
+  }
+  return plausible;
+}
+
+// Names the first entry that cannot be.
+[[noreturn]] void refuse(const std::filesystem::path& file, const Rows& rows, const ExchangeAreas& S) {
+  for (PatchIndex r = 0; r < rows.count; ++r) {
+    for (PatchIndex j = 0; j < S.size(); ++j) {
+      const PatchIndex i = rows.begin + r;
+      const double form_factor = rows.form_factor(r, j);
+      const double exchange_area = rows.area[i] * form_factor;
+      const double other = j < i ? static_cast<double>(S.at(j, i)) : exchange_area;
+      if (is_plausible(form_factor, exchange_area, other)) continue;
+      std::ostringstream text;
+      text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
+           << " where A_j F_ji = " << other
+           << "; expected equal numbers, finite and not negative. Make the form factors anew";
+      throw InputError(file.string(), text.str());
+    }
+  }
+  throw InputError(file.string(), "found a form factor that cannot be; make the form factors anew");
+}
+
+// S_ij = A_i F_ij from the rows of F, as many at a time as make a row of tiles.
 ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen::VectorXd& area) {
   const auto size = static_cast<PatchIndex>(area.size());
   NpyReader reader(file);
@@ -117,17 +165,13 @@ ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen
                          " values; expected one row and one column for each of " + std::to_string(size) + " patches");
   }
   ExchangeAreas S(size);
-  for (PatchIndex i = 0; i < size; ++i) {
-    const std::vector<double> F = reader.next_row();
-    for (PatchIndex j = 0; j < size; ++j) {
-      const double exchange_area = area[i] * F[j];
-      const double other = j < i ? static_cast<double>(S.at(j, i)) : exchange_area;
-      require_plausible(file, F[j], exchange_area, other);
-      const float entry = narrow_toward_zero(exchange_area);
-      if (j >= i) S.tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge] = entry;
-      if (j > i && i / edge == j / edge) {
-        S.tile(i / edge, j / edge)[static_cast<std::size_t>(j % edge) * edge + i % edge] = entry;
-      }
+  std::vector<std::uint8_t> plausible(S.blocks());
+  for (PatchIndex begin = 0; begin < size; begin += edge) {
+    const PatchIndex count = std::min(edge, size - begin);
+    const Rows rows{begin, count, reader.next_rows(count), area};
+    parallel_for(S.blocks(), [&](std::size_t J) { plausible[J] = take_tile(rows, static_cast<PatchIndex>(J), S); });
+    if (!std::all_of(plausible.begin(), plausible.end(), [](std::uint8_t good) { return good != 0; })) {
+      refuse(file, rows, S);
     }
   }
   return S;

@@ -1,4 +1,5 @@
 #include "patchlight/archive/form_factor_files.h"
+#include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
 #include "patchlight/output/whole_file.h"
@@ -104,6 +105,7 @@ Json files_part(const FormFactorResult& result) {
       "its area; unit 1";
   part[file_name::raw_row_sum] = "sum_j F_ij before closure; unit 1";
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
+  part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
   return part;
 }
 
@@ -156,10 +158,10 @@ std::string info_json(const FormFactorResult& result) {
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_result(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 11> names = {
-      file_name::dense, file_name::sparse,      file_name::dense_error, file_name::sparse_error,
-      file_name::area,  file_name::lost_share,  file_name::raw_row_sum, file_name::mesh,
-      file_name::info,  file_name::by_material, file_name::by_object};
+  static constexpr std::array<std::string_view, 12> names = {
+      file_name::dense, file_name::sparse,     file_name::dense_error, file_name::sparse_error,
+      file_name::area,  file_name::lost_share, file_name::raw_row_sum, file_name::mesh,
+      file_name::scene, file_name::info,       file_name::by_material, file_name::by_object};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (std::find(names.begin(), names.end(), name) == names.end() || !entry.is_regular_file()) return false;
@@ -194,6 +196,7 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     for (const GroupFactors& groups : result.groups) {
       write_groups(in / (groups.by == GroupBy::material ? file_name::by_material : file_name::by_object), groups);
     }
+    write_stored_scene(in / file_name::scene, result.scene, result.form_factors.plan.sides);
     write_bytes(in / file_name::info, info_json(result));
   });
 }

@@ -5,6 +5,7 @@
 
 #include "cli/check_options.h"
 #include "cli/form_factor_options.h"
+#include "cli/relight_options.h"
 #include "cli/solve_options.h"
 #include "cli/validate_options.h"
 
@@ -117,6 +118,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
+  const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
   for (CLI::App* command : tool.get_subcommands({})) {
@@ -137,7 +139,8 @@ Arguments parse_arguments(int count, const char* const* values) {
       arguments.command_line = joined(count, values);
       return arguments;
     }
-    SolveArguments arguments = finish_solve(*solve_options);
+    const bool again = command.get_name() == "relight";
+    SolveArguments arguments = again ? finish_relight(*relight_options) : finish_solve(*solve_options);
     arguments.command_line = joined(count, values);
     return arguments;
   } catch (const CLI::CallForHelp&) {

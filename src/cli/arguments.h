@@ -24,19 +24,20 @@ class UsageError : public std::runtime_error {
 
 enum class PictureColors { natural, luminance };
 
-/// What `patchlight solve` is asked to do. Lengths are in metres: the command line's model units are converted. A path
-/// that is empty stands for an output that is not wanted.
+/// What `patchlight solve` or `patchlight relight` is asked to do. A path that is empty stands for an output that is
+/// not wanted.
 struct SolveArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  std::vector<std::filesystem::path> models;  ///< together one scene, "-" is the standard input; none: the scene that
+                                              ///< is stored with the form factors
   ReadOptions read;
-  Request request;
+  Request request;  ///< metres
 
   std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
   std::filesystem::path series;                ///< .pvd
   std::filesystem::path report;                ///< .json
   std::filesystem::path picture;               ///< .png
   PictureColors colors = PictureColors::natural;
-  std::optional<Camera> camera;
+  std::optional<Camera> camera;  ///< model units
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
 

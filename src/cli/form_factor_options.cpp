@@ -80,6 +80,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
   add_patch_options(command, to.mesh);
   add_sampling_options(command, to.mesh);
+  add_machine_options(command, to.mesh.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and a summary");
   return options;
 }

@@ -1,19 +1,11 @@
 #include "cli/mesh_options.h"
 
+#include "cli/add_option.h"
 #include "cli/parse_value.h"
 
 #include <string>
 
 namespace patchlight::cli {
-namespace {
-
-// Adds an option with one value, which `take` understands or refuses.
-template <typename Take>
-void add(CLI::App& command, const std::string& name, const std::string& value, const std::string& help, Take take) {
-  command.add_option_function<std::string>(name, take, help)->option_text(value);
-}
-
-}  // namespace
 
 void add_sides_option(CLI::App& command, MeshOptions& options) {
   add(command, "--sides", "auto|front|both",
@@ -57,6 +49,9 @@ void add_sampling_options(CLI::App& command, MeshOptions& options) {
       });
   add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
       [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
+}
+
+void add_machine_options(CLI::App& command, Request& request) {
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&request](const std::string& text) {
         request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));

@@ -19,8 +19,11 @@ void add_sides_option(CLI::App& command, MeshOptions& options);
 /// Adds --max-edge and --patches.
 void add_patch_options(CLI::App& command, MeshOptions& options);
 
-/// Adds --samples, --estimator, --seed, --threads and --memory.
+/// Adds --samples, --estimator and --seed.
 void add_sampling_options(CLI::App& command, MeshOptions& options);
+
+/// Adds --threads and --memory.
+void add_machine_options(CLI::App& command, Request& request);
 
 /// The request in metres. \throws UsageError when options contradict each other.
 Request mesh_request(const MeshOptions& options, double metres_per_unit);

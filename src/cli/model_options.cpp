@@ -39,8 +39,12 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
           "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); },
           "length of one model unit; default m")
       ->option_text("m|cm|mm|in|ft");
+  add_set_option(command, options.settings);
+}
+
+void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option("--set", options.settings,
+      .add_option("--set", settings,
                   "changes a material: reflectance (0 to 1), exitance (W/m^2)\nor radiance (W/(m^2 sr)); may be "
                   "repeated; default: as in\nthe model")
       ->allow_extra_args(false)
@@ -59,8 +63,14 @@ ReadOptions read_options(const ModelOptions& options) {
   ReadOptions read;
   read.metres_per_unit = options.metres_per_unit;
   read.format = options.format;
-  for (const std::string& setting : options.settings) read.settings.push_back(parse_material_setting(setting));
+  read.settings = material_settings(options.settings);
   return read;
+}
+
+std::vector<MaterialSetting> material_settings(const std::vector<std::string>& texts) {
+  std::vector<MaterialSetting> settings;
+  for (const std::string& text : texts) settings.push_back(parse_material_setting(text));
+  return settings;
 }
 
 }  // namespace patchlight::cli

@@ -39,6 +39,10 @@ double legend_end(const Eigen::VectorXd& values) {
   return rounded_up(*end);
 }
 
+Camera in_metres(const Camera& camera, double metres_per_unit) {
+  return {camera.eye * metres_per_unit, camera.target * metres_per_unit, camera.vertical_field_of_view};
+}
+
 }  // namespace
 
 Field display_radiance(const Simulation& simulation) {
@@ -53,7 +57,8 @@ Field display_radiance(const Simulation& simulation) {
 
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
                           const Occluder& occluder, const Observer& observer) {
-  const Camera camera = arguments.camera ? *arguments.camera : default_camera(scene, simulation.plan.sides, occluder);
+  const Camera camera = arguments.camera ? in_metres(*arguments.camera, scene.metres_per_unit)
+                                         : default_camera(scene, simulation.plan.sides, occluder);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
   if (arguments.colors == PictureColors::natural) {

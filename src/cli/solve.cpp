@@ -1,6 +1,5 @@
 #include "cli/solve.h"
 
-#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/output/whole_file.h"
@@ -16,14 +15,15 @@
 #include "cli/picture.h"
 #include "cli/points_file.h"
 #include "cli/progress.h"
+#include "cli/solve_input.h"
 #include "cli/summary.h"
 #include "stage_clock.h"
 
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace patchlight::cli {
@@ -48,60 +48,25 @@ void check_outputs(const SolveArguments& arguments) {
   }
 }
 
-// What is asked for, and where form factors come from.
-struct KnownFormFactors {
-  Request request;
-  ExchangeOf exchange;  // empty: they are computed
-};
-
-// Stored form factors bring the options that they were made with.
-KnownFormFactors known_form_factors(const SolveArguments& arguments, const Scene& scene) {
-  KnownFormFactors known{arguments.request, {}};
-  if (arguments.form_factors.empty()) return known;
-  const FormFactorInfo info = read_form_factor_info(arguments.form_factors);
-  if (info.metres_per_unit != scene.metres_per_unit) {
-    std::ostringstream text;
-    text << "found form factors of a model with " << info.metres_per_unit << " m per unit; this one is read with "
-         << scene.metres_per_unit << ". Give the same --unit as then";
-    throw InputError(arguments.form_factors.string(), text.str());
-  }
-  if (!known.request.max_edge && !known.request.patches) known.request.max_edge = info.max_edge;
-  if (known.request.sides == Sides::automatic) known.request.sides = info.sides;
-  known.request.samples = info.samples;
-  known.request.seed = info.seed;
-  known.request.estimator = info.estimator;
-  if (!known.request.close && is_closed(info)) {
-    throw InputError(
-        arguments.form_factors.string(),
-        "found form factors whose rows are closed (" + info.closure +
-            "); expected them as computed, for --no-closure. Make them anew: patchlight form-factors MODEL "
-            "--raw -o FOLDER");
-  }
-  known.exchange = [folder = arguments.form_factors, info](const PatchMesh& mesh) {
-    return read_exchange(folder, info, mesh);
-  };
-  return known;
-}
-
 Results compute(const SolveArguments& arguments, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
 
-  // 1. Read the model and the points
+  // 1. Read the scene and the points
   if (!observer({.stage = Stage::read})) throw Cancelled();
   StageClock reading;
-  results.scene = read_scene(arguments.models, arguments.read);
-  if (!arguments.points.empty()) results.points = read_points(arguments.points, arguments.read.metres_per_unit);
+  SolveInput input = read_input(arguments);
+  results.scene = std::move(input.scene);
+  if (!arguments.points.empty()) results.points = read_points(arguments.points, results.scene.metres_per_unit);
   reading.finish(Stage::read);
 
   // 2. Solve
-  const KnownFormFactors known = known_form_factors(arguments, results.scene);
   const auto keep_iterates = [&](const Progress& progress) {
     if (progress.irradiance && !arguments.series.empty())
       results.iterates.emplace_back(progress.irradiance->cast<float>());
     return observer(progress);
   };
-  simulation = simulate(results.scene, known.request, keep_iterates, known.exchange);
+  simulation = simulate(results.scene, input.request, keep_iterates, input.exchange);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);

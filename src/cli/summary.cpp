@@ -26,9 +26,11 @@ std::string convergence(const Plan& plan, const Solution& solution) {
   const Iteration& last = solution.history.back();
   std::ostringstream text;
   text << name_of(plan.solver.solver) << ": " << (solution.converged ? "converged" : "NOT converged") << " after "
-       << last.number << (last.number == 1 ? " iteration" : " iterations");
+       << last.number << (is_shooting(plan.solver.solver) ? " shot" : " iteration") << (last.number == 1 ? "" : "s")
+       << " (" << rounded(last.work) << " operator applications)";
   if (std::isfinite(last.error_bound)) {
-    text << ", solver error at most " << rounded(last.error_bound, 2);
+    text << ", solver error at most " << rounded(last.error_bound, 2) << " as a whole";
+    if (std::isfinite(solution.patch_bound)) text << ", " << rounded(solution.patch_bound, 2) << " patch by patch";
   } else {
     text << ", relative residual " << rounded(last.relative_residual, 2) << " (no bound on the error is known)";
   }
@@ -138,6 +140,7 @@ std::string files_line(const std::vector<std::filesystem::path>& files) {
 
 std::string explain_not_converged(const Simulation& simulation) {
   const Plan& plan = simulation.plan;
+  if (!simulation.solution.trapped.empty()) return "not solved: " + simulation.solution.trapped;
   return convergence(plan, simulation.solution) + ", asked for " + rounded(plan.solver.relative_error, 2) +
          ". Either " + std::to_string(plan.solver.max_iterations) +
          " iterations are too few for this solver: try a larger --max-iterations or --tolerance; or light cannot "

@@ -53,13 +53,16 @@ Spectrum comma_separated(const std::string& list, const std::string& text) {
 }
 
 // One value stands for all bands.
-Spectrum spread(const Spectrum& value, Eigen::Index bands) {
-  return value.size() == 1 ? Spectrum(Spectrum::Constant(bands, value[0])) : value;
+Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
+  if (setting.value.size() == 1) return Spectrum::Constant(bands, setting.value[0]);
+  if (setting.value.size() == bands) return setting.value;
+  throw InputError("--set", "found " + std::to_string(setting.value.size()) + " values for material '" +
+                                setting.material + "'; expected one, or one for each of " + std::to_string(bands) +
+                                " bands");
 }
 
 Material changed(Material material, const MaterialSetting& setting) {
-  const Spectrum value = spread(setting.value, material.reflectance.size());
-  assert(value.size() == material.reflectance.size());
+  const Spectrum value = spread(setting, material.reflectance.size());
   switch (setting.quantity) {
     case Quantity::reflectance:
       material.reflectance = value;
@@ -74,18 +77,23 @@ Material changed(Material material, const MaterialSetting& setting) {
   return material;
 }
 
-std::vector<Material> changed(std::vector<Material> materials, const std::vector<MaterialSetting>& settings) {
+Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
   for (const MaterialSetting& setting : settings) {
-    const auto found = std::find_if(materials.begin(), materials.end(),
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
                                     [&](const Material& material) { return material.name == setting.material; });
-    if (found == materials.end()) {
+    if (found == scene.materials.end()) {
       std::vector<std::string> names;
-      for (const Material& material : materials) names.push_back(material.name);
+      for (const Material& material : scene.materials) names.push_back(material.name);
       throw InputError("--set", "no face has a material '" + setting.material + "'; expected one of " + listed(names));
     }
     *found = changed(*found, setting);
   }
-  return materials;
+  return scene;
+}
+
+Scene set_upright(Scene scene, const ReadOptions& options) {
+  if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
+  return scene;
 }
 
 // Says why the faces were left out, if there were any.
@@ -171,16 +179,19 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   assert(options.metres_per_unit > 0 && !files.empty());
   std::vector<Scene> scenes;
   for (const std::filesystem::path& file : files) scenes.push_back(read_model(file, options));
-  Scene scene = merge_scenes(std::move(scenes));
-  scene.materials = changed(std::move(scene.materials), options.settings);
+  Scene scene = with_settings(merge_scenes(std::move(scenes)), options.settings);
   scene = repair(std::move(scene));
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
-  if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
+  scene = set_upright(std::move(scene), options);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
+}
+
+Scene with_options(Scene scene, const ReadOptions& options) {
+  return set_upright(with_settings(std::move(scene), options.settings), options);
 }
 
 }  // namespace patchlight

@@ -42,6 +42,7 @@ Json request_part(const Request& request) {
   part["patches"] = json_of(request.patches);
   part["sides"] = name_of(request.sides);
   part["solver"] = name_of(request.solver);
+  part["relaxation"] = json_of(request.relaxation);
   part["tolerance"] = request.tolerance;
   part["max_iterations"] = request.max_iterations;
   part["samples"] = request.samples;
@@ -226,6 +227,8 @@ Json solution_part(const Simulation& simulation) {
   Json part;
   part["solver"] = name_of(simulation.plan.solver.solver);
   part["converged"] = simulation.solution.converged;
+  part["singular"] = simulation.solution.trapped.empty() ? Json() : Json(simulation.solution.trapped);
+  part["patch_bound"] = simulation.solution.patch_bound;
   part["iterations"] = Json::array();
   for (const Iteration& iteration : simulation.solution.history) {
     part["iterations"].push_back({{"number", iteration.number},

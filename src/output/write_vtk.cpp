@@ -17,7 +17,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 15> units = {
+constexpr std::array<std::array<const char*, 2>, 16> units = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -32,6 +32,7 @@ constexpr std::array<std::array<const char*, 2>, 15> units = {
      {"row_sum", "1"},
      {"raw_row_sum", "1"},
      {"rgb", "sRGB, 8 bits, at the recorded exposure"},
+     {"error_solver", "W/(m^2 sr)"},
      {"radiance_smooth", "W/(m^2 sr)"}}};
 
 void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
@@ -49,6 +50,9 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   cell_data.AddArray(floats("direct_irradiance", H_direct));
   // Rounding may make the difference slightly negative.
   cell_data.AddArray(floats("indirect_irradiance", (H - H_direct).max(0.0)));
+  if (simulation.solution.error.size() > 0) {
+    cell_data.AddArray(floats("error_solver", simulation.solution.error / std::numbers::pi));
+  }
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
   cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
   cell_data.AddArray(floats("luminance", luminances));

@@ -2,11 +2,13 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/plan/left_out_sides.h"
 #include "patchlight/plan/survey.h"
 #include "patchlight/visibility/convex_hull.h"
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -52,13 +54,22 @@ Plan make_plan(const Scene& scene, const Request& request) {
   require_lamp(scene);
   Plan plan = plan_form_factors(scene, request);
   plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  if (request.kept_sides) {
+    for (std::string& note : notes_on_left_out_sides(scene, *request.kept_sides, request.sides))
+      plan.notes.push_back(std::move(note));
+  }
   return plan;
+}
+
+KeptSides sides_for(const Scene& scene, const Request& request) {
+  assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
+  return request.kept_sides ? *request.kept_sides : kept_sides(scene, request.sides);
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   assert(!request.max_edge || *request.max_edge > 0);
   Plan plan;
-  plan.sides = kept_sides(scene, request.sides);
+  plan.sides = sides_for(scene, request);
   if (request.max_edge) {
     plan.max_edge = *request.max_edge;
   } else {

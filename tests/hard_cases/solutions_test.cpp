@@ -62,8 +62,8 @@ TEST(NearlyPerfectReflection, BalancesEnergyToABillionth) {
   EXPECT_NEAR(simulation.balance.absorbed[0], simulation.balance.emitted[0], 1e-8 * simulation.balance.emitted[0]);
 }
 
-// No light is ever absorbed: there is no answer. The survey says so beforehand; the solver ends after the iterations it
-// is given, says that it has not converged and claims no bound; every iteration has added the emitted flux.
+// No light is ever absorbed: there is no answer. The survey says so beforehand, and the solver before any iteration,
+// without a bound; what it hands out is the light of the lamps alone.
 TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
   const Scene scene = uniform_room(1, 1);
   const std::vector<Problem> problems = survey(scene).problems;
@@ -71,16 +71,16 @@ TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
     return problem.kind == ProblemKind::full_reflectance &&
            problem.what.find("a closed room of reflectance 1 has no answer") != std::string::npos;
   }));
-  for (const Solver solver : {Solver::jacobi, Solver::gauss_seidel, Solver::progressive}) {
+  for (const Solver solver : all_solvers()) {
     Request request = coarse(1e-6, 30);
     request.sides = Sides::front;
     request.solver = solver;
     const Solution solution = simulate(scene, request).solution;
     EXPECT_FALSE(solution.converged);
-    EXPECT_EQ(solution.history.back().number, 30);
+    EXPECT_EQ(solution.history.size(), 1U);
+    EXPECT_NE(solution.trapped.find("reflect all of it"), std::string::npos) << solution.trapped;
     EXPECT_EQ(solution.history.back().error_bound, std::numeric_limits<double>::infinity());
-    ASSERT_TRUE(solution.radiosity.allFinite());
-    EXPECT_GT(solution.radiosity.minCoeff(), 20);
+    EXPECT_TRUE((solution.radiosity == 1).all());
   }
 }
 
@@ -95,7 +95,7 @@ TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   Request request;
   request.patches = 500;
   request.tolerance = 1e-8;
-  for (const Solver solver : {Solver::jacobi, Solver::gauss_seidel, Solver::progressive}) {
+  for (const Solver solver : all_solvers()) {
     request.solver = solver;
     const Simulation simulation = simulate(scene, request);
     ASSERT_TRUE(simulation.solution.converged) << name_of(solver);

@@ -38,6 +38,10 @@ std::vector<std::string> readable_formats();
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
+/// A scene that was read before, with the settings and the upright axis of these options. \throws InputError when no
+/// material bears the name of a setting.
+Scene with_options(Scene scene, const ReadOptions& options);
+
 /// Reads several models as one scene. Materials with the same name and values become one; those that only share the
 /// name are kept apart, and a note says so. \throws InputError as for one file.
 Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options = {});

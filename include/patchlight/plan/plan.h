@@ -18,6 +18,7 @@ struct Request {
   std::optional<double> max_edge = {};      ///< longest patch edge, metres
   std::optional<std::size_t> patches = {};  ///< or the number of kept patches
   Sides sides = Sides::automatic;
+  std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
   Solver solver = Solver::cg;
   double tolerance = 1e-6;                ///< the solver's relative error
   int max_iterations = 1000;              ///< after which the solver gives up
@@ -58,6 +59,9 @@ struct Plan {
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;
+
+/// The sides that take part: Request::kept_sides, else those that Request::sides chooses.
+KeptSides sides_for(const Scene& scene, const Request& request);
 
 /// Fills the request's open ends from the facts of the scene. Pure.
 /// \throws InputError when the scene has no lamp.

@@ -30,8 +30,9 @@ struct Exchange {
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         int lost_share_rays, const Observer& observer = {});
 
-/// Closes what is not closed yet, see close_exchange_areas(). In a closed scene rows are met again, so that floats that
-/// were stored on the way lose nothing. \throws Cancelled.
+/// Closes what is not closed yet, see close_exchange_areas(). In a closed scene what the storage of closed rows as
+/// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws
+/// Cancelled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #include "patchlight/archive/form_factor_files.h"
 
+#include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
@@ -74,6 +75,41 @@ TEST_P(StoredFormFactors, GiveTheSameSolution) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RawAndClosed, StoredFormFactors, testing::Values(false, true));
+
+// With all that a folder holds; every step is a sum of products with numbers that double, which is exact.
+TEST(StoredFormFactors, CarryTwiceTheLightOfTwiceTheExitance) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const Scene scene = closed_room();
+  write_form_factors(place, {scene, find_form_factors(scene, coarse()), {}, "a command"});
+  const FormFactorInfo info = read_form_factor_info(place);
+  const auto irradiance = [&](double factor) {
+    StoredScene stored = read_stored_scene(place);
+    for (Material& material : stored.scene.materials) material.exitance *= factor;
+    Request request = coarse();
+    request.max_edge = info.max_edge;
+    request.kept_sides = stored.sides;
+    return simulate(stored.scene, request, {}, [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); })
+        .solution.irradiance;
+  };
+  const Field once = irradiance(1);
+  EXPECT_GT(once.minCoeff(), 0);
+  EXPECT_LE((irradiance(2) / once - 2).abs().maxCoeff(), 1e-12);
+}
+
+// The sums of closed rows come back to the last digits, although each entry went through floats.
+TEST(StoredFormFactors, OfAClosedRoomStayClosed) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "room.ff";
+  const Scene scene = closed_room();
+  const FormFactors found = find_form_factors(scene, coarse());
+  write_form_factors(place, {scene, found, {}, "a command"});
+  const ClosedExchangeAreas closed = close_exchange(read_exchange(place, read_form_factor_info(place), found.mesh));
+  EXPECT_EQ(closed.method, found.exchange.closure);
+  const Eigen::VectorXd sums = row_sums(closed.exchange_areas) + closed.remainder;
+  EXPECT_LE((sums - found.exchange.area).cwiseQuotient(found.exchange.area).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LE(closed.remainder.cwiseQuotient(found.exchange.area).cwiseAbs().maxCoeff(), 3e-7);
+}
 
 TEST(StoredFormFactors, KnowHowTheyWereMade) {
   const TemporaryFolder folder;

@@ -41,9 +41,15 @@ TEST(Npy, FloatsComeRowByRow) {
   NpyReader reader(file);
   ASSERT_EQ(reader.rows(), 3U);
   ASSERT_EQ(reader.columns(), 4U);
+  const std::vector<double> first = reader.next_rows(1);
+  const std::vector<double> others = reader.next_rows(2);
+  ASSERT_EQ(first.size(), 4U);
+  ASSERT_EQ(others.size(), 8U);
   for (std::size_t row = 0; row < 3; ++row) {
-    const std::vector<double> values = reader.next_row();
-    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(values[k], static_cast<double>(static_cast<float>(10 * row + k) / 3));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double value = row == 0 ? first[k] : others[4 * (row - 1) + k];
+      EXPECT_EQ(value, static_cast<double>(static_cast<float>(10 * row + k) / 3));
+    }
   }
 }
 

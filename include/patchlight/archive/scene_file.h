@@ -1,0 +1,23 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include <filesystem>
+
+namespace patchlight {
+
+/// The scene that form factors are of, and the sides of it that take part.
+struct StoredScene {
+  Scene scene;  ///< without its problems, which Scene::notes name
+  KeptSides sides;
+};
+
+/// Writes scene.json of a folder of form factors. Every number is read again as it was, and so is every name, whatever
+/// its bytes. docs/output.md describes the file. \throws OutputError.
+void write_stored_scene(const std::filesystem::path& file, const Scene& scene, const KeptSides& sides);
+
+/// Reads scene.json of such a folder. \throws InputError when there is none, or when it is damaged.
+StoredScene read_stored_scene(const std::filesystem::path& folder);
+
+}  // namespace patchlight

@@ -1,0 +1,281 @@
+#include "patchlight/archive/scene_file.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/provenance.h"
+
+#include "archive/file_names.h"
+#include "output/write_bytes.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// Keeps the keys in the order in which they are set.
+using Json = nlohmann::ordered_json;
+
+using Indices = std::vector<std::uint32_t>;
+
+constexpr const char* kind = "patchlight scene";
+
+bool is_utf8(const std::string& text) {
+  try {
+    return !Json(text).dump().empty();
+  } catch (const Json::type_error&) {
+    return false;
+  }
+}
+
+// A text; as an array of its bytes when it is not UTF-8, which JSON cannot hold.
+Json json_of(const std::string& text) {
+  if (is_utf8(text)) return text;
+  Json bytes = Json::array();
+  for (const char letter : text) bytes.push_back(static_cast<unsigned char>(letter));
+  return bytes;
+}
+
+Json json_of(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push_back(json_of(text));
+  return list;
+}
+
+Json json_of(const Spectrum& spectrum) { return std::vector<double>(spectrum.begin(), spectrum.end()); }
+
+Json json_of(const Vector& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json materials_part(const Scene& scene) {
+  Json part = Json::array();
+  for (const Material& material : scene.materials) {
+    part.push_back({{"name", json_of(material.name)},
+                    {"reflectance", json_of(material.reflectance)},
+                    {"exitance", json_of(material.exitance)}});
+  }
+  return part;
+}
+
+Json lamp_hints_part(const Scene& scene) {
+  Json part = Json::array();
+  for (const LampHint& hint : scene.lamp_hints) {
+    part.push_back(
+        {{"material", json_of(hint.material)}, {"radiance", json_of(hint.radiance)}, {"reason", json_of(hint.reason)}});
+  }
+  return part;
+}
+
+Json vertices_part(const Scene& scene) {
+  std::vector<double> coordinates;
+  for (const Point& vertex : scene.vertices) coordinates.insert(coordinates.end(), vertex.begin(), vertex.end());
+  return coordinates;
+}
+
+// One array per property, with an entry for each polygon; their corners one after the other.
+Json polygons_part(const Scene& scene) {
+  Indices corners, corner_counts, material, group, line, file, face;
+  Json back_material = Json::array();
+  for (const Polygon& polygon : scene.polygons) {
+    corners.insert(corners.end(), polygon.corners.begin(), polygon.corners.end());
+    corner_counts.push_back(static_cast<std::uint32_t>(polygon.corners.size()));
+    material.push_back(polygon.material);
+    back_material.push_back(polygon.back_material ? Json(*polygon.back_material) : Json());
+    group.push_back(polygon.group);
+    line.push_back(polygon.line);
+    file.push_back(polygon.file);
+    face.push_back(polygon.face);
+  }
+  return {{"corners", corners},
+          {"corner_counts", corner_counts},
+          {"material", material},
+          {"group", group},
+          {"back_material", back_material},
+          {"line", line},
+          {"file", file},
+          {"face", face}};
+}
+
+Json sides_part(const KeptSides& sides) {
+  return {{"front", sides.front},
+          {"back", sides.back},
+          {"emit_from_back", sides.emit_from_back},
+          {"notes", json_of(sides.notes)}};
+}
+
+std::string text_of(const Json& json) {
+  if (json.is_string()) return json.get<std::string>();
+  std::string text;
+  for (const Json& byte : json) text += static_cast<char>(byte.get<unsigned char>());
+  return text;
+}
+
+std::vector<std::string> texts_of(const Json& json) {
+  std::vector<std::string> texts;
+  for (const Json& text : json) texts.push_back(text_of(text));
+  return texts;
+}
+
+void require(bool condition, const std::string& otherwise) {
+  if (!condition) throw std::out_of_range(otherwise);
+}
+
+// `count` whole numbers from 0 up to, but without, `end`.
+Indices indices_of(const Json& json, std::size_t count, std::uint64_t end = std::uint64_t{1} << 32) {
+  require(json.is_array() && json.size() == count,
+          "an array has " + std::to_string(json.size()) + " entries; expected " + std::to_string(count));
+  Indices indices;
+  for (const Json& entry : json) {
+    require(entry.is_number_unsigned() && entry.get<std::uint64_t>() < end,
+            "found " + entry.dump() + "; expected a whole number below " + std::to_string(end));
+    indices.push_back(entry.get<std::uint32_t>());
+  }
+  return indices;
+}
+
+Vector vector_of(const Json& json) {
+  const auto coordinates = json.get<std::array<double, 3>>();
+  return {coordinates[0], coordinates[1], coordinates[2]};
+}
+
+Spectrum spectrum_of(const Json& json) {
+  const auto values = json.get<std::vector<double>>();
+  return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+std::vector<Material> materials_of(const Json& json) {
+  std::vector<Material> materials;
+  for (const Json& entry : json) {
+    Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
+                      spectrum_of(entry.at("exitance"))};
+    const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
+    require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands,
+            "the materials do not all have the same bands");
+    materials.push_back(std::move(material));
+  }
+  return materials;
+}
+
+std::vector<LampHint> lamp_hints_of(const Json& json) {
+  std::vector<LampHint> hints;
+  for (const Json& entry : json) {
+    hints.push_back({text_of(entry.at("material")), spectrum_of(entry.at("radiance")), text_of(entry.at("reason"))});
+  }
+  return hints;
+}
+
+std::vector<Point> vertices_of(const Json& json) {
+  const auto coordinates = json.get<std::vector<double>>();
+  require(coordinates.size() % 3 == 0,
+          "found " + std::to_string(coordinates.size()) + " coordinates; expected triples");
+  std::vector<Point> vertices;
+  for (std::size_t k = 0; k < coordinates.size(); k += 3) vertices.emplace_back(&coordinates[k]);
+  return vertices;
+}
+
+std::vector<std::optional<MaterialIndex>> back_materials_of(const Json& json, std::size_t count, std::size_t end) {
+  std::vector<std::optional<MaterialIndex>> materials;
+  for (const Json& entry : json) {
+    materials.push_back(entry.is_null() ? std::nullopt : std::optional(indices_of(Json::array({entry}), 1, end)[0]));
+  }
+  require(materials.size() == count, "found " + std::to_string(materials.size()) + " materials of backs");
+  return materials;
+}
+
+std::vector<Polygon> polygons_of(const Json& json, std::size_t materials) {
+  const std::size_t count = json.at("material").size();
+  const Indices corner_counts = indices_of(json.at("corner_counts"), count);
+  const Indices corners =
+      indices_of(json.at("corners"), std::accumulate(corner_counts.begin(), corner_counts.end(), std::size_t{0}));
+  const Indices material = indices_of(json.at("material"), count, materials);
+  const auto back_material = back_materials_of(json.at("back_material"), count, materials);
+  const Indices group = indices_of(json.at("group"), count);
+  const Indices line = indices_of(json.at("line"), count);
+  const Indices file = indices_of(json.at("file"), count);
+  const Indices face = indices_of(json.at("face"), count);
+  std::vector<Polygon> polygons;
+  auto corner = corners.begin();
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto end = corner + corner_counts[p];
+    polygons.push_back({{corner, end}, material[p], group[p], line[p], file[p], face[p], back_material[p]});
+    corner = end;
+  }
+  return polygons;
+}
+
+KeptSides sides_of(const Json& json, std::size_t polygons) {
+  const Indices front = indices_of(json.at("front"), polygons, 2);
+  const Indices back = indices_of(json.at("back"), polygons, 2);
+  return {{front.begin(), front.end()},
+          {back.begin(), back.end()},
+          json.at("emit_from_back").get<bool>(),
+          texts_of(json.at("notes"))};
+}
+
+StoredScene stored_scene_of(const Json& json) {
+  require(json.at("kind") == kind, "its kind is " + json.at("kind").dump());
+  Scene scene;
+  scene.file = text_of(json.at("model"));
+  scene.files = texts_of(json.at("files"));
+  scene.sha256 = text_of(json.at("sha256"));
+  scene.metres_per_unit = json.at("metres_per_unit").get<double>();
+  scene.up = vector_of(json.at("up"));
+  scene.up_stated = json.at("up_stated").get<bool>();
+  scene.notes = texts_of(json.at("notes"));
+  scene.materials = materials_of(json.at("materials"));
+  scene.lamp_hints = lamp_hints_of(json.at("lamp_hints"));
+  scene.groups = texts_of(json.at("groups"));
+  scene.vertices = vertices_of(json.at("vertices"));
+  scene.polygons = polygons_of(json.at("polygons"), scene.materials.size());
+  require(scene.metres_per_unit > 0 && std::isfinite(scene.metres_per_unit), "the unit has no length");
+  require(scene.up.allFinite() && scene.up.norm() > 0, "no direction is up");
+  check(scene);
+  KeptSides sides = sides_of(json.at("kept_sides"), scene.polygons.size());
+  return {std::move(scene), std::move(sides)};
+}
+
+}  // namespace
+
+void write_stored_scene(const std::filesystem::path& file, const Scene& scene, const KeptSides& sides) {
+  Json json;
+  json["kind"] = kind;
+  json["version"] = version();
+  json["model"] = json_of(scene.file);
+  json["files"] = json_of(scene.files);
+  json["sha256"] = json_of(scene.sha256);
+  json["metres_per_unit"] = scene.metres_per_unit;
+  json["up"] = json_of(scene.up);
+  json["up_stated"] = scene.up_stated;
+  json["notes"] = json_of(scene.notes);
+  json["materials"] = materials_part(scene);
+  json["lamp_hints"] = lamp_hints_part(scene);
+  json["groups"] = json_of(scene.groups);
+  json["vertices"] = vertices_part(scene);
+  json["polygons"] = polygons_part(scene);
+  json["kept_sides"] = sides_part(sides);
+  write_bytes(file, json.dump() + "\n");
+}
+
+StoredScene read_stored_scene(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / file_name::scene;
+  std::ifstream stream(file);
+  if (!stream) {
+    throw InputError(folder.string(), std::string("there is no ") + file_name::scene +
+                                          " in it, as form factors of earlier versions have none; make them anew: "
+                                          "patchlight form-factors MODEL -o FOLDER");
+  }
+  try {
+    return stored_scene_of(Json::parse(stream));
+  } catch (const std::exception& error) {
+    throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
+                                        "); make the form factors anew");
+  }
+}
+
+}  // namespace patchlight

@@ -1,0 +1,204 @@
+#include "cli/solution_options.h"
+
+#include "patchlight/output/write_result.h"
+
+#include "cli/add_option.h"
+#include "cli/parse_value.h"
+
+#include <utility>
+
+namespace patchlight::cli {
+namespace {
+
+using std::filesystem::path;
+
+// Adds an option that holds the name of a file.
+void add_file(CLI::App& command, const std::string& name, std::string& file, const std::string& help) {
+  const std::string option = name.substr(name.rfind(',') + 1);
+  add(command, name, "FILE", help, [&file, option](const std::string& text) {
+    if (text.empty()) throw UsageError(option + ": found an empty name; expected the name of a file");
+    file = text;
+  });
+}
+
+void require_extension(const std::string& option, const std::string& file, const std::vector<std::string>& allowed) {
+  std::string words;
+  for (const std::string& extension : allowed) {
+    if (path(file).extension() == extension) return;
+    words += (words.empty() ? "" : " or ") + extension;
+  }
+  throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + words);
+}
+
+void require_consistent(const std::string& command, const SolutionOptions& options) {
+  if (options.results.empty() && options.series.empty() && options.picture.empty() && options.report.empty() &&
+      options.points.empty()) {
+    throw UsageError(command +
+                     ": nothing would be written; give at least one of -o, --series, --picture, --report, --points");
+  }
+  if (options.picture.empty() && (options.camera || options.colors)) {
+    throw UsageError(std::string(options.camera ? "--camera" : "--false-color") + " needs --picture FILE");
+  }
+  if (options.points.empty() && !options.points_output.empty()) {
+    throw UsageError("--points-output needs --points FILE");
+  }
+  if (options.camera && options.camera->eye == options.camera->target) {
+    throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
+  }
+  if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
+  for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
+  if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
+  if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
+}
+
+// A file with what it is for.
+using NamedFile = std::pair<const char*, const path*>;
+
+std::vector<NamedFile> outputs_of(const SolveArguments& arguments) {
+  std::vector<NamedFile> files = {{"--series", &arguments.series},
+                                  {"--report", &arguments.report},
+                                  {"--picture", &arguments.picture},
+                                  {"--points-output", &arguments.points_output}};
+  for (const path& result : arguments.results) files.emplace_back("-o", &result);
+  std::erase_if(files, [](const NamedFile& file) { return file.second->empty(); });
+  return files;
+}
+
+// Every output must be a file of its own, and no output may replace an input.
+void require_distinct_files(const SolveArguments& arguments) {
+  std::vector<NamedFile> files;
+  for (const path& model : arguments.models) files.emplace_back("a model", &model);
+  if (!arguments.points.empty()) files.emplace_back("--points", &arguments.points);
+  for (const NamedFile& file : outputs_of(arguments)) files.push_back(file);
+  for (std::size_t b = 1; b < files.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (weakly_canonical(*files[a].second) == weakly_canonical(*files[b].second)) {
+        throw UsageError(std::string(files[b].first) + ": '" + files[b].second->string() + "' is also " +
+                         files[a].first + "; expected different files");
+      }
+    }
+  }
+}
+
+// A folder of form factors holds nothing else, so that it may be replaced as a whole.
+void require_untouched_folder(const SolveArguments& arguments) {
+  if (arguments.form_factors.empty()) return;
+  const path folder = weakly_canonical(arguments.form_factors / ".");
+  for (const auto& [option, file] : outputs_of(arguments)) {
+    if (weakly_canonical(*file).parent_path() != folder) continue;
+    throw UsageError(std::string(option) + ": '" + file->string() +
+                     "' lies in the folder of form factors; expected a file elsewhere");
+  }
+}
+
+path points_output(const SolutionOptions& options) {
+  if (options.points.empty() || !options.points_output.empty()) return options.points_output;
+  const path beside = options.results.empty() ? path() : path(options.results.front());
+  return beside.parent_path() / (path(options.points).stem().string() + ".irradiance.csv");
+}
+
+}  // namespace
+
+void add_up_option(CLI::App& command, SolutionOptions& options) {
+  add(command, "--up", "y|z",
+      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else that across "
+      "which most\narea lies, or against the lamps' light",
+      [&options](const std::string& text) {
+        options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
+      });
+}
+
+void add_output_options(CLI::App& command, SolutionOptions& options) {
+  command
+      .add_option("-o,--output", options.results,
+                  "solved patches: for ParaView (.vtp), or with vertex colors for\nviewers and the web (.ply, .glb); "
+                  "may be repeated")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
+  add_file(command, "--series", options.series,
+           "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
+           "bounce k");
+  add_file(command, "--report", options.report, "what was asked, decided and found, with energy balance (JSON)");
+  add_file(command, "--picture", options.picture, "a picture of the solution (.png), 800 x 800 pixels");
+  add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
+      [&options](const std::string& text) {
+        options.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
+      });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--camera",
+          [&options](const std::vector<std::string>& values) {
+            const auto angle = [](double x) { return x > 0 && x < 180; };
+            options.camera =
+                Camera{point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
+                       number("--camera (FOV)", values[2], "an angle above 0 and below 180 degrees", angle)};
+          },
+          "view of the picture: eye and target as X,Y,Z in model\nunits, vertical field of view in degrees; "
+          "default: a view\nfrom within the scene's bounds that shows most of it")
+      ->expected(3)
+      ->option_text("EYE TARGET FOV");
+  add_file(command, "--points", options.points,
+           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
+           "receiving side");
+  add_file(command, "--points-output", options.points_output,
+           "irradiance at these points in W/m^2 per band (CSV);\ndefault: the points file's name with "
+           ".irradiance.csv, in\nthe folder of -o, else in the current one");
+}
+
+void add_solver_options(CLI::App& command, SolutionOptions& options) {
+  Request& request = options.request;
+  command.add_flag_callback(
+      "--no-closure", [&request] { request.close = false; },
+      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
+      [&request, &options](const std::string& text) {
+        options.solver_given = true;
+        request.solver = solver_named("--solver", text);
+      });
+  add(command, "--relaxation", "NUMBER",
+      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
+      [&request](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 2; };
+        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
+      });
+  add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
+      [&request](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 1; };
+        request.tolerance = number("--tolerance", text, "a number above 0 and below 1", inside);
+      });
+  add(command, "--max-iterations", "N", "the solver gives up after so many iterations; default 1000",
+      [&request](const std::string& text) {
+        request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
+      });
+}
+
+void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
+  command.add_flag("-q,--quiet", options.quiet, "says nothing but errors; default: progress and a summary");
+  command.add_flag("-v,--verbose", options.verbose, "adds decisions, counts and speed to the summary; default: off");
+}
+
+SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options) {
+  require_consistent(command, options);
+  arguments.read.up = options.up;
+  arguments.request.close = options.request.close;
+  arguments.request.solver = options.request.solver;
+  if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
+  arguments.request.tolerance = options.request.tolerance;
+  arguments.request.max_iterations = options.request.max_iterations;
+  arguments.request.relaxation = options.request.relaxation;
+  arguments.results.assign(options.results.begin(), options.results.end());
+  arguments.series = options.series;
+  arguments.report = options.report;
+  arguments.picture = options.picture;
+  arguments.colors = options.colors.value_or(PictureColors::natural);
+  arguments.camera = options.camera;
+  arguments.points = options.points;
+  arguments.points_output = points_output(options);
+  if (options.quiet) arguments.verbosity = Verbosity::quiet;
+  if (options.verbose) arguments.verbosity = Verbosity::verbose;
+  require_distinct_files(arguments);
+  require_untouched_folder(arguments);
+  return arguments;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,59 @@
+#include "cli/solve_input.h"
+
+#include "patchlight/archive/form_factor_files.h"
+#include "patchlight/archive/scene_file.h"
+#include "patchlight/base/error.h"
+
+#include <sstream>
+#include <utility>
+
+namespace patchlight::cli {
+namespace {
+
+void require_same_unit(const std::filesystem::path& folder, const FormFactorInfo& info, const Scene& scene) {
+  if (info.metres_per_unit == scene.metres_per_unit) return;
+  std::ostringstream text;
+  text << "found form factors of a model with " << info.metres_per_unit << " m per unit; this one is read with "
+       << scene.metres_per_unit << ". Give the same --unit as then";
+  throw InputError(folder.string(), text.str());
+}
+
+// The request with the options that the form factors were made with.
+Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& info) {
+  Request request = arguments.request;
+  if (!request.max_edge && !request.patches) request.max_edge = info.max_edge;
+  if (request.sides == Sides::automatic) request.sides = info.sides;
+  request.samples = info.samples;
+  request.seed = info.seed;
+  request.estimator = info.estimator;
+  if (request.close || !is_closed(info)) return request;
+  throw InputError(arguments.form_factors.string(),
+                   "found form factors whose rows are closed (" + info.closure +
+                       "); expected them as computed, for --no-closure. Make them anew: patchlight form-factors MODEL "
+                       "--raw -o FOLDER");
+}
+
+}  // namespace
+
+SolveInput read_input(const SolveArguments& arguments) {
+  const std::filesystem::path& folder = arguments.form_factors;
+  if (folder.empty()) return {read_scene(arguments.models, arguments.read), arguments.request, {}};
+
+  SolveInput input;
+  std::optional<KeptSides> sides;
+  const bool from_folder = arguments.models.empty();
+  if (!from_folder) input.scene = read_scene(arguments.models, arguments.read);
+  const FormFactorInfo info = read_form_factor_info(folder);
+  if (from_folder) {
+    StoredScene stored = read_stored_scene(folder);
+    input.scene = with_options(std::move(stored.scene), arguments.read);
+    sides = std::move(stored.sides);
+  }
+  require_same_unit(folder, info, input.scene);
+  input.request = request_as_then(arguments, info);
+  input.request.kept_sides = std::move(sides);
+  input.exchange = [folder, info](const PatchMesh& mesh) { return read_exchange(folder, info, mesh); };
+  return input;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,186 @@
+#include "patchlight/archive/scene_file.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/input/read_scene.h"
+
+#include "support/scenes.h"
+#include "unit/output/temporary_folder.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+namespace patchlight {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+bool same(const Spectrum& a, const Spectrum& b) { return a.size() == b.size() && (a == b).all(); }
+
+void expect_same(const Scene& a, const Scene& b) {
+  EXPECT_EQ(a.vertices, b.vertices);
+  ASSERT_EQ(a.polygons.size(), b.polygons.size());
+  for (std::size_t p = 0; p < a.polygons.size(); ++p) {
+    const auto& [corners, material, group, line, file, face, back_material] = a.polygons[p];
+    const Polygon& other = b.polygons[p];
+    EXPECT_EQ(corners, other.corners);
+    EXPECT_EQ(std::tie(material, group, line), std::tie(other.material, other.group, other.line));
+    EXPECT_EQ(std::tie(file, face, back_material), std::tie(other.file, other.face, other.back_material));
+  }
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (std::size_t m = 0; m < a.materials.size(); ++m) {
+    EXPECT_EQ(a.materials[m].name, b.materials[m].name);
+    EXPECT_TRUE(same(a.materials[m].reflectance, b.materials[m].reflectance));
+    EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
+  }
+  ASSERT_EQ(a.lamp_hints.size(), b.lamp_hints.size());
+  for (std::size_t h = 0; h < a.lamp_hints.size(); ++h) {
+    EXPECT_EQ(a.lamp_hints[h].material, b.lamp_hints[h].material);
+    EXPECT_EQ(a.lamp_hints[h].reason, b.lamp_hints[h].reason);
+    EXPECT_TRUE(same(a.lamp_hints[h].radiance, b.lamp_hints[h].radiance));
+  }
+  EXPECT_EQ(std::tie(a.groups, a.file, a.files, a.sha256), std::tie(b.groups, b.file, b.files, b.sha256));
+  EXPECT_EQ(std::tie(a.metres_per_unit, a.up, a.up_stated, a.notes),
+            std::tie(b.metres_per_unit, b.up, b.up_stated, b.notes));
+}
+
+void expect_same(const KeptSides& a, const KeptSides& b) {
+  EXPECT_EQ(std::tie(a.front, a.back, a.emit_from_back, a.notes), std::tie(b.front, b.back, b.emit_from_back, b.notes));
+}
+
+StoredScene through_a_file(const Scene& scene, const KeptSides& sides) {
+  const TemporaryFolder folder;
+  write_stored_scene(folder.path() / "scene.json", scene, sides);
+  return read_stored_scene(folder.path());
+}
+
+class ShippedModel : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedModel, IsReadAsItWasWritten) {
+  const Scene scene =
+      read_scene(std::string(PATCHLIGHT_MESHES) + "/" + GetParam() + ".obj", {.metres_per_unit = 0.3048});
+  for (const Sides choice : {Sides::automatic, Sides::front, Sides::both}) {
+    const KeptSides sides = kept_sides(scene, choice);
+    const StoredScene stored = through_a_file(scene, sides);
+    expect_same(stored.scene, scene);
+    expect_same(stored.sides, sides);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllOfThem, ShippedModel,
+                         testing::Values("cornell_box", "furnace_cube", "parallel_squares", "perpendicular_squares",
+                                         "two_rooms"));
+
+// What no shipped model has: holes in the numbering, backs, bytes that are not UTF-8, numbers at the limits.
+Scene odd_scene() {
+  Scene scene = furnished_room(std::nextafter(1.0, 0.0), 1e300);
+  scene.vertices.push_back({-0.0, 5e-324, 1e15 / 3});
+  scene.materials[0].name =
+      "stra\xdf"
+      "e";
+  scene.materials[1].name = "\xff\x00\"\n";
+  scene.groups = {"", "gro\xc3\x9f", "\x80"};
+  scene.file = "mod\xe8le.obj";
+  scene.files = {scene.file, "b.obj"};
+  scene.notes = {"a note on \xfe"};
+  scene.sha256 = "0123";
+  scene.metres_per_unit = 0.1;
+  scene.up = Vector(1, -2, 1.0 / 3);
+  scene.up_stated = true;
+  scene.polygons[3].back_material = 1;
+  scene.polygons[4].group = 77;
+  scene.polygons[5].line = ~std::uint32_t{0};
+  scene.polygons[6].file = 1;
+  scene.polygons[7].face = 123456;
+  scene.lamp_hints = {
+      {"stra\xdf"
+       "e",
+       Spectrum::Constant(1, 1.0 / 3), "its Ka"}};
+  return scene;
+}
+
+TEST(SceneFile, KeepsEveryBitOfAnOddScene) {
+  const Scene scene = odd_scene();
+  KeptSides sides = kept_sides(scene, Sides::front);
+  sides.front[2] = 0;
+  sides.emit_from_back = true;
+  sides.notes = {"a note", "\xff"};
+  const StoredScene stored = through_a_file(scene, sides);
+  expect_same(stored.scene, scene);
+  expect_same(stored.sides, sides);
+  EXPECT_TRUE(std::signbit(stored.scene.vertices.back().x()));
+}
+
+// Each change makes the file one that cannot have been written.
+TEST(SceneFile, RefusesWhatIsDamaged) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.json";
+  const Scene scene = furnished_room(0.5);
+  write_stored_scene(file, scene, kept_sides(scene, Sides::front));
+  const nlohmann::json good = nlohmann::json::parse(content_of(file));
+  EXPECT_NO_THROW(read_stored_scene(folder.path()));
+  const auto expect_refused = [&](const std::string& content) {
+    put(file, content);
+    try {
+      read_stored_scene(folder.path());
+      ADD_FAILURE() << "expected an InputError for " << content.substr(0, 2000);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("scene.json"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("anew"), std::string::npos);
+    }
+  };
+  const std::pair<const char*, nlohmann::json> changes[] = {{"/kind", "else"},
+                                                            {"/metres_per_unit", 0},
+                                                            {"/up", {0, 0, 0}},
+                                                            {"/up", {0, 1}},
+                                                            {"/vertices/0", nullptr},
+                                                            {"/vertices/0", 1e16},
+                                                            {"/materials", nlohmann::json::array()},
+                                                            {"/materials/0/reflectance/0", 1.5},
+                                                            {"/materials/0/reflectance", {0.5, 0.5}},
+                                                            {"/materials/0/exitance", nlohmann::json::array()},
+                                                            {"/polygons/corners/0", 1000},
+                                                            {"/polygons/corners/0", -1},
+                                                            {"/polygons/corners/0", 0.5},
+                                                            {"/polygons/corner_counts/0", 5},
+                                                            {"/polygons/material/0", 2},
+                                                            {"/polygons/material/0", 4294967296},
+                                                            {"/polygons/back_material/0", 2},
+                                                            {"/polygons/back_material", nlohmann::json::array()},
+                                                            {"/polygons/line", nlohmann::json::array()},
+                                                            {"/polygons", nullptr},
+                                                            {"/kept_sides/front/0", 2},
+                                                            {"/kept_sides/back", nlohmann::json::array()},
+                                                            {"/kept_sides/emit_from_back", 1}};
+  for (const auto& [place, value] : changes) {
+    nlohmann::json damaged = good;
+    damaged[nlohmann::json::json_pointer(place)] = value;
+    expect_refused(damaged.dump());
+  }
+  const std::string text = good.dump();
+  for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 1}) {
+    expect_refused(text.substr(0, length));
+  }
+  for (const auto& item : good.items()) {
+    if (item.key() == "version") continue;
+    nlohmann::json damaged = good;
+    damaged.erase(item.key());
+    expect_refused(damaged.dump());
+  }
+}
+
+TEST(SceneFile, ThatIsMissingIsExplained) {
+  const TemporaryFolder folder;
+  try {
+    read_stored_scene(folder.path());
+    FAIL() << "expected an InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no scene.json"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("patchlight form-factors MODEL -o FOLDER"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
