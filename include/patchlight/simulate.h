@@ -21,10 +21,10 @@ struct StageCost {
 
 /// Facts about the form factors before and after closure.
 struct TransportFacts {
-  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
-  Eigen::VectorXd row_sum;      ///< after
+  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure; empty with rows on demand
+  Eigen::VectorXd row_sum;      ///< after; empty as well
   LostShare lost;
-  AssemblyCounts counts;
+  AssemblyCounts counts;            ///< zero with rows on demand
   double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when too few rays were traced, or none
   SamplingError error;              ///< of the sampled exchange areas, before closure
   std::string closure;              ///< which method closed the rows
@@ -44,7 +44,9 @@ struct Simulation {
 /// The exchange between the patches of a mesh where it is known already.
 using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 
-/// From a scene to converged radiosities: the whole program. With `known_exchange` no form factor is computed.
+/// From a scene to converged radiosities: the whole program. With `known_exchange` no form factor is computed; not
+/// together with Request::on_demand. With that the energy balance has no defect: what the form factors err by counts as
+/// imbalance.
 /// \throws InputError, MemoryError, Cancelled, and what `known_exchange` throws.
 Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {},
                     const ExchangeOf& known_exchange = {});

@@ -118,6 +118,10 @@ void add_accuracy(CLI::App& command, SolveOptions& options) {
   command.add_flag_callback(
       "--no-closure", [&request] { request.close = false; },
       "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  command.add_flag_callback(
+      "--on-demand", [&request] { request.on_demand = true; },
+      "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
+      "picture early;\nneeds --solver progressive; default: all are computed and kept");
   add(command, "--solver", "jacobi|gauss-seidel|progressive",
       "how the equations are solved; default gauss-seidel, with\n--series jacobi",
       [&request, &options](const std::string& text) {
@@ -170,6 +174,20 @@ void require_consistent(const SolveOptions& options) {
   if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
 }
 
+// Rows on demand serve a solver that asks for few of them, and cannot be closed, as that takes all.
+void require_solver_of_rows(const SolveOptions& options) {
+  const Request& request = options.mesh.request;
+  if (!request.on_demand) return;
+  if (request.solver != Solver::progressive) throw UsageError("--on-demand needs --solver progressive");
+  const char* const other = !options.form_factors.empty()               ? "--form-factors"
+                            : !request.close                            ? "--no-closure"
+                            : request.estimator != Estimator::automatic ? "--estimator"
+                                                                        : nullptr;
+  if (other != nullptr) {
+    throw UsageError(std::string(other) + " and --on-demand exclude each other; give one of them");
+  }
+}
+
 // Every output must be a file of its own, and no output may replace an input.
 void require_distinct_files(const SolveArguments& arguments) {
   std::vector<std::pair<const char*, const path*>> files = {{"--points", &arguments.points},
@@ -212,6 +230,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
 
 SolveArguments finish_solve(const SolveOptions& options) {
   require_consistent(options);
+  require_solver_of_rows(options);
   const double metres = options.model.metres_per_unit;
   SolveArguments arguments;
   arguments.models = model_files(options.model);
