@@ -75,7 +75,6 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   result.balance = energy_balance(result.problem, result.solution,
                                   plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
   clock.finish(Stage::solve);
-
   result.costs = clock.costs();
   return result;
 }
