@@ -23,17 +23,22 @@ constexpr double bytes_of_program = 50e6;
 // Share of the machine's memory that may be taken when nothing is said.
 constexpr double usable_share = 0.8;
 
-double bytes_of_a_pair(bool standard_errors) { return bytes_per_pair + (standard_errors ? bytes_per_error : 0); }
+double bytes_of_a_pair(const Request& request) {
+  if (request.on_demand) return 0;
+  return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
+}
 
 double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 // The number of patches for which memory_needed() is this.
-double patches_in(double bytes, bool standard_errors) {
-  const double of_a_pair = bytes_of_a_pair(standard_errors);
+double patches_in(double bytes, const Request& request) {
+  const double left = std::max(0.0, bytes - bytes_of_program);
+  const double of_a_pair = bytes_of_a_pair(request);
+  if (of_a_pair == 0) return std::max(1.0, left / bytes_per_patch);
   const double half = bytes_per_patch / (2 * of_a_pair);
-  return std::max(1.0, std::sqrt(half * half + std::max(0.0, bytes - bytes_of_program) / of_a_pair) - half);
+  return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
 }
 
 std::string gigabytes(double bytes) {
@@ -44,16 +49,16 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-double memory_needed(std::size_t patches, bool standard_errors) {
+double memory_needed(std::size_t patches, const Request& request) {
   const auto n = static_cast<double>(patches);
-  return bytes_of_a_pair(standard_errors) * n * n + bytes_per_patch * n + bytes_of_program;
+  return bytes_of_a_pair(request) * n * n + bytes_per_patch * n + bytes_of_program;
 }
 
 void require_memory(std::size_t patches, const Request& request) {
-  const double needed = memory_needed(patches, request.standard_errors);
+  const double needed = memory_needed(patches, request);
   const double usable = request.memory ? *request.memory : usable_share * installed_bytes();
   if (needed <= usable) return;
-  const auto fitting = static_cast<long>(patches_in(usable, request.standard_errors));
+  const auto fitting = static_cast<long>(patches_in(usable, request));
   // Small faces take a patch each, however few are asked for.
   const bool too_many_faces =
       !request.max_edge && static_cast<long>(request.patches.value_or(default_patches)) <= fitting;
@@ -62,8 +67,8 @@ void require_memory(std::size_t patches, const Request& request) {
       : too_many_faces
           ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
           : "ask for at most " + std::to_string(fitting) + " patches with --patches";
-  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) + ", most of it for their " +
-                    "form factors, and " + gigabytes(usable) +
+  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
+                    (request.on_demand ? ", and " : ", most of it for their form factors, and ") + gigabytes(usable) +
                     (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);
 }
 

@@ -7,9 +7,9 @@
 
 namespace patchlight {
 
-/// Bytes that solving takes at its peak, all in all: rather a little too many than too few. `standard_errors`: those of
-/// the form factors are kept, too.
-double memory_needed(std::size_t patches, bool standard_errors = false);
+/// Bytes that solving takes at its peak, all in all: rather a little too many than too few. By the request: whether
+/// form factors are kept, and their standard errors, too.
+double memory_needed(std::size_t patches, const Request& request);
 
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.

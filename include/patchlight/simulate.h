@@ -4,6 +4,7 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/solve/problem.h"
+#include "patchlight/solve/solve.h"
 #include "patchlight/transport/exchange.h"
 
 #include <functional>
@@ -21,10 +22,10 @@ struct StageCost {
 
 /// Facts about the form factors before and after closure.
 struct TransportFacts {
-  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
-  Eigen::VectorXd row_sum;      ///< after
+  Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure; empty with rows on demand
+  Eigen::VectorXd row_sum;      ///< after; empty as well
   LostShare lost;
-  AssemblyCounts counts;
+  AssemblyCounts counts;            ///< zero with rows on demand
   double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when too few rays were traced, or none
   SamplingError error;              ///< of the sampled exchange areas, before closure
   std::string closure;              ///< which method closed the rows
@@ -44,9 +45,19 @@ struct Simulation {
 /// The exchange between the patches of a mesh where it is known already.
 using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 
-/// From a scene to converged radiosities: the whole program. With `known_exchange` no form factor is computed.
-/// \throws InputError, MemoryError, Cancelled, and what `known_exchange` throws.
+/// What finds the solution; solve() is one.
+using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
+                                         const SolverOptions& options, const Observer& observer)>;
+
+/// Steps of simulate() that may be done otherwise.
+struct Steps {
+  ExchangeOf exchange = {};  ///< empty: form factors are computed
+  SolveWith solve = patchlight::solve;
+};
+
+/// From a scene to converged radiosities: the whole program.
+/// \throws InputError, MemoryError, Cancelled, and what the steps throw.
 Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {},
-                    const ExchangeOf& known_exchange = {});
+                    const Steps& with = {});
 
 }  // namespace patchlight

@@ -66,7 +66,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
       results.iterates.emplace_back(progress.irradiance->cast<float>());
     return observer(progress);
   };
-  simulation = simulate(results.scene, input.request, keep_iterates, input.exchange);
+  simulation = simulate(results.scene, input.request, keep_iterates, {.exchange = input.exchange});
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);

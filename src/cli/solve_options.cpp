@@ -17,6 +17,23 @@ struct SolveOptions {
   std::string form_factors;
 };
 
+namespace {
+
+// Rows on demand serve a solver that asks for few of them, and cannot be closed, as that takes all.
+void require_solver_of_rows(const SolveArguments& arguments) {
+  const Request& request = arguments.request;
+  if (!request.on_demand) return;
+  if (!is_shooting(request.solver)) throw UsageError("--on-demand needs --solver progressive or overshooting");
+  const char* const other = !arguments.form_factors.empty()             ? "--form-factors"
+                            : !request.close                            ? "--no-closure"
+                            : request.estimator != Estimator::automatic ? "--estimator"
+                                                                        : nullptr;
+  if (other == nullptr) return;
+  throw UsageError(std::string(other) + " and --on-demand exclude each other; give one of them");
+}
+
+}  // namespace
+
 std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   auto options = std::make_shared<SolveOptions>();
   SolveOptions& to = *options;
@@ -33,6 +50,10 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
         if (text.empty()) throw refusal("--form-factors", text, "the name of a folder");
         to.form_factors = text;
       });
+  command.add_flag_callback(
+      "--on-demand", [&to] { to.mesh.request.on_demand = true; },
+      "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
+      "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
   add_solver_options(command, to.solution);
   add_sampling_options(command, to.mesh);
   add_machine_options(command, to.mesh.request);
@@ -49,7 +70,9 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.read = read_options(options.model);
   arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
   arguments.form_factors = options.form_factors;
-  return with_solution(std::move(arguments), "solve", options.solution);
+  arguments = with_solution(std::move(arguments), "solve", options.solution);
+  require_solver_of_rows(arguments);
+  return arguments;
 }
 
 }  // namespace patchlight::cli

@@ -37,11 +37,15 @@ std::string convergence(const Plan& plan, const Solution& solution) {
   return text.str();
 }
 
-std::string energy(const EnergyBalance& balance) {
+std::string energy(const Simulation& simulation) {
+  const EnergyBalance& balance = simulation.balance;
+  const bool row_sums_known = simulation.transport.row_sum.size() > 0;
   std::ostringstream text;
   text << "flux in W per band: emitted " << bands(balance.emitted) << "; absorbed " << bands(balance.absorbed)
        << "; escaped " << bands(balance.escaped) << "; lost at backs " << bands(balance.lost_at_backs)
-       << "; form factor defect " << bands(balance.defect) << "; imbalance " << rounded(balance.imbalance, 2);
+       << (row_sums_known ? "; form factor defect " + bands(balance.defect) + "; imbalance "
+                          : "; imbalance with the form factor defect ")
+       << rounded(balance.imbalance, 2);
   return text.str();
 }
 
@@ -75,14 +79,10 @@ std::string worst_patches(const Scene& scene, const Simulation& simulation) {
   return text.str();
 }
 
-std::string details(const Scene& scene, const Simulation& simulation) {
+// What the whole matrix has shown.
+std::string assembly(const Scene& scene, const Simulation& simulation) {
   std::ostringstream text;
-  for (const Decision& decision : simulation.plan.decisions) {
-    text << "decision: " << decision.effect << (decision.simulate ? ": simulated; " : ": left out; ") << decision.reason
-         << '\n';
-  }
   const AssemblyCounts& counts = simulation.transport.counts;
-  text << "estimator of form factors: " << name_of(simulation.plan.estimator) << '\n';
   text << "pairs of patches: " << counts.facing_pairs << " facing, of these " << counts.near_pairs << " near, "
        << counts.partial_pairs << " partly and " << counts.blocked_pairs << " fully occluded\n";
   text << "shadow rays: " << counts.shadow_rays;
@@ -109,6 +109,17 @@ std::string details(const Scene& scene, const Simulation& simulation) {
   return text.str();
 }
 
+std::string details(const Scene& scene, const Simulation& simulation) {
+  std::ostringstream text;
+  for (const Decision& decision : simulation.plan.decisions) {
+    text << "decision: " << decision.effect << (decision.simulate ? ": simulated; " : ": left out; ") << decision.reason
+         << '\n';
+  }
+  text << "estimator of form factors: " << name_of(simulation.plan.estimator) << '\n';
+  if (!simulation.plan.on_demand) return text.str() + assembly(scene, simulation);
+  return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
+}
+
 }  // namespace
 
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
@@ -127,7 +138,7 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
        << rounded(simulation.plan.max_edge) << " m\n";
   if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
-  text << energy(simulation.balance) << '\n';
+  text << energy(simulation) << '\n';
   text << seconds(simulation.costs) << '\n';
   return text.str();
 }

@@ -48,6 +48,7 @@ Json request_part(const Request& request) {
   part["samples"] = request.samples;
   part["estimator"] = name_of(request.estimator);
   part["close"] = request.close;
+  part["on_demand"] = request.on_demand;
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
@@ -81,6 +82,7 @@ Json plan_part(const Plan& plan) {
   part["samples"] = plan.samples;
   part["estimator"] = name_of(plan.estimator);
   part["close"] = plan.close;
+  part["on_demand"] = plan.on_demand;
   part["lost_share_rays"] = plan.lost_share_rays;
   part["seed"] = plan.seed;
   part["solver"] = name_of(plan.solver.solver);
@@ -157,8 +159,7 @@ Json materials_part(const Scene& scene, const Simulation& simulation) {
 Json row_sum_part(const Eigen::VectorXd& row_sum, const Simulation& simulation) {
   if (row_sum.size() == 0) return {};
   const Eigen::ArrayXd& area = simulation.problem.area.array();
-  const LostShare& lost = simulation.transport.lost;
-  const Eigen::ArrayXd defect = row_sum.array() - (1 - lost.escaped.array() - lost.at_backs.array());
+  const Eigen::ArrayXd defect = (row_sum - expected_row_sum(simulation.transport.lost)).array();
   Json part;
   part["min"] = row_sum.minCoeff();
   part["mean"] = (area * row_sum.array()).sum() / area.sum();
@@ -192,14 +193,16 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
   const TransportFacts& transport = simulation.transport;
   const Eigen::VectorXd& area = simulation.problem.area;
   Json part;
-  part["facing_pairs"] = transport.counts.facing_pairs;
-  part["near_pairs"] = transport.counts.near_pairs;
-  part["partly_occluded_pairs"] = transport.counts.partial_pairs;
-  part["blocked_pairs"] = transport.counts.blocked_pairs;
-  part["shadow_rays"] = transport.counts.shadow_rays;
-  part["bare_shadow_rays_per_second"] = transport.bare_rays_per_second;
-  part["hidden_pairs"] = transport.counts.hidden_pairs;
-  part["free_pairs"] = transport.counts.free_pairs;
+  // Pairs that are looked at on demand are not counted.
+  const auto counted = [&](const auto& count) { return simulation.plan.on_demand ? Json() : Json(count); };
+  part["facing_pairs"] = counted(transport.counts.facing_pairs);
+  part["near_pairs"] = counted(transport.counts.near_pairs);
+  part["partly_occluded_pairs"] = counted(transport.counts.partial_pairs);
+  part["blocked_pairs"] = counted(transport.counts.blocked_pairs);
+  part["shadow_rays"] = counted(transport.counts.shadow_rays);
+  part["bare_shadow_rays_per_second"] = counted(transport.bare_rays_per_second);
+  part["hidden_pairs"] = counted(transport.counts.hidden_pairs);
+  part["free_pairs"] = counted(transport.counts.free_pairs);
   part["sampling_error"] = sampling_error_part(transport.error);
   part["lost_share_rays"] =
       static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
@@ -212,13 +215,14 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
   return part;
 }
 
-Json energy_part(const EnergyBalance& balance) {
+// The defect is the row sums' and not known without them.
+Json energy_part(const EnergyBalance& balance, bool row_sums_known) {
   Json part;
   part["emitted_W"] = array_of(balance.emitted);
   part["absorbed_W"] = array_of(balance.absorbed);
   part["escaped_W"] = array_of(balance.escaped);
   part["lost_at_backs_W"] = array_of(balance.lost_at_backs);
-  part["defect_W"] = array_of(balance.defect);
+  part["defect_W"] = row_sums_known ? array_of(balance.defect) : Json();
   part["imbalance"] = balance.imbalance;
   return part;
 }
@@ -267,7 +271,7 @@ void write_report(const std::filesystem::path& file, const Scene& scene, const R
   report["mesh"] = mesh_part(simulation);
   report["materials"] = materials_part(scene, simulation);
   report["transport"] = transport_part(scene, simulation);
-  report["energy_balance"] = energy_part(simulation.balance);
+  report["energy_balance"] = energy_part(simulation.balance, simulation.transport.row_sum.size() > 0);
   report["solution"] = solution_part(simulation);
   report["costs"] = costs_part(simulation.costs);
   report["memory_peak_bytes"] = memory_peak_bytes();

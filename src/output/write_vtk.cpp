@@ -61,8 +61,11 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   std::vector<std::uint32_t> faces;
   for (const PolygonIndex polygon : mesh.polygon) faces.push_back(scene.polygons[polygon].face);
   cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
-  cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
-  cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
+  // Not known of rows on demand.
+  if (simulation.transport.row_sum.size() > 0) {
+    cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
+    cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
+  }
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");

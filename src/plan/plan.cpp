@@ -84,7 +84,8 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.seed = request.seed;
   plan.estimator = request.estimator;
   plan.short_cuts = request.short_cuts;
-  plan.close = request.close;
+  plan.on_demand = request.on_demand;
+  plan.close = request.close && !request.on_demand;
   plan.standard_errors = request.standard_errors;
   plan.solver = {.solver = request.solver,
                  .relative_error = request.tolerance,

@@ -2,15 +2,13 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/patch_cluster.h"
 
-#include "transport/cluster_hull.h"
+#include "transport/cluster_pairs.h"
 #include "transport/estimators.h"
 #include "transport/narrow.h"
 #include "transport/pair_sampler.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <vector>
@@ -43,50 +41,24 @@ struct RowFacts {
 
 struct Assembler {
   const PatchMesh& mesh;
-  const Occluder& occluder;
   const AssemblyOptions& options;
-  const std::vector<PatchShape>& shapes;
-  const std::vector<PatchCluster>& clusters;
-  const std::vector<ClusterHull>& hulls;
-  const PairSampler& sampler;
+  const ClusterPairs& pairs;
 
   template <typename Use>
-  void for_facing_pairs(const PatchCluster& a, const PatchCluster& b, AssemblyCounts& counts, Use use) const;
-  bool is_free(std::size_t row, std::size_t column) const;
+  void for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, Use use) const;
   void count(const Pair& pair, RowFacts& facts) const;
   void audit(const Pair& pair, double exchange_area, RowFacts& facts) const;
   RowFacts fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const;
 };
 
-// Calls use(i, j, unoccluded exchange area) for the pairs of two clusters that face each other; the area is -1 where it
-// takes PairSampler::exact() to find it.
+// ClusterPairs::for_facing() for all patches of two clusters, counted.
 template <typename Use>
-void Assembler::for_facing_pairs(const PatchCluster& a, const PatchCluster& b, AssemblyCounts& counts, Use use) const {
-  for (int lane = 0; lane < a.size; ++lane) {
-    const ClusterRow row = cluster_row(a, lane, b);
-    const PatchIndex i = a.patches[static_cast<std::size_t>(lane)];
-    for (unsigned left = row.facing; left != 0; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      const PatchIndex j = b.patches[k];
-      if (mesh.polygon[i] == mesh.polygon[j] || (&a == &b && j <= i)) continue;
-      float unoccluded = row.unoccluded.at[k];
-      if ((row.exact >> k & 1) != 0 || !options.short_cuts.far) {
-        if (orientation(shapes[i], shapes[j]) == Orientation::averted) continue;
-        unoccluded = -1;
-        counts.near_pairs += is_near(shapes[i], shapes[j]) ? 1 : 0;
-      }
-      if (unoccluded == 0) continue;
-      ++counts.facing_pairs;
-      use(i, j, unoccluded);
-    }
-  }
-}
-
-bool Assembler::is_free(std::size_t row, std::size_t column) const {
-  const ClusterHull& a = hulls[row];
-  const ClusterHull& b = hulls[column];
-  if (a.is_covered || b.is_covered) return false;
-  return !occluder.can_occlude() || occluder.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
+void Assembler::for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, Use use) const {
+  pairs.for_facing(pair, all_lanes, all_lanes, [&](PatchIndex i, PatchIndex j, float unoccluded) {
+    counts.near_pairs += unoccluded < 0 && is_near(pairs.shapes()[i], pairs.shapes()[j]) ? 1 : 0;
+    ++counts.facing_pairs;
+    use(i, j, unoccluded);
+  });
 }
 
 void Assembler::count(const Pair& pair, RowFacts& facts) const {
@@ -99,12 +71,12 @@ void Assembler::count(const Pair& pair, RowFacts& facts) const {
 void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) const {
   const bool estimated = kind_of(pair) == EntryKind::estimated;
   if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size(), estimated) != 0) return;
-  const Pair again = sampler.sampled_again(pair);
+  const Pair again = pairs.sampler().sampled_again(pair);
   facts.counts.shadow_rays += again.rays();
   // Patches nearly in one plane may have nothing to compare with.
   if (!(again.unoccluded > 0)) return;
   const double share = exchange_area / again.unoccluded;
-  const double difference = share - sampler.exchange_area(again) / again.unoccluded;
+  const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
   if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
     ++facts.error.partial_pairs[bin];
@@ -124,28 +96,31 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
 RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const {
   RowFacts facts;
   AssemblyCounts& counts = facts.counts;
-  const PatchCluster& a = clusters[row];
-  std::vector<Pair> pairs;
+  const std::vector<PatchCluster>& clusters = pairs.clusters();
+  const PairSampler& sampler = pairs.sampler();
+  std::vector<Pair> sampled;
   for (std::size_t column = row; column < clusters.size(); ++column) {
-    const PatchCluster& b = clusters[column];
-    if (averted(a, b)) continue;
-    if (options.short_cuts.free && is_free(row, column)) {
-      for_facing_pairs(a, b, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
+    const ClusterPair both{row, column};
+    const PairClass pair_class = pairs.class_of(both);
+    if (pair_class == PairClass::averted) continue;
+    if (pair_class == PairClass::free) {
+      for_all_facing(both, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
         S.set(i, j, unoccluded < 0 ? sampler.exact(i, j) : unoccluded);
         ++counts.free_pairs;
       });
       continue;
     }
-    if (options.short_cuts.hidden && occluder.hides(hulls[row].corners, hulls[column].corners)) {
-      counts.hidden_pairs += static_cast<std::uint64_t>(a.size) * static_cast<std::uint64_t>(b.size);
+    if (pair_class == PairClass::hidden) {
+      counts.hidden_pairs +=
+          static_cast<std::uint64_t>(clusters[row].size) * static_cast<std::uint64_t>(clusters[column].size);
       continue;
     }
-    pairs.clear();
-    for_facing_pairs(a, b, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
-      pairs.push_back(sampler.new_pair(i, j, unoccluded));
+    sampled.clear();
+    for_all_facing(both, counts, [&](PatchIndex i, PatchIndex j, float unoccluded) {
+      sampled.push_back(sampler.new_pair(i, j, unoccluded));
     });
-    pairs = sampler.sampled(std::move(pairs));
-    for (const Pair& pair : pairs) {
+    sampled = sampler.sampled(std::move(sampled));
+    for (const Pair& pair : sampled) {
       const float area = narrow_toward_zero(sampler.exchange_area(pair));
       S.set(pair.first, pair.second, area);
       count(pair, facts);
@@ -156,26 +131,13 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& err
   return facts;
 }
 
-bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
-  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
-                     [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
-}
-
 // Closed forms, and shadow rays where something may be in between.
 Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                        const Observer& observer) {
-  const std::vector<PatchShape> shapes = patch_shapes(mesh);
-  const std::vector<PatchCluster> clusters = patch_clusters(mesh, shapes);
-  std::vector<ClusterHull> hulls;
-  for (const PatchCluster& cluster : clusters) {
-    hulls.push_back(hull_of(cluster, shapes, occluder.shafts()));
-    hulls.back().is_covered = is_covered(mesh, cluster, occluder);
-  }
-  const PairSampler sampler(mesh, shapes, occluder, options);
-  const Assembler assembler{mesh, occluder, options, shapes, clusters, hulls, sampler};
-
+  const ClusterPairs pairs(mesh, occluder, options);
+  const Assembler assembler{mesh, options, pairs};
   Assembly result{ExchangeAreas(mesh.size()), {}, {}, options.keep_errors ? EntryErrors(mesh.area) : EntryErrors()};
-  std::vector<RowFacts> rows(clusters.size());
+  std::vector<RowFacts> rows(pairs.clusters().size());
   parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
     rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
   });

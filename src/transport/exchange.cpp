@@ -21,6 +21,13 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
           std::move(raw.entry_errors),   {}};
 }
 
+Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                            int lost_share_rays, const Observer& observer) {
+  LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
+  const Eigen::VectorXd area = exposed_area(mesh, lost, Eigen::VectorXd::Zero(mesh.size()));
+  return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, {}, "none: rows on demand"};
+}
+
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) {
   const Eigen::Index n = exchange.area.size();
   if (!exchange.closure.empty() && !exchange.lost.closed()) {

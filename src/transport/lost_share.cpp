@@ -139,6 +139,8 @@ Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) cons
 
 }  // namespace
 
+Eigen::VectorXd expected_row_sum(const LostShare& lost) { return 1 - lost.escaped.array() - lost.at_backs.array(); }
+
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer) {
   Box box;

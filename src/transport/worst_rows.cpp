@@ -11,7 +11,7 @@ std::vector<RowDefect> worst_rows(const Eigen::VectorXd& row_sum, const LostShar
                                   std::size_t count) {
   if (row_sum.size() == 0) return {};
   assert(row_sum.size() == area.size() && row_sum.size() == lost.escaped.size());
-  const Eigen::ArrayXd expected = 1 - lost.escaped.array() - lost.at_backs.array();
+  const Eigen::ArrayXd expected = expected_row_sum(lost);
   const Eigen::ArrayXd defect = area.array() * (row_sum.array() - expected).abs();
 
   std::vector<PatchIndex> order(static_cast<std::size_t>(row_sum.size()));

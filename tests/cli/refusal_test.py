@@ -169,6 +169,10 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--false-color", "--picture"], *solve, "--false-color", "luminance")
         self.assert_refused(USAGE, ["--points-output", "--points"], *solve, "--points-output", "a.csv")
         self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
+        self.assert_refused(USAGE, ["--on-demand", "--solver progressive"], *solve, "--on-demand")
+        on_demand = (*solve, "--on-demand", "--solver", "progressive")
+        for option, *value in (("--no-closure",), ("--form-factors", "a.ff"), ("--estimator", "area")):
+            self.assert_refused(USAGE, ["--on-demand", option], *on_demand, option, *value)
 
     def test_wrong_extension(self):
         self.assert_refused(USAGE, ["-o", "a.vtk", ".vtp", ".ply", ".glb"], "solve", "room.obj", "-o", "a.vtk")

@@ -11,7 +11,7 @@ import unittest
 from support import TOOL, ToolTest
 
 OPTIONS = """--output --series --report --picture --false-color --camera --points --points-output --format --unit --up --sides --set --max-edge
---patches --solver --tolerance --max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
+--patches --on-demand --solver --tolerance --max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
 
 NOT_CONVERGED, INTERRUPTED = 3, 130
 

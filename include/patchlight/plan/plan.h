@@ -26,8 +26,10 @@ struct Request {
   int samples = 16;                       ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};     ///< of the automatic estimator
-  bool close = true;             ///< correct the form factors so that rows sum up to what is seen
+  ShortCuts short_cuts = {};  ///< of the automatic estimator
+  bool close = true;          ///< correct the form factors so that rows sum up to what is seen
+  bool on_demand = false;     ///< no matrix: rows of form factors are computed whenever the solver asks for them, and
+                              ///< not closed. Memory in proportion to the patches; for progressive refinement
   bool standard_errors = false;  ///< keep one for each entry: a quarter more memory
   int threads = 0;               ///< 0: all processors
   std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
@@ -51,6 +53,7 @@ struct Plan {
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};
   bool close = true;
+  bool on_demand = false;
   bool standard_errors = false;
   SolverOptions solver;
   std::vector<Decision> decisions;

@@ -21,6 +21,9 @@ struct LostShare {
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }
 };
 
+/// What each row of form factors should sum up to: 1 - escaped - at_backs.
+Eigen::VectorXd expected_row_sum(const LostShare& lost);
+
 /// Measures the shares with stratified cosine-hemisphere rays that start spread over each patch. A ray that meets
 /// nothing is traced again from a place 1 % nearer to the patch's centroid and a little behind its plane, so that
 /// cracks between polygons and faces that lie against each other do not count as openings. \throws Cancelled.

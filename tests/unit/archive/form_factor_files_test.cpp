@@ -48,7 +48,8 @@ Simulation solved_from_folder(const Scene& scene, bool close) {
   const FormFactors found = find_form_factors(scene, coarse(close));
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
-  return simulate(scene, coarse(), {}, [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); });
+  return simulate(scene, coarse(), {},
+                  {.exchange = [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); }});
 }
 
 // A factor passes through two roundings to float, 2^-24 each. Errors of F of this size in every entry change B by
@@ -89,7 +90,8 @@ TEST(StoredFormFactors, CarryTwiceTheLightOfTwiceTheExitance) {
     Request request = coarse();
     request.max_edge = info.max_edge;
     request.kept_sides = stored.sides;
-    return simulate(stored.scene, request, {}, [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); })
+    return simulate(stored.scene, request, {},
+                    {.exchange = [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); }})
         .solution.irradiance;
   };
   const Field once = irradiance(1);

@@ -73,6 +73,19 @@ TEST(WriteReport, WeighsRowSumsByArea) {
   EXPECT_NEAR(report["transport"]["row_sum"]["mean"].get<double>(), 0.5, 1e-15);
 }
 
+TEST(WriteReport, SaysWhatIsNotKnownOfRowsOnDemand) {
+  Simulation simulation = tiny_simulation();
+  simulation.plan.on_demand = true;
+  simulation.transport.row_sum = simulation.transport.raw_row_sum = Eigen::VectorXd();
+  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  for (const char* key : {"facing_pairs", "shadow_rays", "bare_shadow_rays_per_second", "raw_row_sum", "row_sum"}) {
+    EXPECT_TRUE(report["transport"].at(key).is_null()) << key;
+  }
+  EXPECT_TRUE(report["transport"]["worst_rows"].empty());
+  EXPECT_TRUE(report["energy_balance"].at("defect_W").is_null());
+  EXPECT_EQ(report["energy_balance"]["escaped_W"], (std::vector<double>{1, 2, 3}));
+}
+
 // Patches 1 and 2 are alike: of equals the first.
 TEST(WriteReport, NamesTheWorstPatches) {
   const Simulation simulation = tiny_simulation();

@@ -80,6 +80,15 @@ TEST(WriteVtk, KeepsTrianglesAndQuadrilaterals) {
   }
 }
 
+TEST(WriteVtk, LeavesOutRowSumsThatAreNotKnown) {
+  Simulation simulation = tiny_simulation();
+  simulation.transport.row_sum = simulation.transport.raw_row_sum = Eigen::VectorXd();
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  EXPECT_EQ(polygons->GetCellData()->GetArray("row_sum"), nullptr);
+  EXPECT_EQ(polygons->GetCellData()->GetArray("raw_row_sum"), nullptr);
+  EXPECT_NE(polygons->GetCellData()->GetArray("area"), nullptr);
+}
+
 TEST(WriteVtk, ValuesComeBackAsFloats) {
   const Simulation simulation = tiny_simulation();
   const auto polygons = written_and_read(tiny_scene(), simulation);

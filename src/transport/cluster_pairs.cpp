@@ -1,0 +1,41 @@
+#include "transport/cluster_pairs.h"
+
+#include <algorithm>
+
+namespace patchlight {
+namespace {
+
+bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
+  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
+                     [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
+}
+
+}  // namespace
+
+ClusterPairs::ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options)
+    : mesh_(mesh),
+      occluder_(occluder),
+      short_cuts_(options.short_cuts),
+      shapes_(patch_shapes(mesh)),
+      clusters_(patch_clusters(mesh, shapes_)),
+      sampler_(mesh, shapes_, occluder, options) {
+  for (const PatchCluster& cluster : clusters_) {
+    hulls_.push_back(hull_of(cluster, shapes_, occluder.shafts()));
+    hulls_.back().is_covered = is_covered(mesh, cluster, occluder);
+  }
+}
+
+PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
+  if (averted(clusters_[pair.row], clusters_[pair.column])) return PairClass::averted;
+  const ClusterHull& a = hulls_[pair.row];
+  const ClusterHull& b = hulls_[pair.column];
+  if (short_cuts_.free && is_free(a, b)) return PairClass::free;
+  return short_cuts_.hidden && occluder_.hides(a.corners, b.corners) ? PairClass::hidden : PairClass::sampled;
+}
+
+bool ClusterPairs::is_free(const ClusterHull& a, const ClusterHull& b) const {
+  if (a.is_covered || b.is_covered) return false;
+  return !occluder_.can_occlude() || occluder_.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,90 @@
+"""`patchlight solve --on-demand`: the same answer as with a stored matrix that is not closed, in little memory."""
+import json
+import math
+import unittest
+
+from support import ToolTest
+
+NOT_CONVERGED, MEMORY = 3, 4
+TOLERANCE = 1e-6
+
+
+class OnDemandTest(ToolTest):
+    def report(self, *arguments, code=0):
+        done = self.run_tool("solve", "room.obj", "--solver", "progressive", "--report", "report.json", *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads((self.folder / "report.json").read_text())
+
+    def both(self):
+        size = ("--patches", 300, "--tolerance", TOLERANCE)
+        return self.report(*size, "--no-closure"), self.report(*size, "--on-demand")
+
+    def difference(self, report, band):
+        """A bound on ||B_1 - B_2||_A for two solutions of the same equations: each stops at ||B* - B||_A <= tolerance
+        ||B - E||_A, and ||B - E||_A <= sqrt(A) max rho H."""
+        reflected = max(m["reflectance"][band] * m["irradiance_max_W_m2"][band] for m in report["materials"])
+        return 2 * TOLERANCE * math.sqrt(report["mesh"]["area_m2"]) * reflected
+
+    def test_agrees_with_the_stored_matrix(self):
+        """On the patches of a material of area A, H = (B - E) / rho: by Cauchy and Schwarz its mean is off by at most
+        ||B_1 - B_2||_A / (rho sqrt(A))."""
+        stored, on_demand = self.both()
+        self.assertTrue(on_demand["solution"]["converged"])
+        self.assertEqual(on_demand["mesh"]["area_m2"], stored["mesh"]["area_m2"])
+        compared = 0
+        for band in range(3):
+            for one, other in zip(stored["materials"], on_demand["materials"]):
+                reflectance = one["reflectance"][band]
+                if reflectance == 0:
+                    continue
+                expected = one["irradiance_mean_W_m2"][band]
+                delta = self.difference(stored, band) / (reflectance * math.sqrt(one["area_m2"]))
+                self.assertLess(delta, 1e-4 * expected)
+                self.assertAlmostEqual(other["irradiance_mean_W_m2"][band], expected, delta=delta)
+                compared += 1
+        self.assertEqual(compared, 3)
+
+    def test_what_is_not_known_is_null(self):
+        """Without row sums the form factors' defect counts as imbalance. It is found from two solutions: their absorbed
+        fluxes differ by at most sum A |B_1 - B_2| (1 + 1 / rho) <= sqrt(A) ||B_1 - B_2||_A (1 + 1 / rho), where the 1
+        is for the lamp, which does not reflect; the solver's own imbalance is as small."""
+        stored, on_demand = self.both()
+        transport = on_demand["transport"]
+        for key in ("facing_pairs", "shadow_rays", "raw_row_sum", "row_sum"):
+            self.assertIsNone(transport[key], key)
+        self.assertEqual(transport["worst_rows"], [])
+        self.assertEqual(transport["closure"], "none: rows on demand")
+        self.assertEqual((on_demand["plan"]["on_demand"], on_demand["plan"]["close"]), (True, False))
+        balance = on_demand["energy_balance"]
+        self.assertIsNone(balance["defect_W"])
+
+        known = stored["energy_balance"]
+        defect = max(abs(lost) / emitted for lost, emitted in zip(known["defect_W"], known["emitted_W"]))
+        root_of_area = math.sqrt(stored["mesh"]["area_m2"])
+        delta = max(2 * root_of_area * self.difference(stored, band) * (1 + 1 / 0.5) / known["emitted_W"][band]
+                    for band in range(3))
+        self.assertGreater(defect, delta)
+        self.assertAlmostEqual(balance["imbalance"], defect, delta=delta)
+
+    def test_every_output_is_written(self):
+        self.write("spots.txt", "0 0 0 0 0 1\n")
+        done = self.run_tool("solve", "room.obj", "--patches", 200, "--solver", "progressive", "--on-demand", "-v", "-o",
+                             "a.vtp", "-o", "a.glb", "--series", "a.pvd", "--picture", "a.png", "--points", "spots.txt")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("computed on demand", done.stdout)
+        self.assertNotIn("row sums before closure", done.stdout)
+        self.assertIn(b"radiosity", (self.folder / "a.vtp").read_bytes())
+        self.assertNotIn(b'"row_sum"', (self.folder / "a.vtp").read_bytes())
+
+    def test_needs_no_memory_for_pairs(self):
+        """4,000 patches: 32 MB for the pairs, 50 MB for the program."""
+        size = ("--patches", 4000, "--memory", "75MB", "--max-iterations", 0)
+        refused = self.run_tool("solve", "room.obj", "--solver", "progressive", "--report", "report.json", *size)
+        self.assertEqual(refused.returncode, MEMORY, refused.stderr)
+        accepted = self.report(*size, "--on-demand", code=NOT_CONVERGED)
+        self.assertGreater(accepted["mesh"]["patches"], 3000)
+        self.assertLess(accepted["memory_peak_bytes"], 75e6)
+
+
+if __name__ == "__main__":
+    unittest.main()
