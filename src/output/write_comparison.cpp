@@ -131,14 +131,15 @@ std::string facts(const Scene& scene, const Comparison& comparison, const Proven
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// One axis for runs of very different lengths has to be logarithmic.
-Scale scale_for(const std::vector<Curve>& curves) {
+// On a linear axis an error that falls by a factor with each iteration is a straight line; one axis for runs of very
+// different lengths has to be logarithmic.
+Scale scale_for(const Comparison& comparison, const Abscissa& abscissa) {
   constexpr double most = 20;
   double least = 0;
   double greatest = 0;
-  for (const Curve& curve : curves) {
-    if (curve.points.empty() || !(curve.points.back()[0] > 0)) continue;
-    const double end = curve.points.back()[0];
+  for (const SolverRun& run : comparison.runs) {
+    const double end = abscissa.value(run, run.solution.history.back());
+    if (!run.solution.converged || !(end > 0)) continue;
     least = least == 0 ? end : std::min(least, end);
     greatest = std::max(greatest, end);
   }
@@ -148,7 +149,7 @@ Scale scale_for(const std::vector<Curve>& curves) {
 void draw(const fs::path& folder, const Scene& scene, const Comparison& comparison, const Abscissa& abscissa) {
   Plot plot{
       fs::path(scene.file).filename().string() + ": " + std::to_string(comparison.simulation.mesh.size()) + " patches",
-      {abscissa.label, Scale::linear},
+      {abscissa.label, scale_for(comparison, abscissa)},
       {"relative error of the reflected light", Scale::logarithmic},
       {}};
   for (const SolverRun& run : comparison.runs) {
@@ -158,7 +159,6 @@ void draw(const fs::path& folder, const Scene& scene, const Comparison& comparis
     }
     plot.curves.push_back(std::move(curve));
   }
-  plot.x.scale = scale_for(plot.curves);
   for (const char* extension : {".svg", ".png"}) write_plot(folder / (std::string(abscissa.file) + extension), plot);
 }
 
