@@ -5,6 +5,7 @@
 #include "solve/bounds.h"
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace patchlight {
 
@@ -50,12 +51,16 @@ class Iterations {
   void show_irradiance(Field arrived) { arrived_ = std::move(arrived); }
 
   const Field& direct_irradiance() const { return solution_.direct_irradiance; }
-  bool good() const { return solution_.converged; }
+  /// True when there is nothing more to do: the last iterate was good enough, or no further one will be better: the
+  /// residual is not finite any more, or has come down to rounding.
+  bool ended() const { return solution_.converged || hopeless_; }
   /// B = E + rho o H with the H of the last iterate.
   Solution finish();
 
  private:
   Iteration measured(const Iterate& iterate, int number) const;
+  bool is_good(const Iteration& iteration) const;
+  bool wants_weights() const;
   void tell(const Iterate& iterate);
 
   const TransportOperator& transport_;
@@ -66,6 +71,8 @@ class Iterations {
   double start_;
   double work_ = 0;
   Eigen::ArrayXd first_residual_;
+  double last_applied_residual_ = std::numeric_limits<double>::infinity();
+  bool hopeless_ = false;
   Iterate last_;
   Field ambient_, arrived_;
   Solution solution_;

@@ -57,7 +57,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
 
   const std::int64_t most = static_cast<std::int64_t>(iterations.options().max_iterations) * n;
   std::int64_t next_record = 1;
-  for (std::int64_t shots = 1; shots <= most && !iterations.good(); ++shots) {
+  for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field waiting =
         shot == Shot::unshot ? unshot : Field(unshot + problem.reflectance.rowwise() * ambient.row(0));
     const Eigen::Index source = brightest(waiting, problem.area);
