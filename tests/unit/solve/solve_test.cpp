@@ -259,7 +259,7 @@ TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
   const Field exact = direct_solution(*box.transport, box.problem);
   const Solution early =
       solve(*box.transport, box.problem, {.solver = Solver::progressive, .relative_error = 1e-15, .max_iterations = 0});
-  const Field shown = early.radiosity + box.problem.reflectance.rowwise() * early.ambient.row(0);
+  const Field shown = early.radiosity + box.problem.reflectance * early.ambient;
   const double without = area_norm(exact - early.radiosity, box.problem.area)[0];
   const double with = area_norm(exact - shown, box.problem.area)[0];
   EXPECT_LT(with, 0.5 * without);
