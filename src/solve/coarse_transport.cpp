@@ -18,11 +18,11 @@ CoarseTransport::CoarseTransport(const RadiosityProblem& problem)
       arrived_(Eigen::VectorXd::Zero(groups_)),
       area_(Eigen::VectorXd::Zero(groups_)) {}
 
-void CoarseTransport::learn(Eigen::Index source, const Field& flash, const Field& arriving) {
-  // A row of F is the same in all bands: the brightest one tells it best.
+void CoarseTransport::learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving) {
+  // A row of F is the same in all bands: the strongest one tells it best.
   Eigen::Index band = 0;
-  if (!(flash.row(0).abs().maxCoeff(&band) > 0)) return;
-  const Eigen::VectorXd row = arriving.col(band) / flash(0, band);
+  if (!(shot_radiosity.row(0).abs().maxCoeff(&band) > 0)) return;
+  const Eigen::VectorXd row = arriving.col(band) / shot_radiosity(0, band);
   const Eigen::Index group = group_of(source);
   arriving_.col(group) += row.cast<float>();
   arrived_[group] += problem_.area.dot(row);
@@ -30,7 +30,7 @@ void CoarseTransport::learn(Eigen::Index source, const Field& flash, const Field
 }
 
 Eigen::Index CoarseTransport::next_source(const Field& waiting) const {
-  const Eigen::ArrayXd flux = waiting.rowwise().sum().abs() * problem_.area.array();
+  const Eigen::ArrayXd flux = waiting.abs().rowwise().sum() * problem_.area.array();
   Eigen::VectorXd of_unknown = Eigen::VectorXd::Zero(groups_);
   for (Eigen::Index i = 0; i < patches_; ++i) {
     if (area_[group_of(i)] == 0) of_unknown[group_of(i)] += flux[i];

@@ -13,8 +13,9 @@ class CoarseTransport {
  public:
   explicit CoarseTransport(const RadiosityProblem& problem);
 
-  /// The irradiance everywhere, `arriving`, by the radiosity `flash` of one patch; one row per patch, and one row.
-  void learn(Eigen::Index source, const Field& flash, const Field& arriving);
+  /// The irradiance everywhere, `arriving`, by the radiosity `shot_radiosity` of one patch; one row per patch, and one
+  /// row.
+  void learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving);
 
   /// The patch that shoots next when `waiting` is to be shot, W/m^2: the one with the most flux, summed over the bands.
   /// Before that each group that has any shoots once, the one with the most flux first.

@@ -96,7 +96,15 @@ void Iterations::tell(const Iterate& iterate) {
   const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
   arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
-  if (!observer_({Stage::solve, reached / wanted, &iteration, &shown, ambient})) throw Cancelled();
+  fraction_ = reached / wanted;
+  if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) throw Cancelled();
+}
+
+void Iterations::keep_observer() {
+  constexpr double interval = 0.1;
+  if (!observer_ || wall_seconds() < next_report_) return;
+  if (!observer_({.stage = Stage::solve, .fraction = fraction_})) throw Cancelled();
+  next_report_ = wall_seconds() + interval;
 }
 
 bool Iterations::start(Field direct_irradiance) {

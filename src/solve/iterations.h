@@ -40,6 +40,9 @@ class Iterations {
   /// Counts work that was done otherwise, in applications.
   void count(double applications) { work_ += applications; }
 
+  /// Lets the observer know between two iterates, at most ten times a second. \throws Cancelled.
+  void keep_observer();
+
   /// Puts E into the history, with F E as it is found from the lamps. True when that is good enough.
   bool start(Field direct_irradiance);
   /// Puts the next iterate into the history. True when it is good enough; one with a recurred residual is measured once
@@ -70,6 +73,8 @@ class Iterations {
   Bounds bounds_;
   double start_;
   double work_ = 0;
+  double fraction_ = 0;
+  double next_report_ = 0;
   Eigen::ArrayXd first_residual_;
   double last_applied_residual_ = std::numeric_limits<double>::infinity();
   bool hopeless_ = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace patchlight {
@@ -18,23 +19,25 @@ Field even_irradiance(const Field& unshot, const RadiosityProblem& problem) {
   return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
 }
 
-// The lamps' light where it arrives first, the number of their patches, and what their rows tell.
+// The lamps' light where it arrives first, and what their rows tell.
 struct Lamps {
   Field irradiance;
-  Eigen::Index patches = 0;
   CoarseTransport coarse;
 };
 
-Lamps lamps_shot(const RowTransport& transport, const RadiosityProblem& problem) {
+// `iterations` is told of each row.
+Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
+  const RadiosityProblem& problem = iterations.problem();
   const Field& exitance = problem.exitance;
-  Lamps lamps{Field::Zero(exitance.rows(), exitance.cols()), 0, CoarseTransport(problem)};
+  Lamps lamps{Field::Zero(exitance.rows(), exitance.cols()), CoarseTransport(problem)};
   for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
     if (!(exitance.row(i) > 0).any()) continue;
     const auto index = static_cast<PatchIndex>(i);
     const Field arriving = transport.shoot({index, index + 1}, exitance.row(i));
     lamps.coarse.learn(i, exitance.row(i), arriving);
     lamps.irradiance += arriving;
-    ++lamps.patches;
+    iterations.count(1.0 / static_cast<double>(exitance.rows()));
+    iterations.keep_observer();
   }
   return lamps;
 }
@@ -44,8 +47,7 @@ Lamps lamps_shot(const RowTransport& transport, const RadiosityProblem& problem)
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot) {
   const RadiosityProblem& problem = iterations.problem();
   const Eigen::Index n = problem.exitance.rows();
-  Lamps lamps = lamps_shot(transport, problem);
-  iterations.count(static_cast<double>(lamps.patches) / static_cast<double>(n));
+  Lamps lamps = lamps_shot(iterations, transport);
   CoarseTransport coarse = std::move(lamps.coarse);
   Field H = lamps.irradiance;
   // With X the radiosity shot so far, B = E + K X: the residual of X, and what B lacks before one reflection, is
@@ -54,21 +56,23 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   iterations.show(coarse.ambient(unshot));
   if (iterations.start(std::move(lamps.irradiance))) return iterations.finish();
 
-  const std::int64_t most = static_cast<std::int64_t>(iterations.options().max_iterations) * n;
+  const std::int64_t most = std::min<std::int64_t>(static_cast<std::int64_t>(iterations.options().max_iterations) * n,
+                                                   std::numeric_limits<int>::max());
   std::int64_t next_record = 1;
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field waiting = shot == Shot::unshot
                               ? unshot
                               : Field(unshot + problem.reflectance.rowwise() * even_irradiance(unshot, problem).row(0));
     const Eigen::Index source = coarse.next_source(waiting);
-    const Field flash = waiting.row(source);
+    const Field shot_radiosity = waiting.row(source);
     const auto index = static_cast<PatchIndex>(source);
-    const Field arriving = transport.shoot({index, index + 1}, flash);
-    unshot.row(source) -= flash;
+    const Field arriving = transport.shoot({index, index + 1}, shot_radiosity);
+    unshot.row(source) -= shot_radiosity;
     unshot += problem.reflectance * arriving;
     H += arriving;
-    coarse.learn(source, flash, arriving);
+    coarse.learn(source, shot_radiosity, arriving);
     iterations.count(1.0 / static_cast<double>(n));
+    iterations.keep_observer();
     if (shots < next_record && shots < most) continue;
     iterations.show(coarse.ambient(unshot));
     iterations.record({problem.exitance + problem.reflectance * H, H, unshot}, static_cast<int>(shots));

@@ -70,7 +70,7 @@ SolverRun Race::run(const Contestant& contestant, const RowTransport& transport,
   result.contestant = contestant;
   Frames frames;
   const Observer watch = [&](const Progress& progress) {
-    if (options.keep_iterates) frames.keep(progress);
+    if (options.keep_iterates && progress.irradiance != nullptr) frames.keep(progress);
     return !observer || observer(progress);
   };
   const double begin = wall_seconds();

@@ -27,7 +27,7 @@ struct Iteration {
 struct Progress {
   Stage stage = Stage::read;
   double fraction = 0;                   ///< of this stage, 0 to 1
-  const Iteration* iteration = nullptr;  ///< in Stage::solve only
+  const Iteration* iteration = nullptr;  ///< in Stage::solve, with each new iterate
   const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
   const Field* ambient = nullptr;        ///< goes with it for progressive refinement: Solution::ambient of this iterate
 };
