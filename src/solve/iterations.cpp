@@ -86,7 +86,9 @@ void Iterations::tell(const Iterate& iterate) {
   const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
   arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
-  if (!observer_({Stage::solve, reached / wanted, &iteration, &shown, ambient})) throw Cancelled();
+  const double of_rows = options_.max_rows ? std::min(1.0, work_ / *options_.max_rows) : 0;
+  const double fraction = std::max(reached / wanted, of_rows);
+  if (!observer_({Stage::solve, fraction, &iteration, &shown, ambient})) throw Cancelled();
 }
 
 bool Iterations::start(Field direct_irradiance) {

@@ -39,6 +39,14 @@ Lamps lamps_shot(const RowTransport& transport, const RadiosityProblem& problem)
   return lamps;
 }
 
+// How many shots there may be after the lamps'.
+std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eigen::Index lamps) {
+  const std::int64_t most = static_cast<std::int64_t>(options.max_iterations) * patches;
+  if (!options.max_rows) return most;
+  const double rows = std::min(*options.max_rows, 1.0 * options.max_iterations + 1) * static_cast<double>(patches);
+  return std::clamp<std::int64_t>(static_cast<std::int64_t>(rows) - lamps, 0, most);
+}
+
 }  // namespace
 
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot) {
@@ -54,7 +62,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   iterations.show(coarse.ambient(unshot));
   if (iterations.start(std::move(lamps.irradiance))) return iterations.finish();
 
-  const std::int64_t most = static_cast<std::int64_t>(iterations.options().max_iterations) * n;
+  const std::int64_t most = most_shots(iterations.options(), n, lamps.patches);
   std::int64_t next_record = 1;
   for (std::int64_t shots = 1; shots <= most && !iterations.good(); ++shots) {
     const Field waiting = shot == Shot::unshot
