@@ -96,7 +96,8 @@ void Iterations::tell(const Iterate& iterate) {
   const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
   arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
-  fraction_ = reached / wanted;
+  const double of_rows = options_.max_rows ? std::min(1.0, work_ / *options_.max_rows) : 0;
+  fraction_ = std::max(reached / wanted, of_rows);
   if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) throw Cancelled();
 }
 

@@ -19,9 +19,10 @@ Field even_irradiance(const Field& unshot, const RadiosityProblem& problem) {
   return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
 }
 
-// The lamps' light where it arrives first, and what their rows tell.
+// The lamps' light where it arrives first, the number of their patches, and what their rows tell.
 struct Lamps {
   Field irradiance;
+  Eigen::Index patches = 0;
   CoarseTransport coarse;
 };
 
@@ -29,17 +30,27 @@ struct Lamps {
 Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
   const RadiosityProblem& problem = iterations.problem();
   const Field& exitance = problem.exitance;
-  Lamps lamps{Field::Zero(exitance.rows(), exitance.cols()), CoarseTransport(problem)};
+  Lamps lamps{Field::Zero(exitance.rows(), exitance.cols()), 0, CoarseTransport(problem)};
   for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
     if (!(exitance.row(i) > 0).any()) continue;
     const auto index = static_cast<PatchIndex>(i);
     const Field arriving = transport.shoot({index, index + 1}, exitance.row(i));
     lamps.coarse.learn(i, exitance.row(i), arriving);
     lamps.irradiance += arriving;
+    ++lamps.patches;
     iterations.count(1.0 / static_cast<double>(exitance.rows()));
     iterations.keep_observer();
   }
   return lamps;
+}
+
+// How many shots there may be after the lamps'.
+std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eigen::Index lamps) {
+  const std::int64_t most = std::min<std::int64_t>(static_cast<std::int64_t>(options.max_iterations) * patches,
+                                                   std::numeric_limits<int>::max());
+  if (!options.max_rows) return most;
+  const double rows = std::min(*options.max_rows, 1.0 * options.max_iterations + 1) * static_cast<double>(patches);
+  return std::clamp<std::int64_t>(static_cast<std::int64_t>(rows) - lamps, 0, most);
 }
 
 }  // namespace
@@ -56,8 +67,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   iterations.show(coarse.ambient(unshot));
   if (iterations.start(std::move(lamps.irradiance))) return iterations.finish();
 
-  const std::int64_t most = std::min<std::int64_t>(static_cast<std::int64_t>(iterations.options().max_iterations) * n,
-                                                   std::numeric_limits<int>::max());
+  const std::int64_t most = most_shots(iterations.options(), n, lamps.patches);
   std::int64_t next_record = 1;
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field waiting = shot == Shot::unshot

@@ -38,6 +38,8 @@ struct SolverOptions {
   Solver solver = Solver::cg;
   double relative_error = 1e-6;  ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below
   int max_iterations = 1000;     ///< for progressive refinement one iteration is as many shots as there are patches
+  std::optional<double> max_rows = {};         ///< progressive refinement stops after so many rows of F, as a share of
+                                               ///< the patches; the lamps' are among them, and always taken
   std::optional<double> relaxation = {};       ///< of SOR, above 0 and below 2; without it estimated
   int restart = 30;                            ///< directions that GMRES keeps
   std::optional<double> largest_row_sum = {};  ///< of F, where it is known: saves an application. Infinite: not to be

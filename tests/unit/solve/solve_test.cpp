@@ -267,5 +267,26 @@ TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
   EXPECT_LT(with, 0.5 * without);
 }
 
+TEST(ProgressiveRefinement, StopsAfterSoManyRows) {
+  // Of 100 rows two are those of the lamps, which always shoot.
+  const Box box = made_up(100, 0.8);
+  for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
+    const auto stopped = [&](double max_rows, int max_iterations) {
+      const SolverOptions options{.solver = solver,
+                                  .relative_error = 1e-15,
+                                  .max_iterations = max_iterations,
+                                  .max_rows = max_rows,
+                                  .largest_row_sum = std::numeric_limits<double>::infinity()};
+      return solve(*box.transport, box.problem, options);
+    };
+    EXPECT_EQ(stopped(0.001, 5).history.back().number, 0);
+    EXPECT_EQ(stopped(0.255, 5).history.back().number, 23);
+    EXPECT_NEAR(stopped(0.255, 5).history.back().work, 0.25, 1e-12);
+    EXPECT_EQ(stopped(1.5, 5).history.back().number, 148);
+    EXPECT_EQ(stopped(1e9, 2).history.back().number, 200);
+    EXPECT_FALSE(stopped(1.5, 5).converged);
+  }
+}
+
 }  // namespace
 }  // namespace patchlight
