@@ -33,10 +33,20 @@ Lamps lamps_shot(const RowTransport& transport, const Field& exitance) {
   return lamps;
 }
 
-// Flux that waits to be shot, summed over the bands, decides who shoots next.
+// How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
+// best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
+Field over_relaxation(const RadiosityProblem& problem) {
+  constexpr double next_eigenvalue = 0.7;
+  const Field mean_reflectance =
+      (problem.reflectance.colwise() * problem.area.array()).colwise().sum() / problem.area.sum();
+  return 2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt());
+}
+
+// Flux that waits to be shot, summed over the bands, decides who shoots next. What is overshot is negative later, and
+// must not hide behind what is missing in another band.
 Eigen::Index brightest(const Field& waiting, const Eigen::VectorXd& area) {
   Eigen::Index patch = 0;
-  (waiting.rowwise().sum().abs() * area.array()).maxCoeff(&patch);
+  (waiting.abs().rowwise().sum() * area.array()).maxCoeff(&patch);
   return patch;
 }
 
@@ -57,9 +67,11 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
 
   const std::int64_t most = static_cast<std::int64_t>(iterations.options().max_iterations) * n;
   std::int64_t next_record = 1;
+  const Field factor = over_relaxation(problem);
   for (std::int64_t shots = 1; shots <= most && !iterations.good(); ++shots) {
     const Field waiting =
-        shot == Shot::unshot ? unshot : Field(unshot + problem.reflectance.rowwise() * ambient.row(0));
+        shot == Shot::unshot ? unshot
+                             : Field(unshot.rowwise() * factor.row(0) + problem.reflectance.rowwise() * ambient.row(0));
     const Eigen::Index source = brightest(waiting, problem.area);
     const Field flash = waiting.row(source);
     const auto index = static_cast<PatchIndex>(source);
