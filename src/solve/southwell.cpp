@@ -44,6 +44,15 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
   return lamps;
 }
 
+// How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
+// best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
+Field over_relaxation(const RadiosityProblem& problem) {
+  constexpr double next_eigenvalue = 0.7;
+  const Field mean_reflectance =
+      (problem.reflectance.colwise() * problem.area.array()).colwise().sum() / problem.area.sum();
+  return 2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt());
+}
+
 // How many shots there may be after the lamps'.
 std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eigen::Index lamps) {
   const std::int64_t most = std::min<std::int64_t>(static_cast<std::int64_t>(options.max_iterations) * patches,
@@ -69,10 +78,12 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
 
   const std::int64_t most = most_shots(iterations.options(), n, lamps.patches);
   std::int64_t next_record = 1;
+  const Field factor = over_relaxation(problem);
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field waiting = shot == Shot::unshot
                               ? unshot
-                              : Field(unshot + problem.reflectance.rowwise() * even_irradiance(unshot, problem).row(0));
+                              : Field(unshot.rowwise() * factor.row(0) +
+                                      problem.reflectance.rowwise() * even_irradiance(unshot, problem).row(0));
     const Eigen::Index source = coarse.next_source(waiting);
     const Field shot_radiosity = waiting.row(source);
     const auto index = static_cast<PatchIndex>(source);
