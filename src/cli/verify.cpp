@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t shown = 10;
 
 std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
   std::ostringstream text;
   text << std::setprecision(digits) << value;
   return text.str();
@@ -72,16 +73,20 @@ std::string table(const Scene& scene, const PatchMesh& mesh, const Verification&
   return text_table(rows);
 }
 
+// Of the values that are numbers.
+double root_mean_square(const Field& values) {
+  const Field squares = values.isFinite().select(values.square(), 0);
+  return std::sqrt(squares.sum() / static_cast<double>(std::max<Eigen::Index>(1, values.isFinite().count())));
+}
+
 std::string verdict(const Verification& verification, double bar) {
-  const Field z = deviations_by_noise(verification);
-  const auto count = static_cast<double>(z.size());
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
-       << std::sqrt(z.square().sum() / count) << " (1 is noise), mean " << z.mean() << "; mean difference "
+       << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
        << 100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1) << " %\n"
        << (verification.agrees ? "agrees" : "DISAGREES") << ": with a bar of " << 100 * bar
-       << " % of each irradiance and the solver's bound, chi-square " << verification.chi_square.maxCoeff() << " of "
-       << verification.patches.size() << " patches in the worst band, p = " << verification.probability
+       << " % of the irradiance, or of its mean where that is larger, chi-square " << verification.chi_square.maxCoeff()
+       << " of " << verification.patches.size() << " patches in the worst band, p = " << verification.probability
        << (verification.agrees ? " >= " : " < ") << least_probability << "\n";
   return text.str();
 }

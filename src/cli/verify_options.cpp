@@ -31,8 +31,9 @@ void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
         options.verify.checked = whole_number("--checked", text, 1, 1'000'000'000);
       });
   add(command, "--bar", "PERCENT",
-      "standard error that each patch's irradiance is granted, in percent\nof it: for patch size and form factors; "
-      "default 2%",
+      "standard error that each patch's irradiance is granted for patch\nsize and form factors, in percent of it, or "
+      "of "
+      "the mean where that\nis larger; default 2%",
       [&options](const std::string& text) {
         const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
         const auto inside = [](double x) { return x >= 0 && x <= 100; };

@@ -40,11 +40,6 @@ Field rows_of(const FieldView& field, const std::vector<PatchIndex>& patches) {
   return rows;
 }
 
-// Nothing differs where both are dark, whatever the variance.
-Field over_root(const Field& difference, const Field& variance) {
-  return (difference == 0).select(Field::Zero(difference.rows(), difference.cols()), difference / variance.sqrt());
-}
-
 // The probability that a chi-square of so many degrees of freedom is this or larger.
 double upper_tail(double chi_square, std::size_t degrees) {
   if (degrees == 0) return 1;
@@ -56,7 +51,9 @@ double upper_tail(double chi_square, std::size_t degrees) {
 
 Field irradiance_bar(const Simulation& simulation, double relative) {
   const Solution& solution = simulation.solution;
-  Field bar = relative * solution.irradiance;
+  const Eigen::ArrayXd& area = simulation.problem.area.array();
+  const Spectrum mean = (solution.irradiance.colwise() * area).colwise().sum() / area.sum();
+  Field bar = relative * solution.irradiance.max(mean.replicate(solution.irradiance.rows(), 1));
   if (solution.error.size() > 0) bar.rowwise() += solution.error.colwise().maxCoeff().eval();
   return bar;
 }
@@ -64,11 +61,15 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
 Field deviations(const Verification& verification) {
   constexpr double degrees = path_batches - 1;
   const Field noise = verification.paths.standard_error.square() * (degrees / (degrees - 2));
-  return over_root(verification.irradiance - verification.paths.irradiance, noise + verification.bar.square());
+  const Field difference = verification.irradiance - verification.paths.irradiance;
+  const Field none = Field::Zero(difference.rows(), difference.cols());
+  return (difference == 0).select(none, difference / (noise + verification.bar.square()).sqrt());
 }
 
 Field deviations_by_noise(const Verification& verification) {
-  return over_root(verification.irradiance - verification.paths.irradiance, verification.paths.standard_error.square());
+  const Field& noise = verification.paths.standard_error;
+  const Field unknown = Field::Constant(noise.rows(), noise.cols(), std::numeric_limits<double>::quiet_NaN());
+  return (noise > 0).select((verification.irradiance - verification.paths.irradiance) / noise, unknown);
 }
 
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,

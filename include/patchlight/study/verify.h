@@ -29,7 +29,8 @@ struct Verification {
   bool agrees = false;     ///< probability >= least_probability
 };
 
-/// A bar on the irradiance of every patch, W/m^2: `relative` of it, and what the solver leaves, max_j |dB_j| over all
+/// A bar on the irradiance of every patch, W/m^2: `relative` of it or of the mean by area, whichever is larger, as what
+/// leaks into a dark corner comes from bright patches around it; and what the solver leaves, max_j |dB_j| over all
 /// patches where that is known, as |dH_i| <= sum_j F_ij |dB_j|.
 Field irradiance_bar(const Simulation& simulation, double relative);
 
@@ -43,7 +44,8 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
 /// degrees of freedom. 0 where nothing differs.
 Field deviations(const Verification& verification);
 
-/// z: the same by the noise of the paths alone, (solved - traced) / sigma_path.
+/// z: the same by the noise of the paths alone, (solved - traced) / sigma_path. Not a number where no two batches
+/// differ, as then the noise is not known: no path has met light.
 Field deviations_by_noise(const Verification& verification);
 
 }  // namespace patchlight
