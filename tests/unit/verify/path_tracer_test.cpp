@@ -25,8 +25,8 @@ std::vector<Receiver> whole_fronts(const Scene& scene) {
   return receivers;
 }
 
-// Right with a probability of 6e-5 of failing by chance for each value: a normal deviate beyond 4; with 31 degrees of
-// freedom 4e-4. The seeds are fixed, so that it is decided once.
+// Four standard errors, estimated with 31 degrees of freedom: a right value fails with a probability of 4e-4. The seeds
+// are fixed, so that it is decided once.
 void expect_within_four_errors(const PathEstimate& estimate, double exact) {
   for (Eigen::Index i = 0; i < estimate.irradiance.rows(); ++i) {
     EXPECT_NEAR(estimate.irradiance(i, 0), exact, 4 * estimate.standard_error(i, 0) + 1e-12) << "receiver " << i;
@@ -126,9 +126,9 @@ TEST(TraceIrradiance, IsTheMeanOverWhatIsNotCovered) {
 }
 
 TEST(TraceIrradiance, StandardErrorIsTheScatterOverSeeds) {
-  // With n seeds, sum z^2 = sum (H_k - mean)^2 / s_k^2 has the mean (n - 1) 31 / 29, as s_k^2 has 31 degrees of
-  // freedom, and about the variance of a chi-square, 2 (n - 1), times 1.2. Bounds at four of its standard deviations.
-  // The furnished room with few paths is the hard case: a small lamp, few paths that find it.
+  // With n seeds, the squared deviations from their mean add up to a chi-square of n - 1 degrees of freedom times the
+  // variance, the mean of what n runs state: four of its standard deviations, sqrt(2 (n - 1)), to either side. With 32
+  // paths many runs miss what the small lamp lights, and their stated errors are small, those of the others large.
   constexpr int seeds = 64;
   const Scene scene = furnished_room(0.5);
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -144,7 +144,6 @@ TEST(TraceIrradiance, StandardErrorIsTheScatterOverSeeds) {
     }
     const Field deviation = irradiance.rowwise() - irradiance.colwise().mean();
     for (Eigen::Index i = 0; i < 2; ++i) {
-      // Against the mean variance: single ones of 32 paths are small where the paths have missed the light.
       const double chi_square = deviation.col(i).square().sum() / variance.col(i).mean();
       EXPECT_NEAR(chi_square, seeds - 1, 4 * std::sqrt(2.0 * (seeds - 1))) << paths << " paths, receiver " << i;
     }
