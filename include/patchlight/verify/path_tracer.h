@@ -32,7 +32,7 @@ struct PathEstimate {
   Field irradiance;         ///< mean over what is exposed of the receiver, W/m^2; 0 if nothing is
   Field standard_error;     ///< its standard error, W/m^2, estimated with path_batches - 1 degrees of freedom
   std::uint32_t paths = 0;  ///< per receiver
-  std::uint64_t rays = 0;   ///< rays traced, shadow rays included
+  std::uint64_t rays = 0;   ///< two per vertex of a path: one to a lamp, one scattered
 };
 
 /// Irradiance by path tracing: the rendering equation of Kajiya (1986) for diffuse surfaces, without patches, form
