@@ -32,7 +32,7 @@ std::string table(const Comparison& comparison) {
       {"solver", "true error", "bound", "iterations", "applications", "seconds", "with assembly", "rate"}};
   for (const SolverRun& run : comparison.runs) {
     const Iteration& last = run.solution.history.back();
-    rows.push_back({name_of(run.contestant) + (run.solution.converged ? "" : " (not there)"),
+    rows.push_back({name_of(run.contestant) + (run.solution.converged ? "" : " (not reached)"),
                     rounded(last.true_error, 2), rounded(last.error_bound, 2),
                     rounded(iterations_of(run, last, patches)), rounded(last.work), rounded(run.seconds),
                     rounded(run.seconds + run.assembly_seconds), rounded(run.rate)});
@@ -53,6 +53,16 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
           "error "
           "per iteration\n";
   return text.str();
+}
+
+// The solvers that have given up. Rows on demand are not closed: that they do not come as near is no failure.
+std::string not_reached(const Comparison& comparison) {
+  std::string names;
+  for (const SolverRun& run : comparison.runs) {
+    if (run.solution.converged || run.contestant.on_demand) continue;
+    names += (names.empty() ? "" : ", ") + name_of(run.contestant);
+  }
+  return names;
 }
 
 }  // namespace
@@ -85,7 +95,12 @@ ExitCode compare(const CompareArguments& arguments) {
   if (!arguments.quiet) {
     std::cout << table(comparison) << facts(scene, comparison) << "wrote " << arguments.output.string() << std::endl;
   }
-  if (simulation.solution.converged) return good;
+  const std::string missed = not_reached(comparison);
+  if (!missed.empty()) {
+    print_message("warning",
+                  "the tolerance was not reached by " + missed + "; a larger --max-iterations lets them go on");
+  }
+  if (simulation.solution.converged) return missed.empty() ? good : not_converged;
   print_message("warning", "the reference itself has not converged: relative residual " +
                                rounded(comparison.reference_residual) + "; the errors above are relative to it");
   return not_converged;

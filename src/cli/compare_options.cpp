@@ -97,6 +97,11 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
     throw UsageError("compare: found no model; expected: patchlight compare MODEL -o FOLDER");
   }
   if (arguments.output.empty()) throw UsageError("compare: nothing would be written; give -o FOLDER");
+  const auto is_sor = [](const Contestant& contestant) { return contestant.solver == Solver::sor; };
+  const std::vector<Contestant>& all = arguments.options.contestants;
+  if (arguments.request.relaxation && std::none_of(all.begin(), all.end(), is_sor)) {
+    throw UsageError("--relaxation needs sor among --solvers");
+  }
   const auto on_demand = [](const Contestant& contestant) { return contestant.on_demand; };
   const std::vector<Contestant>& chosen = arguments.options.contestants;
   if (std::any_of(chosen.begin(), chosen.end(), on_demand) && arguments.request.estimator != Estimator::automatic) {

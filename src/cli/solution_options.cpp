@@ -45,6 +45,9 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   if (options.camera && options.camera->eye == options.camera->target) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
   }
+  if (options.request.relaxation && options.request.solver != Solver::sor) {
+    throw UsageError("--relaxation needs --solver sor");
+  }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
   if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
