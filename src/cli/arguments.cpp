@@ -4,6 +4,7 @@
 #include "patchlight/output/provenance.h"
 
 #include "cli/check_options.h"
+#include "cli/compare_options.h"
 #include "cli/form_factor_options.h"
 #include "cli/relight_options.h"
 #include "cli/solve_options.h"
@@ -119,6 +120,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
+  const std::shared_ptr<CompareCommandOptions> compare_options = add_compare(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
   for (CLI::App* command : tool.get_subcommands({})) {
@@ -136,6 +138,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     if (command.get_name() == "validate") return finish_validate(*validate_options);
     if (command.get_name() == "form-factors") {
       FormFactorArguments arguments = finish_form_factors(*form_factor_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
+    if (command.get_name() == "compare") {
+      CompareArguments arguments = finish_compare(*compare_options);
       arguments.command_line = joined(count, values);
       return arguments;
     }

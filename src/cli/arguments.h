@@ -4,6 +4,7 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
+#include "patchlight/study/compare.h"
 
 #include "cli/messages.h"
 
@@ -69,6 +70,17 @@ struct FormFactorArguments {
   std::string command_line;  ///< for the record
 };
 
+/// What `patchlight compare` is asked to do.
+struct CompareArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  CompareOptions options;
+  std::filesystem::path output;  ///< a folder
+  bool quiet = false;
+  std::string command_line;  ///< for the record
+};
+
 /// What `patchlight validate` is asked to do.
 struct ValidateArguments {
   std::filesystem::path json;   ///< .json; empty when it is not wanted
@@ -81,7 +93,8 @@ struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, ValidateArguments>;
+using Arguments =
+    std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, CompareArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/check.h"
+#include "cli/compare.h"
 #include "cli/exit_code.h"
 #include "cli/form_factors.h"
 #include "cli/interrupt.h"
@@ -28,6 +29,7 @@ ExitCode run(int count, const char* const* values) {
   }
   if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
   if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
+  if (const auto* to_compare = std::get_if<CompareArguments>(&arguments)) return compare(*to_compare);
   if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
     return validate(*to_validate, validation_cases());
   }

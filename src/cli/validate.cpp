@@ -6,6 +6,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/text_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,7 @@ std::string number_with(int digits, double value) {
   return text.str();
 }
 
-using Row = std::vector<std::string>;
-
-Row row_of(const ValidationResult& result) {
+TextRow row_of(const ValidationResult& result) {
   const Measured& measured = result.measured;
   return {result.name,
           number_with(9, result.exact),
@@ -37,29 +36,10 @@ Row row_of(const ValidationResult& result) {
           measured.bar_from};
 }
 
-// Rows as columns of text, each as wide as its widest cell.
-std::string table(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width(rows.front().size());
-  for (const Row& row : rows) {
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      width[column] = std::max(width[column], row[column].size());
-    }
-  }
-  std::ostringstream text;
-  text << std::left;
-  for (const Row& row : rows) {
-    for (std::size_t column = 0; column + 1 < row.size(); ++column) {
-      text << std::setw(static_cast<int>(width[column]) + 2) << row[column];
-    }
-    text << row.back() << '\n';
-  }
-  return text.str();
-}
-
 std::string table(const std::vector<ValidationResult>& results) {
-  std::vector<Row> rows{{"case", "exact", "ours", "error", "bar", "verdict", "exact value from", "bar from"}};
+  std::vector<TextRow> rows{{"case", "exact", "ours", "error", "bar", "verdict", "exact value from", "bar from"}};
   for (const ValidationResult& result : results) rows.push_back(row_of(result));
-  return table(rows);
+  return text_table(rows);
 }
 
 }  // namespace

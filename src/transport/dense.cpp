@@ -13,8 +13,11 @@ namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
-// Partial sums of a gather are kept per stripe of blocks, a fixed number.
+// Partial sums of a gather are kept per stripe of neighbouring blocks, a fixed number.
 constexpr PatchIndex stripes = 8;
+
+// The first of `count` blocks that belongs to a stripe.
+PatchIndex first_of(std::size_t stripe, PatchIndex count) { return static_cast<PatchIndex>(stripe * count / stripes); }
 
 class DenseTransport : public RowTransport {
  public:
@@ -47,11 +50,14 @@ class DenseTransport : public RowTransport {
 
 // sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones.
 Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
+  const PatchIndex count = S_.blocks() - I;
   PackedField partial(stripes, b.bands);
   parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto J = I + static_cast<PatchIndex>(stripe); J < S_.blocks(); J += stripes) {
-      gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), partial.block(static_cast<PatchIndex>(stripe)));
+    RowSums sums(b.bands);
+    for (PatchIndex J = I + first_of(stripe, count); J < I + first_of(stripe + 1, count); ++J) {
+      gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), sums.lanes.data());
     }
+    add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
   const PatchRange range = range_of(I);
   return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
@@ -61,12 +67,15 @@ Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
 // once per block row.
 Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const {
   const PatchIndex next = I + 1;
+  const PatchIndex count = S_.blocks() - next;
   PackedField partial(stripes, b.bands);
   parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto J = next + static_cast<PatchIndex>(stripe); J < S_.blocks(); J += stripes) {
+    RowSums sums(b.bands);
+    for (PatchIndex J = next + first_of(stripe, count); J < next + first_of(stripe + 1, count); ++J) {
       push_tile(S_.tile(I, J).data(), b.bands, b.block(I), pushed.block(J));
-      gather_tile(S_.tile(next, J).data(), b.bands, b.block(J), partial.block(static_cast<PatchIndex>(stripe)));
+      gather_tile(S_.tile(next, J).data(), b.bands, b.block(J), sums.lanes.data());
     }
+    add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
   if (next == S_.blocks()) return Field(0, b.bands);
   const PatchRange range = range_of(next);
@@ -124,13 +133,15 @@ Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) c
   parallel_for(blocks, [&](std::size_t block) {
     const PatchIndex I = first + static_cast<PatchIndex>(block);
     double* const out = sum.block(static_cast<PatchIndex>(block));
+    RowSums sums(b.bands);
     for (PatchIndex J = 0; J < S_.blocks(); ++J) {
       if (I <= J) {
-        gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), out);
+        gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), sums.lanes.data());
       } else {
         push_tile(S_.tile(J, I).data(), b.bands, b.block(J), out);
       }
     }
+    add_sums(sums, b.bands, out);
   });
   const Eigen::Index rows = receivers.end - receivers.begin;
   const Field own =

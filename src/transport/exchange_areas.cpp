@@ -23,18 +23,20 @@ std::array<float, std::size_t{edge} * edge> squared(std::span<const float> tile)
   return squares;
 }
 
-// Adds the products of the tiles of block row I with b to the sums, whose blocks begin at `first`.
+// Sums that take the products of one stripe.
 struct Sums {
   PackedField& field;
-  PatchIndex first;
+  PatchIndex first;  // block at which they begin
   double* block(PatchIndex I) const { return field.block(first + I); }
 };
 
+// Adds the products of the tiles of block row I with b.
 void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, int power, const Sums& sum) {
+  RowSums sums_I(b.bands);
   for (PatchIndex J = I; J < S.blocks(); ++J) {
     const auto multiply_with = [&](const float* tile) {
-      if (I == J) return gather_tile(tile, b.bands, b.block(J), sum.block(I));
-      multiply_tile(tile, b.bands, {b.block(I), b.block(J), sum.block(I), sum.block(J)});
+      if (I == J) return gather_tile(tile, b.bands, b.block(J), sums_I.lanes.data());
+      multiply_tile(tile, b.bands, {b.block(I), b.block(J), sums_I.lanes.data(), sum.block(J)});
     };
     if (power == 1) {
       multiply_with(S.tile(I, J).data());
@@ -42,6 +44,7 @@ void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, in
       multiply_with(squared(S.tile(I, J)).data());
     }
   }
+  add_sums(sums_I, b.bands, sum.block(I));
 }
 
 }  // namespace

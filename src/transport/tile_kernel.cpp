@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 namespace patchlight {
@@ -24,12 +25,22 @@ struct BandRange {
   std::size_t of;
 };
 
-// `bands` bands from range.first on. Four rows at once, so that b_J and out_J are loaded a quarter as often.
+// `bands` bands from range.first on; in one piece, as the sums have to stay in registers. Four rows at once, so that
+// b_J and out_J are loaded a quarter as often.
 template <std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const TileProduct product) {
   constexpr std::size_t rows = 4;
   for (std::size_t r = 0; r < edge; r += rows) {
-    Doubles sums[rows][bands] = {};
+    Doubles sums[rows][bands];
+    const std::size_t place_sums = (r * range.of + range.first) * width;
+    if constexpr (gather) {
+      for (std::size_t k = 0; k < rows; ++k) {
+        for (std::size_t band = 0; band < bands; ++band) {
+          sums[k][band] =
+              *reinterpret_cast<const Doubles*>(product.sums_I + place_sums + (k * range.of + band) * width);
+        }
+      }
+    }
     Doubles b[rows][bands];
     // Where row r is in a packed block; the next rows and bands follow.
     const std::size_t place_r = (r / width * range.of + range.first) * width + r % width;
@@ -40,9 +51,12 @@ PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const 
         }
       }
     }
-    // The rows in double, and those of later on their way into the cache.
+    // The rows in double, and those of later on their way into the cache, be it beyond the last tile.
     alignas(64) double wide[rows * edge];
-    for (std::size_t c = 0; c < rows * edge; c += 16) __builtin_prefetch(tile + r * edge + c + ahead);
+    const auto later = reinterpret_cast<std::uintptr_t>(tile + r * edge) + ahead * sizeof(float);
+    for (std::size_t line = 0; line < rows * edge * sizeof(float); line += 64) {
+      __builtin_prefetch(reinterpret_cast<const void*>(later + line));
+    }
     for (std::size_t c = 0; c < rows * edge; ++c) wide[c] = static_cast<double>(tile[r * edge + c]);
 
     for (std::size_t c = 0; c < edge; c += width) {
@@ -65,9 +79,7 @@ PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const 
     if constexpr (gather) {
       for (std::size_t k = 0; k < rows; ++k) {
         for (std::size_t band = 0; band < bands; ++band) {
-          const Doubles& v = sums[k][band];
-          product.out_I[place_r + band * width + k] +=
-              ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+          *reinterpret_cast<Doubles*>(product.sums_I + place_sums + (k * range.of + band) * width) = sums[k][band];
         }
       }
     }
@@ -87,8 +99,8 @@ PATCHLIGHT_INLINE void for_bands(const float* tile, int bands, const TileProduct
 }  // namespace
 
 PATCHLIGHT_TARGET_CLONES
-void gather_tile(const float* tile, int bands, const double* b_J, double* out_I) {
-  for_bands<true, false>(tile, bands, {nullptr, b_J, out_I, nullptr});
+void gather_tile(const float* tile, int bands, const double* b_J, double* sums_I) {
+  for_bands<true, false>(tile, bands, {nullptr, b_J, sums_I, nullptr});
 }
 
 PATCHLIGHT_TARGET_CLONES
@@ -99,6 +111,19 @@ void push_tile(const float* tile, int bands, const double* b_I, double* out_J) {
 PATCHLIGHT_TARGET_CLONES
 void multiply_tile(const float* tile, int bands, const TileProduct& product) {
   for_bands<true, true>(tile, bands, product);
+}
+
+RowSums::RowSums(int bands) : lanes(edge * static_cast<std::size_t>(bands) * width, 0.0) {}
+
+void add_sums(const RowSums& sums, int bands, double* out_I) {
+  const auto of = static_cast<std::size_t>(bands);
+  for (std::size_t r = 0; r < edge; ++r) {
+    for (std::size_t band = 0; band < of; ++band) {
+      const double* const v = &sums.lanes[(r * of + band) * width];
+      out_I[(r / width * of + band) * width + r % width] +=
+          ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+    }
+  }
 }
 
 PackedField summed(PackedField parts, PatchIndex count) {

@@ -27,16 +27,26 @@ struct PackedField {
   std::size_t offset(PatchIndex I) const { return static_cast<std::size_t>(I) * ExchangeAreas::edge * bands; }
 };
 
+/// Sums over the tiles of a block row, kept apart in eight lanes for each patch and band until the row is done.
+struct RowSums {
+  LargeArray<double> lanes;
+
+  explicit RowSums(int bands);
+};
+
+/// Adds the lanes up: out_I += the sums.
+void add_sums(const RowSums& sums, int bands, double* out_I);
+
 /// Products of a tile T with the packed values of one block, all bands in one pass over the tile, summed in double.
-/// gather: out_I += T b_J. push: out_J += T^T b_I.
-void gather_tile(const float* tile, int bands, const double* b_J, double* out_I);
+/// gather: sums_I += T b_J, with sums_I as in RowSums::lanes. push: out_J += T^T b_I.
+void gather_tile(const float* tile, int bands, const double* b_J, double* sums_I);
 void push_tile(const float* tile, int bands, const double* b_I, double* out_J);
 
 /// Both at once.
 struct TileProduct {
   const double* b_I;
   const double* b_J;
-  double* out_I;
+  double* sums_I;  ///< RowSums::lanes
   double* out_J;
 };
 void multiply_tile(const float* tile, int bands, const TileProduct& product);

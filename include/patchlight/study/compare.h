@@ -1,0 +1,62 @@
+#pragma once
+
+#include "patchlight/simulate.h"
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// A solver as it takes part in a comparison.
+struct Contestant {
+  Solver solver = Solver::cg;
+  bool on_demand = false;  ///< its rows of the transport are computed when it shoots, and not closed
+};
+
+/// "cg", "progressive-on-demand".
+std::string name_of(const Contestant& contestant);
+
+/// All solvers on the stored matrix, and progressive refinement on demand.
+std::vector<Contestant> all_contestants();
+
+struct CompareOptions {
+  std::vector<Contestant> contestants = all_contestants();
+  double relative_error = 1e-6;  ///< true error that every solver is to reach
+  int max_iterations = 10000;    ///< after which a solver gives up; one on demand shoots as often as there are patches
+  bool keep_iterates = true;     ///< fill SolverRun::frames
+};
+
+/// An iterate that was kept.
+struct Frame {
+  Iteration iteration;
+  Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> irradiance;  ///< H_k, W/m^2; B_k = E + rho o H_k
+};
+
+/// What became of one solver.
+struct SolverRun {
+  Contestant contestant;
+  Solution solution;
+  double seconds = 0;           ///< wall time of the solver; on demand with the rows that it asked for
+  double cpu_seconds = 0;       ///< the same, all threads
+  double assembly_seconds = 0;  ///< wall time before it could begin: form factors and closure
+  double rate = 0;  ///< factor by which the error falls with an iteration, late in the run; for what shoots, with as
+                    ///< many shots as there are patches. Not a number with too few iterations to tell
+  std::vector<Frame> frames;  ///< some forty, more at the beginning
+};
+
+/// All solvers on one matrix.
+struct Comparison {
+  Simulation simulation;          ///< with the reference as its solution
+  double reference_residual = 0;  ///< relative residual of the reference
+  double spectral_radius = 0;     ///< of K, the worst band: the rate that Jacobi should have
+  std::vector<SolverRun> runs;
+};
+
+/// Assembles a scene once, solves it to ten thousandths of the wanted error with conjugate gradients as the reference,
+/// and lets every solver begin from the lamps until its true error, ||B_ref - B_k||_A / ||B_ref - E||_A in the worst
+/// band, is small enough. \throws InputError, MemoryError, Cancelled.
+Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
+                   const Observer& observer = {});
+
+}  // namespace patchlight

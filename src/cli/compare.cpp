@@ -1,0 +1,94 @@
+#include "cli/compare.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_comparison.h"
+#include "patchlight/render/tone_map.h"
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/text_table.h"
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <numbers>
+#include <sstream>
+
+namespace patchlight::cli {
+namespace {
+
+std::string rounded(double value, int digits = 3) {
+  if (!std::isfinite(value)) return "-";
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string table(const Comparison& comparison) {
+  const PatchIndex patches = comparison.simulation.mesh.size();
+  std::vector<TextRow> rows{
+      {"solver", "true error", "bound", "iterations", "applications", "seconds", "with assembly", "rate"}};
+  for (const SolverRun& run : comparison.runs) {
+    const Iteration& last = run.solution.history.back();
+    rows.push_back({name_of(run.contestant) + (run.solution.converged ? "" : " (not there)"),
+                    rounded(last.true_error, 2), rounded(last.error_bound, 2),
+                    rounded(iterations_of(run, last, patches)), rounded(last.work), rounded(run.seconds),
+                    rounded(run.seconds + run.assembly_seconds), rounded(run.rate)});
+  }
+  return text_table(rows);
+}
+
+std::string facts(const Scene& scene, const Comparison& comparison) {
+  std::ostringstream text;
+  text << scene.file << ": " << comparison.simulation.mesh.size()
+       << " patches; closure: " << comparison.simulation.transport.closure << "; spectral radius of K "
+       << rounded(comparison.spectral_radius, 6);
+  for (const SolverRun& run : comparison.runs) {
+    if (run.contestant.solver != Solver::jacobi || !std::isfinite(run.rate)) continue;
+    text << ", which is Jacobi's rate; observed " << rounded(run.rate, 6);
+  }
+  text << "\niterations of what shoots: shots / patches; applications of the matrix, or as many rows; rate: of the "
+          "error "
+          "per iteration\n";
+  return text.str();
+}
+
+}  // namespace
+
+ExitCode compare(const CompareArguments& arguments) {
+  check_comparison_writable(arguments.output);
+  const ThreadLimit limit(arguments.request.threads);
+  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  const Observer observer = [&line](const Progress& progress) {
+    line.show(progress);
+    return !interrupted();
+  };
+
+  // 1. Read the model, run the solvers
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
+  const Simulation& simulation = comparison.simulation;
+  line.hide();
+  if (!simulation.solution.trapped.empty()) {
+    print_message("warning", "not solved, nothing written: " + simulation.solution.trapped);
+    return not_converged;
+  }
+
+  // 2. Write tables, plots and series
+  const double exposure = exposure_for(simulation.solution.radiosity / std::numbers::pi, simulation.problem.area);
+  const WritingGuard guard;
+  write_comparison(arguments.output, scene, comparison, {arguments.command_line, exposure}, observer);
+  line.hide();
+  if (!arguments.quiet) {
+    std::cout << table(comparison) << facts(scene, comparison) << "wrote " << arguments.output.string() << std::endl;
+  }
+  if (simulation.solution.converged) return good;
+  print_message("warning", "the reference itself has not converged: relative residual " +
+                               rounded(comparison.reference_residual) + "; the errors above are relative to it");
+  return not_converged;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,160 @@
+#include "patchlight/study/compare.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/solve/spectral_radius.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// The reference is so much nearer to the solution than the solvers have to come.
+constexpr double margin = 1e-4;
+
+// Keeps the first ten iterates, then those whose number is a fifth higher, and the last.
+class Frames {
+ public:
+  void keep(const Progress& progress) {
+    last_ = {*progress.iteration, progress.irradiance->cast<float>()};
+    if (frames_.size() >= 10 && last_.iteration.number < next_) return;
+    frames_.push_back(last_);
+    next_ = std::max(last_.iteration.number + 1, static_cast<int>(1.2 * last_.iteration.number));
+  }
+  std::vector<Frame> take() {
+    if (!frames_.empty() && frames_.back().iteration.number < last_.iteration.number) frames_.push_back(last_);
+    return std::move(frames_);
+  }
+
+ private:
+  std::vector<Frame> frames_;
+  Frame last_;
+  int next_ = 0;
+};
+
+// (e_last / e_middle)^(1 / iterations in between), over the last third of the fall of the error in powers of ten.
+double late_rate(const SolverRun& run, PatchIndex patches) {
+  const std::vector<Iteration>& history = run.solution.history;
+  const Iteration& last = history.back();
+  const double middle = std::pow(last.true_error, 2.0 / 3);  // iteration 0 has the error 1
+  const auto begin = std::find_if(history.begin(), history.end(),
+                                  [&](const Iteration& iteration) { return iteration.true_error <= middle; });
+  const int unit = is_shooting(run.contestant.solver) ? static_cast<int>(patches) : 1;
+  if (begin == history.end() || last.number - begin->number < 3 * unit || !(last.true_error > 0)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double iterations = static_cast<double>(last.number - begin->number) / unit;
+  return std::pow(last.true_error / begin->true_error, 1 / iterations);
+}
+
+// One solver against the reference.
+struct Race {
+  const CompareOptions& options;
+  const Field& reference;
+
+  SolverRun run(const Contestant& contestant, const RowTransport& transport, const RadiosityProblem& problem,
+                const SolverOptions& usual, const Observer& observer) const;
+};
+
+SolverRun Race::run(const Contestant& contestant, const RowTransport& transport, const RadiosityProblem& problem,
+                    const SolverOptions& usual, const Observer& observer) const {
+  SolverOptions of_run = usual;
+  of_run.solver = contestant.solver;
+  of_run.relative_error = options.relative_error;
+  of_run.max_iterations = contestant.on_demand ? 1 : options.max_iterations;
+  of_run.reference = reference;
+
+  SolverRun result;
+  result.contestant = contestant;
+  Frames frames;
+  const Observer watch = [&](const Progress& progress) {
+    if (options.keep_iterates && progress.irradiance != nullptr) frames.keep(progress);
+    return !observer || observer(progress);
+  };
+  const double begin = wall_seconds();
+  const double cpu_begin = cpu_seconds();
+  result.solution = solve(transport, problem, of_run, watch);
+  result.seconds = wall_seconds() - begin;
+  result.cpu_seconds = cpu_seconds() - cpu_begin;
+  result.rate = late_rate(result, transport.size());
+  result.frames = frames.take();
+  return result;
+}
+
+double assembly_seconds(const Simulation& simulation) {
+  double seconds = 0;
+  for (const StageCost& cost : simulation.costs) {
+    if (cost.stage == Stage::form_factors || cost.stage == Stage::closure) seconds += cost.seconds;
+  }
+  return seconds;
+}
+
+SolverRun run_on_demand(const Scene& scene, const Request& request, const Contestant& contestant, const Race& race,
+                        const Observer& observer) {
+  Request asked = request;
+  asked.on_demand = true;
+  asked.solver = contestant.solver;
+  SolverRun run;
+  const SolveWith solve_it = [&](const RowTransport& transport, const RadiosityProblem& problem,
+                                 const SolverOptions& usual, const Observer& watch) {
+    run = race.run(contestant, transport, problem, usual, watch);
+    return run.solution;
+  };
+  run.assembly_seconds = assembly_seconds(simulate(scene, asked, observer, {.solve = solve_it}));
+  return run;
+}
+
+}  // namespace
+
+std::string name_of(const Contestant& contestant) {
+  return std::string(name_of(contestant.solver)) + (contestant.on_demand ? "-on-demand" : "");
+}
+
+std::vector<Contestant> all_contestants() {
+  std::vector<Contestant> all;
+  for (const Solver solver : all_solvers()) all.push_back({solver});
+  all.push_back({Solver::progressive, true});
+  return all;
+}
+
+Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
+                   const Observer& observer) {
+  const ThreadLimit threads(request.threads);
+  Comparison comparison;
+  // 1. Assemble once; while the matrix is there, find the reference and let the solvers run that use it.
+  const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
+                                  const SolverOptions& usual, const Observer& watch) {
+    SolverOptions exact = usual;
+    exact.solver = Solver::cg;
+    exact.relative_error = std::max(1e-13, margin * options.relative_error);
+    Solution reference = solve(transport, problem, exact, watch);
+    comparison.reference_residual = reference.history.back().relative_residual;
+    if (!reference.trapped.empty()) return reference;
+    constexpr int steps = 60;
+    const Eigen::ArrayXd strongest_lamp = problem.exitance.colwise().maxCoeff().transpose();
+    comparison.spectral_radius =
+        (strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0).maxCoeff();
+    const Race race{options, reference.radiosity};
+    for (const Contestant& contestant : options.contestants) {
+      if (!contestant.on_demand) comparison.runs.push_back(race.run(contestant, transport, problem, usual, watch));
+    }
+    return reference;
+  };
+  comparison.simulation = simulate(scene, request, observer, {.solve = solve_all});
+  const double assembly = assembly_seconds(comparison.simulation);
+  for (SolverRun& run : comparison.runs) run.assembly_seconds = assembly;
+  if (!comparison.simulation.solution.trapped.empty()) return comparison;
+
+  // 2. Those that compute their rows.
+  const Race race{options, comparison.simulation.solution.radiosity};
+  for (const Contestant& contestant : options.contestants) {
+    if (contestant.on_demand) {
+      comparison.runs.push_back(run_on_demand(scene, request, contestant, race, observer));
+    }
+  }
+  return comparison;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,41 @@
+#include "solve/solved_bands.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+RadiosityProblem two_patches(const Field& reflectance, const Field& exitance) {
+  return {reflectance, exitance, Eigen::Vector2d(1, 2)};
+}
+
+TEST(SolvedBands, LeaveOutBandsWithoutLight) {
+  Field exitance(2, 3);
+  exitance << 1, 0, 2, 0, 0, 5;
+  const SolvedBands bands = solved_bands(two_patches(Field::Constant(2, 3, 0.5), exitance));
+  EXPECT_EQ(bands.solved, (std::vector<Eigen::Index>{0, 2}));
+  const Field all = expanded(reduced(exitance, bands), bands);
+  EXPECT_TRUE((all == exitance).all());
+}
+
+TEST(SolvedBands, SolveMultiplesOnce) {
+  Field exitance(2, 3);
+  exitance << 1, 3, 1, 2, 6, 2;
+  Field reflectance = Field::Constant(2, 3, 0.5);
+  EXPECT_EQ(solved_bands(two_patches(reflectance, exitance)).solved, (std::vector<Eigen::Index>{0}));
+  EXPECT_TRUE((expanded(exitance.leftCols(1), solved_bands(two_patches(reflectance, exitance))) == exitance).all());
+  // Another reflectance, or lamps of different colours, are other systems.
+  reflectance(1, 1) = 0.6;
+  EXPECT_EQ(solved_bands(two_patches(reflectance, exitance)).solved, (std::vector<Eigen::Index>{0, 1}));
+  exitance(1, 2) = 2.0000001;
+  EXPECT_EQ(solved_bands(two_patches(reflectance, exitance)).solved, (std::vector<Eigen::Index>{0, 1, 2}));
+}
+
+TEST(SolvedBands, KeepOneWhenAllAreDark) {
+  const SolvedBands bands = solved_bands(two_patches(Field::Constant(2, 2, 0.5), Field::Zero(2, 2)));
+  EXPECT_EQ(bands.solved.size(), 1U);
+  EXPECT_TRUE((expanded(Field::Ones(2, 1), bands) == 0).all());
+}
+
+}  // namespace
+}  // namespace patchlight
