@@ -16,6 +16,8 @@ const char* name_of(Stage stage) {
       return "solve";
     case Stage::gather:
       return "gather";
+    case Stage::trace_paths:
+      return "trace paths";
     case Stage::render:
       return "render";
     case Stage::write:
