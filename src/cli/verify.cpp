@@ -83,7 +83,7 @@ std::string verdict(const Verification& verification, double bar) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
        << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
-       << 100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1) << " %\n"
+       << rounded(100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1), 3) << " %\n"
        << (verification.agrees ? "agrees" : "DISAGREES") << ": with a bar of " << 100 * bar
        << " % of the irradiance, or of its mean where that is larger, chi-square " << verification.chi_square.maxCoeff()
        << " of " << verification.patches.size() << " patches in the worst band, p = " << verification.probability

@@ -144,6 +144,8 @@ bool Iterations::record(Iterate iterate, int number, Residual residual) {
   solution_.history.push_back(iteration);
   if (!std::isfinite(iteration.relative_residual)) {
     hopeless_ = true;
+    // The last one with numbers is handed out; if there is none, the first.
+    if (last_.irradiance.size() == 0) last_ = std::move(iterate);
     return false;
   }
   tell(iterate);

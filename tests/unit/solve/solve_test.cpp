@@ -190,6 +190,16 @@ TEST_P(EverySolver, DivergenceIsNeverConvergence) {
   EXPECT_LT(residual.abs().maxCoeff(), 1e-3);
 }
 
+// Squares of an exitance of 1e200 are beyond all numbers: no answer, but no crash.
+TEST_P(EverySolver, TooStrongALampHasNoAnswer) {
+  Box box = made_up(50, 0.5);
+  box.problem.exitance(1, 0) = 1e200;
+  const Solution solution = solve(*box.transport, box.problem, {.solver = GetParam()});
+  EXPECT_FALSE(solution.converged);
+  EXPECT_EQ(solution.irradiance.rows(), 50);
+  EXPECT_EQ(solution.radiosity.cols(), 3);
+}
+
 TEST_P(EverySolver, WorkGrowsFromTheLamps) {
   const Box box = made_up(100, 0.9);
   const Solution solution = solve(*box.transport, box.problem, {.solver = GetParam()});
