@@ -8,6 +8,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 #include "cli/text_table.h"
 
 #include <cmath>
@@ -18,13 +19,6 @@
 
 namespace patchlight::cli {
 namespace {
-
-std::string rounded(double value, int digits = 3) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
 
 std::string table(const Comparison& comparison) {
   const PatchIndex patches = comparison.simulation.mesh.size();
@@ -93,6 +87,7 @@ ExitCode compare(const CompareArguments& arguments) {
   write_comparison(arguments.output, scene, comparison, {arguments.command_line, exposure}, observer);
   line.hide();
   if (!arguments.quiet) {
+    for (const std::string& note : notes(scene, simulation)) print_message("note", note);
     std::cout << table(comparison) << facts(scene, comparison) << "wrote " << arguments.output.string() << std::endl;
   }
   const std::string missed = not_reached(comparison);

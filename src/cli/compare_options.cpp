@@ -56,17 +56,9 @@ void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
       [&compare](const std::string& text) {
         compare.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 1, 1'000'000));
       });
-  add(command, "--relaxation", "NUMBER",
-      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
-      [&options](const std::string& text) {
-        const auto inside = [](double x) { return x > 0 && x < 2; };
-        options.mesh.request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
-      });
   command.add_flag_callback(
       "--no-series", [&compare] { compare.keep_iterates = false; }, "no series for ParaView; default: one per solver");
-  command.add_flag_callback(
-      "--no-closure", [&options] { options.mesh.request.close = false; },
-      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add_equation_options(command, options.mesh.request);
 }
 
 }  // namespace

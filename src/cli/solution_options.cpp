@@ -3,6 +3,7 @@
 #include "patchlight/output/write_result.h"
 
 #include "cli/add_option.h"
+#include "cli/mesh_options.h"
 #include "cli/parse_value.h"
 
 #include <utility>
@@ -150,19 +151,11 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
 
 void add_solver_options(CLI::App& command, SolutionOptions& options) {
   Request& request = options.request;
-  command.add_flag_callback(
-      "--no-closure", [&request] { request.close = false; },
-      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add_equation_options(command, request);
   add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
       [&request, &options](const std::string& text) {
         options.solver_given = true;
         request.solver = solver_named("--solver", text);
-      });
-  add(command, "--relaxation", "NUMBER",
-      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
-      [&request](const std::string& text) {
-        const auto inside = [](double x) { return x > 0 && x < 2; };
-        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
       });
   add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
       [&request](const std::string& text) {

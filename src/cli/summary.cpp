@@ -2,18 +2,14 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "cli/text_table.h"
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace patchlight::cli {
 namespace {
-
-std::string rounded(double value, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
 
 // Values per band, for three bands as R, G, B.
 std::string bands(const Eigen::ArrayXd& values) {

@@ -24,13 +24,6 @@ namespace {
 // So many of the checked patches are shown, those that differ most.
 constexpr std::size_t shown = 10;
 
-std::string rounded(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string position(const Point& point) {
   return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
 }
@@ -122,6 +115,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) {
     write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
   }
+  for (const std::string& note : notes(scene, simulation)) print_message("note", note);
   std::cout << table(scene, simulation.mesh, verification) << scene.file << ": " << verification.patches.size()
             << " of " << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
             << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
