@@ -49,12 +49,18 @@ std::string cell(const Effort& effort) {
   return text;
 }
 
+std::string number(double applications) {
+  char text[32];
+  std::snprintf(text, sizeof text, applications == std::floor(applications) ? "%.0f" : "%.1f", applications);
+  return text;
+}
+
 // "7 / 11 / 11 (0.004)": applications to each of the three, and the CPU seconds of the last.
 std::string in_short(const Effort& rough, const Effort& fine, const Effort& certified) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.4g / %.4g / %.4g (%.3f)", rough.applications, fine.applications,
-                certified.applications, certified.cpu_seconds);
-  return text;
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.3f", certified.cpu_seconds);
+  return number(rough.applications) + " / " + number(fine.applications) + " / " + number(certified.applications) +
+         " (" + seconds + ")";
 }
 
 // Prints one room's table; one cell in short for each solver.
