@@ -2,6 +2,8 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
+#include "patchlight/scene/daylight.h"
+#include "patchlight/scene/luminaire.h"
 #include "patchlight/scene/problem.h"
 
 #include <cstdint>
@@ -45,7 +47,8 @@ struct LampHint {
   std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
-/// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance.
+/// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance; besides them there
+/// may be luminaires, sun and sky.
 struct Scene {
   std::vector<Point> vertices;  ///< metres
   std::vector<Polygon> polygons;
@@ -56,7 +59,11 @@ struct Scene {
   std::string sha256;               ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;       ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
-  bool up_stated = false;            ///< the model file says which way is up
+  bool up_stated = false;          ///< the model file says which way is up
+  Vector north = Vector::UnitY();  ///< unit, at right angles to up
+  std::vector<Luminaire> luminaires;
+  std::optional<Sun> sun;
+  std::optional<Sky> sky;
   std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
   std::vector<Problem> problems;     ///< what is wrong with the model, worst first
   std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to
