@@ -5,6 +5,7 @@
 #include "patchlight/scene/daylight.h"
 #include "patchlight/scene/luminaire.h"
 #include "patchlight/scene/problem.h"
+#include "patchlight/scene/sensor.h"
 
 #include <cstdint>
 #include <optional>
@@ -38,6 +39,7 @@ struct Camera {
   Point eye;
   Point target;
   double vertical_field_of_view = 50;  ///< degrees
+  std::string name = {};               ///< in a scene file
 };
 
 /// A material that may be meant as a lamp.
@@ -67,6 +69,9 @@ struct Scene {
   std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
   std::vector<Problem> problems;     ///< what is wrong with the model, worst first
   std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to
+  bool photometric = false;          ///< lights are stated in lumens or lux: illuminance has a meaning
+  std::vector<SensorGroup> sensors;  ///< where irradiance is wanted
+  std::vector<Camera> cameras;       ///< where pictures are taken from
 };
 
 /// The corner points of a polygon.

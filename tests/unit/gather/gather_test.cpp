@@ -26,7 +26,7 @@ TEST(GatherIrradiance, InAClosedRoomOfUnitRadiosityIsOneAnywhereInAnyDirection) 
   const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()},
                                     {Point(0.1, 0.9, 0.3), Vector(1, -2, 0.5).normalized()},
                                     {Point(0.4, 0.3, 0), Vector::UnitZ()}};
-  const Field irradiance = gather_irradiance(mesh, ones, ones, Occluder(scene), sensors);
+  const Field irradiance = gather_irradiance(mesh, ones, ones, Occluder(scene), sensors).irradiance;
   EXPECT_LT((irradiance - 1).abs().maxCoeff(), 1e-12);
 }
 
@@ -44,7 +44,7 @@ TEST(GatherIrradiance, BelowALampFollowsLambert) {
   options.emitter_samples = 1024;
   const double root = std::sqrt(1.04);
   const double whole = 7 * 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);
-  const Field irradiance = gather_irradiance(mesh, exitance, exitance, Occluder(scene), sensors, options);
+  const Field irradiance = gather_irradiance(mesh, exitance, exitance, Occluder(scene), sensors, options).irradiance;
   // 1024 Owen-scrambled points resolve a straight edge to about 1 / sqrt(1024) / 10.
   EXPECT_NEAR(irradiance(0, 0), 0.5 * whole, 0.005 * whole);
 }
@@ -55,7 +55,7 @@ TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
   const Field ones = Field::Ones(mesh.size(), 1);
   const std::vector<Sensor> below{{Point(0.5, 0.5, -0.5), Vector::UnitZ()}, {Point(0.5, 0.5, 0), -Vector::UnitZ()}};
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const Field irradiance = gather_irradiance(mesh, ones, ones, occluder, below);
+  const Field irradiance = gather_irradiance(mesh, ones, ones, occluder, below).irradiance;
   EXPECT_EQ(irradiance(0, 0), 0);
   EXPECT_EQ(irradiance(1, 0), 0);
 }

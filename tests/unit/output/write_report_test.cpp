@@ -13,7 +13,8 @@ nlohmann::json report_of(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   Request request;
   request.max_edge = 0.25;
-  write_report(folder.path() / "report.json", scene, request, simulation, {"patchlight solve tiny.obj", 0.125});
+  const Provenance provenance{"patchlight solve tiny.obj", 0.125};
+  write_report(folder.path() / "report.json", {scene, request, simulation, provenance});
   return nlohmann::json::parse(content_of(folder.path() / "report.json"));
 }
 

@@ -1,0 +1,29 @@
+#include "base/sha256.h"
+#include "input/scene_file.h"
+#include "input/text.h"
+#include "input/toml_models.h"
+#include "input/toml_sensors.h"
+#include "input/toml_value.h"
+
+namespace patchlight {
+
+SceneFile read_scene_file(const std::filesystem::path& file) {
+  const std::string text = read_text(file, file.string(), "the scene file");
+  const TomlValue root = parse_toml(text, file.string());
+  allow_keys(root, {"unit", "up", "model", "material", "sensors", "camera"});
+
+  SceneFile scene;
+  scene.file = file.string();
+  scene.sha256 = sha256({&text, 1});
+  TomlFrame frame{.file = file};
+  if (const TomlValue* const unit = find(root, "unit")) frame.metres_per_unit = unit_length(*unit);
+  if (const TomlValue* const up = find(root, "up")) scene.up = upright(*up);
+  frame.up = scene.up.value_or(frame.up);
+  scene.models = models_of(root, frame);
+  scene.settings = settings_of(root);
+  scene.sensors = sensors_of(root, frame);
+  scene.cameras = cameras_of(root, frame);
+  return scene;
+}
+
+}  // namespace patchlight
