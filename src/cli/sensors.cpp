@@ -38,12 +38,13 @@ Readings read_sensors(const Scene& scene, const Simulation& simulation, const Oc
 
 std::string sensor_summary(const Scene& scene, const Readings& readings) {
   if (scene.sensors.empty()) return {};
-  std::vector<TextRow> rows = {
-      {"sensors", "number", "min", "mean", "max", sensor_unit(readings), "U0", "largest standard error"}};
+  const std::string in_unit = std::string(", ") + sensor_unit(readings);
+  std::vector<TextRow> rows = {{"sensors", "number", "min" + in_unit, "mean" + in_unit, "max" + in_unit, "U0",
+                                "largest standard error" + in_unit}};
   if (readings.outside_by_sky) rows[0].emplace_back("mean daylight factor, %");
   for (const GroupReadings& group : by_group(scene.sensors, readings)) {
     rows.push_back({group.name, std::to_string(group.sensors), rounded(group.min), rounded(group.mean),
-                    rounded(group.max), "", rounded(group.uniformity), rounded(group.largest_standard_error, 2)});
+                    rounded(group.max), rounded(group.uniformity), rounded(group.largest_standard_error, 2)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   return text_table(rows);

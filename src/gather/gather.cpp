@@ -42,6 +42,13 @@ double visible_error(const Source& source) {
                         share(source.free_weight[1], source.blocked_weight[1]));
 }
 
+// What patches add to the variance of which a part is hidden that the first rays do not notice, for each patch of which
+// they do notice it, as a share of its squared unoccluded irradiance. Of straight edges laid at random over a square
+// (uniform in direction and distance), four rays stratified in two rows and columns notice 0.55; the others cut off a
+// share of 0.107 in the root of the mean square: 0.45 / 0.55 * 0.107^2, both integrated numerically. With more rays the
+// edges that are not noticed cut off corners of an area as 1 / n, and edges that do so are as n^(-1/2).
+double unnoticed_variance(int probes) { return 0.0093 * std::pow(4.0 / probes, 2.5); }
+
 bool is_partly_hidden(const Source& source) { return visible(source) > 0 && visible(source) < 1; }
 
 struct Gatherer {
@@ -118,12 +125,16 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
     const auto mixed_end = std::stable_partition(others.begin(), others.end(), is_partly_hidden);
     gatherer.trace(sensors[k], {others.begin(), mixed_end}, {probes, all, all / 2});
 
-    // 2. E = sum_j F(x, j) V_j B_j, and its variance sum_j (F(x, j) B_j)^2 var V_j
+    // 2. E = sum_j F(x, j) V_j B_j, and its variance sum_j (F(x, j) B_j)^2 var V_j, with that of what was not noticed
     const auto row = static_cast<Eigen::Index>(k);
     for (const Source& source : sources) {
       result.irradiance.row(row) += source.form_factor * visible(source) * radiosity.row(source.patch);
       result.standard_error.row(row) +=
           (source.form_factor * visible_error(source) * radiosity.row(source.patch)).square();
+    }
+    for (const Source& source : std::span(others.begin(), mixed_end)) {
+      result.standard_error.row(row) +=
+          unnoticed_variance(options.probes) * (source.form_factor * radiosity.row(source.patch)).square();
     }
     result.standard_error.row(row) = result.standard_error.row(row).sqrt();
   });
