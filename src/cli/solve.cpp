@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
+#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_image.h"
 #include "patchlight/output/write_points.h"
@@ -48,6 +49,14 @@ void check_outputs(const SolveArguments& arguments) {
   }
 }
 
+// What sensors get straight from luminaires, sun and sky.
+Field direct_irradiance_at(const std::vector<Sensor>& sensors, const Lighting& lighting, std::uint64_t seed,
+                           const Observer& observer) {
+  std::vector<SurfacePoint> points;
+  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+  return direct_irradiance(lighting, points, {.seed = seed}, observer).irradiance;
+}
+
 Results compute(const SolveArguments& arguments, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
@@ -75,11 +84,16 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 3. Look at the solution: irradiance at points, picture
   StageClock looking;
-  const Occluder occluder(results.scene, Occluder::Blockers::all, find_coverings(results.scene, simulation.plan.sides));
+  const Coverings coverings = find_coverings(results.scene, simulation.plan.sides);
+  const Occluder occluder(results.scene, Occluder::Blockers::all, coverings);
   if (!arguments.points.empty()) {
     results.irradiance =
         gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,
                           results.points.sensors, {.seed = arguments.request.seed}, observer);
+    if (has_point_or_daylight(results.scene)) {
+      results.irradiance += direct_irradiance_at(results.points.sensors, lighting_of(results.scene, coverings),
+                                                 arguments.request.seed, observer);
+    }
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
