@@ -1,6 +1,7 @@
 #include "patchlight/simulate.h"
 
 #include "patchlight/base/parallel.h"
+#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/plan/close_lamps.h"
 #include "patchlight/solve/energy.h"
@@ -16,6 +17,7 @@
 #include <cassert>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace patchlight {
 
@@ -70,8 +72,16 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   }
   clock.finish(Stage::closure);
 
-  // 5. Solve B = E + rho o F B, and see where the light went.
+  // 5. Light of luminaires, sun and sky where it first arrives.
   result.problem = problem_of(scene, mesh, area, plan.sides.emit_from_back);
+  if (has_point_or_daylight(scene)) {
+    DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), mesh, {.seed = plan.seed}, observer);
+    result.problem.direct_irradiance = std::move(direct.irradiance);
+    result.direct_standard_error = std::move(direct.standard_error);
+    clock.finish(Stage::direct_light);
+  }
+
+  // 6. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
   options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
   result.solution = with.solve(*transport, result.problem, options, observer);

@@ -40,6 +40,7 @@ struct Simulation {
   Solution solution;
   EnergyBalance balance;
   std::vector<StageCost> costs;
+  Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };
 
 /// The exchange between the patches of a mesh where it is known already.

@@ -70,7 +70,7 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));
   if (!scene.sensors.empty()) {
     results.points_outputs = points_outputs(arguments, scene);
-    results.readings = read_sensors(scene, simulation, occluder, observer);
+    results.readings = read_sensors(scene, simulation, observer);
     results.warnings = doubtful_sensors(scene, simulation.plan.sides, occluder);
     looking.finish(Stage::gather);
   }

@@ -221,6 +221,7 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
 Json energy_part(const EnergyBalance& balance, bool row_sums_known) {
   Json part;
   part["emitted_W"] = array_of(balance.emitted);
+  part["arriving_W"] = array_of(balance.arriving);
   part["absorbed_W"] = array_of(balance.absorbed);
   part["escaped_W"] = array_of(balance.escaped);
   part["lost_at_backs_W"] = array_of(balance.lost_at_backs);

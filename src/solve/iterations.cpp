@@ -36,6 +36,8 @@ Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irrad
 Iterations::Iterations(const TransportOperator& transport, const RadiosityProblem& problem,
                        const SolverOptions& options, const Observer& observer)
     : transport_(transport), problem_(problem), options_(options), observer_(observer), start_(wall_seconds()) {
+  emitted_ = problem.exitance;
+  if (problem.direct_irradiance.size() > 0) emitted_ -= problem.reflectance * problem.direct_irradiance;
   bounds_.contraction = contraction_of(transport, problem, options);
   if (!options.largest_row_sum) count(1);
   if (!bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport, problem);
@@ -60,7 +62,7 @@ Eigen::ArrayXd Iterations::spectral_radius(int steps) {
 
 Iteration Iterations::measured(const Iterate& iterate, int number) const {
   const Eigen::ArrayXd norm = area_norm(iterate.residual, problem_.area);
-  const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - problem_.exitance, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - emitted_, problem_.area);
   Iteration iteration{number, 0, 0, wall_seconds() - start_, work_};
   for (Eigen::Index band = 0; band < norm.size(); ++band) {
     double bound = unknown;
@@ -77,7 +79,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
   if (options_.reference) {
     const Field& B = *options_.reference;
     const Eigen::ArrayXd error = area_norm(B - iterate.radiosity, problem_.area);
-    const Eigen::ArrayXd size = area_norm(B - problem_.exitance, problem_.area);
+    const Eigen::ArrayXd size = area_norm(B - emitted_, problem_.area);
     iteration.true_error = 0;
     for (Eigen::Index band = 0; band < error.size(); ++band) {
       iteration.true_error = worse(iteration.true_error, ratio(error[band], size[band]));
@@ -162,7 +164,7 @@ Solution Iterations::finish() {
   if (!bounds_.weights) return solution;
   solution.error = patch_errors(*bounds_.weights, last_.residual);
   const Eigen::ArrayXd error = area_norm(solution.error, problem_.area);
-  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem_.exitance, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - emitted_, problem_.area);
   solution.patch_bound = 0;
   for (Eigen::Index band = 0; band < error.size(); ++band) {
     solution.patch_bound = std::max(solution.patch_bound, ratio(error[band], reflected[band]));

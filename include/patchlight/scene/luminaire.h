@@ -3,30 +3,13 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 
-/// How a photometric file counts its angles. C: vertical angle from the nadir, horizontal angle around that axis from
-/// the 0 degree plane. B and A: the polar axis lies across; vertical angles are latitudes over its equator, horizontal
-/// angles run around it (B) or along it (A). IES LM-63-02, annex on photometric types.
-enum class PhotometricType : std::uint8_t { a, b, c };
-
-/// The intensities of a luminaire as measured by its maker: what an IES LM-63 file holds.
-struct PhotometricWeb {
-  std::string file;  ///< for messages
-  PhotometricType type = PhotometricType::c;
-  std::vector<double> vertical;     ///< degrees, ascending
-  std::vector<double> horizontal;   ///< degrees, ascending; what symmetry tells is left out, as in the file
-  std::vector<double> candela;      ///< at horizontal h and vertical v: [h * vertical.size() + v], all factors applied
-  Vector opening = Vector::Zero();  ///< luminous width, length and height in metres; 0 for a point
-  double lamp_lumens = 0;           ///< of all lamps together, lm; 0 with absolute photometry, which does not say
-  double watts = 0;                 ///< electrical input
-};
+struct PhotometricWeb;  // scene/photometric_web.h
 
 /// The same intensity in all directions.
 struct PointLight {
@@ -62,5 +45,12 @@ struct Luminaire {
   Vector zero_plane = Vector::UnitX();  ///< unit, at right angles to the aim; towards the horizontal angle 0
   std::variant<PointLight, SpotLight, WebLight, SphericalLamp> light;
 };
+
+/// The intensity of a spot, as a share of that on its axis, at an angle with this cosine:
+/// 2^-(angle / beam_half_angle)^p with p such that it is 0.1 at the field's half angle.
+double spot_profile(const SpotLight& spot, double cosine);
+
+/// The flux of a spot for an intensity of 1 on its axis, in sr: the integral of its profile, to 1e-6 of it.
+double spot_solid_angle(const SpotLight& spot);
 
 }  // namespace patchlight

@@ -90,8 +90,14 @@ bool emits(const Scene& scene, PolygonIndex polygon, Side side);
 /// True when one of the polygon's sides emits.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
 
-/// True when some polygon is a lamp.
+/// True when something gives light: a polygon that is a lamp, a luminaire, sun or sky.
 bool has_lamp(const Scene& scene);
+
+/// True when there is light from elsewhere than polygons: luminaires, sun or sky.
+bool has_point_or_daylight(const Scene& scene);
+
+/// True when the polygon is a clear opening: one of its sides has a transmittance above 0 in some band.
+bool is_opening(const Scene& scene, PolygonIndex polygon);
 
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
 /// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
@@ -112,7 +118,8 @@ Box bounds(const Scene& scene);
 void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, reflectance in [0, 1], exitance finite and not negative. \throws InputError naming the file and line, or
+/// with area, reflectance in [0, 1], transmittance not negative and with the reflectance at most 1, exitance finite and
+/// not negative. \throws InputError naming the file and line, or
 /// the material.
 void check(const Scene& scene);
 
