@@ -21,7 +21,8 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "reflectance") return Quantity::reflectance;
   if (name == "exitance") return Quantity::exitance;
   if (name == "radiance") return Quantity::radiance;
-  refuse_setting(text, "'" + name + "' cannot be set; expected reflectance, exitance or radiance");
+  if (name == "transmittance") return Quantity::transmittance;
+  refuse_setting(text, "'" + name + "' cannot be set; expected reflectance, exitance, radiance or transmittance");
 }
 
 Spectrum comma_separated(const std::string& list, const std::string& text) {
@@ -61,6 +62,9 @@ Material changed(Material material, const MaterialSetting& setting) {
       break;
     case Quantity::radiance:
       material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
+      break;
+    case Quantity::transmittance:
+      material.transmittance = value;
       break;
   }
   return material;
@@ -116,15 +120,17 @@ MaterialSetting parse_material_setting(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
   if (dot == std::string::npos || dot == 0) {
-    refuse_setting(text, "expected MATERIAL.reflectance=R,G,B, MATERIAL.exitance=R,G,B or MATERIAL.radiance=R,G,B");
+    refuse_setting(
+        text, "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, exitance, radiance, transmittance");
   }
   MaterialSetting setting;
   setting.material = text.substr(0, dot);
   setting.quantity = quantity_named(text.substr(dot + 1, equals - dot - 1), text);
   setting.value = comma_separated(text.substr(equals + 1), text);
   if ((setting.value < 0).any()) refuse_setting(text, "a value is negative; expected 0 or more");
-  if (setting.quantity == Quantity::reflectance && (setting.value > 1).any()) {
-    refuse_setting(text, "a reflectance is above 1; expected 0 to 1");
+  const bool is_share = setting.quantity == Quantity::reflectance || setting.quantity == Quantity::transmittance;
+  if (is_share && (setting.value > 1).any()) {
+    refuse_setting(text, "a reflectance or transmittance is above 1; expected 0 to 1");
   }
   return setting;
 }

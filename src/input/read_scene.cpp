@@ -101,7 +101,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
   scene = set_upright(std::move(scene), options);
-  for (const SceneFile& file : scene_files) scene = with_sensors(std::move(scene), file);
+  for (const SceneFile& file : scene_files) {
+    scene = with_sensors(with_lights(std::move(scene), file.lights), file);
+  }
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());

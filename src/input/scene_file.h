@@ -4,6 +4,8 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 
+#include "input/scene_lights.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,12 +35,13 @@ struct FloorGrid {
 /// What a scene file says, in metres, before the models are read.
 struct SceneFile {
   std::string file;
-  std::string sha256;  ///< of it and of the files of points and lamps that it names
+  std::string sha256;  ///< of it and of the files of lamps and weather that it names
   std::vector<ModelEntry> models;
   std::optional<Vector> up;
   std::vector<MaterialSetting> settings;
   std::vector<std::variant<SensorGroup, FloorGrid>> sensors;
   std::vector<Camera> cameras;
+  LightEntries lights;
 };
 
 /// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError

@@ -35,7 +35,8 @@ void check_material(const Scene& scene, const Material& material) {
     if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
     std::ostringstream message;
     message << name << " has transmittance " << tau << " and reflectance " << material.reflectance[band]
-            << "; expected numbers not below 0 whose sum is at most 1";
+            << "; expected numbers not below 0 whose sum is at most 1. Use --set " << material.name
+            << ".reflectance=R,G,B";
     throw InputError(scene.file, message.str());
   }
   for (const double exitance : material.exitance) {

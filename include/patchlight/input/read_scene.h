@@ -12,14 +12,14 @@ namespace patchlight {
 
 /// A change to materials, applied after reading: "light.radiance=17,12,4".
 struct MaterialSetting {
-  enum class Quantity { reflectance, exitance, radiance };
+  enum class Quantity { reflectance, exitance, radiance, transmittance };
   std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
   Spectrum value;               ///< one value stands for all bands
   std::string where = "--set";  ///< where it is asked for, for messages
 };
 
-/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance= or .radiance=.
+/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance= or .transmittance=.
 /// \throws InputError naming the option --set.
 MaterialSetting parse_material_setting(const std::string& text);
 
