@@ -31,35 +31,43 @@ LightPaths::LightPaths(const Scene& scene, const Coverings& coverings)
 }
 
 Field LightPaths::transmittance(std::span<const Segment> segments) const {
-  Field share = Field::Ones(static_cast<Eigen::Index>(segments.size()), bands_);
-  const auto blocked = opaque_.occluded(segments);
-  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    if (blocked[k]) {
-      share.row(row).setZero();
-    } else if (meets_opening[k]) {
-      share.row(row) = through_openings(segments[k]);
-    }
-  }
+  Field share(static_cast<Eigen::Index>(segments.size()), bands_);
+  const std::vector<Passage> all = passages(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k) share.row(static_cast<Eigen::Index>(k)) = all[k].transmittance;
   return share;
 }
 
+std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) const {
+  const auto blocked = opaque_.occluded(segments);
+  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
+  std::vector<Passage> found(segments.size());
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (meets_opening[k] && !blocked[k]) {
+      found[k] = through_openings(segments[k]);
+    } else {
+      found[k].transmittance = Spectrum::Constant(bands_, blocked[k] ? 0.0 : 1.0);
+    }
+  }
+  return found;
+}
+
 // Goes from opening to opening, each of which a straight line meets once at most.
-Spectrum LightPaths::through_openings(const Segment& segment) const {
-  Spectrum share = Spectrum::Ones(bands_);
+Passage LightPaths::through_openings(const Segment& segment) const {
+  Passage passage{Spectrum::Ones(bands_), {}};
   const Vector way = segment.to - segment.from;
-  double left = way.norm();
-  Ray ray{segment.from, way / left, segment.from_polygon};
-  for (std::size_t k = 0; k < openings_.size() && (share > 0).any(); ++k) {
+  const double length = way.norm();
+  double gone = 0;
+  Ray ray{segment.from, way / length, segment.from_polygon};
+  for (std::size_t k = 0; k < openings_.size(); ++k) {
     const std::optional<Hit> hit = clear_->first_hits({&ray, 1}).front();
-    if (!hit || hit->distance >= left || hit->polygon == segment.to_polygon) break;
-    share *= openings_[hit->polygon][hit->side == Side::front ? 0 : 1];
-    left -= hit->distance;
+    if (!hit || gone + hit->distance >= length || hit->polygon == segment.to_polygon) break;
+    gone += hit->distance;
+    passage.transmittance *= openings_[hit->polygon][hit->side == Side::front ? 0 : 1];
+    passage.crossings.push_back({hit->polygon, gone});
     ray.origin = hit->point;
     ray.from_polygon = hit->polygon;
   }
-  return share;
+  return passage;
 }
 
 Point LightPaths::beyond(const Point& from, const Vector& direction) const {

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/sampling.h"
 #include "patchlight/scene/photometric_web.h"
+#include "patchlight/scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,17 +70,29 @@ Arrival from_sphere(const SphericalLamp& lamp, const Point& centre, const Surfac
   return {at.point + (along - half_chord) * direction, 2 * lift * received, &lamp.exitance};
 }
 
+Opening opening_of(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  const Vector area = area_vector(corners);
+  Opening opening{polygon, area.normalized(), area_centroid(corners), area.norm(), {}};
+  for (const auto& [a, b, c] : triangulate(corners)) opening.triangles.push_back({corners[a], corners[b], corners[c]});
+  return opening;
+}
+
 }  // namespace
 
 Lighting lighting_of(const Scene& scene, const Coverings& coverings) {
   Lighting lighting{.luminaires = scene.luminaires,
                     .sun = {},
                     .sky = {},
+                    .openings = {},
                     .up = scene.up,
                     .bands = scene.materials.front().reflectance.size(),
                     .paths = LightPaths(scene, coverings)};
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
   if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));
+  }
   return lighting;
 }
 
@@ -96,16 +109,6 @@ Arrival from_sun(const Lighting& lighting, const SurfacePoint& at) {
   const double cosine = at.normal.dot(lighting.sun->direction);
   if (!(cosine > 0)) return {};
   return {lighting.paths.beyond(at.point, lighting.sun->direction), cosine, &lighting.sun->normal_irradiance};
-}
-
-Arrival from_sky(const Lighting& lighting, const SurfacePoint& at, const Eigen::Vector2d& uv) {
-  const Across frame = across(at.normal);
-  const Vector local = square_to_cosine_hemisphere(uv.x(), uv.y());
-  const Vector direction = local.x() * frame.first + local.y() * frame.second + local.z() * at.normal;
-  // E = integral of L cos = pi times the mean of L over these directions.
-  const Point from = lighting.paths.beyond(at.point, direction);
-  if (direction.dot(lighting.up) < 0) return {from, std::numbers::pi, &lighting.sky->ground};
-  return {from, std::numbers::pi * relative_radiance(*lighting.sky, direction), &lighting.sky->colour};
 }
 
 }  // namespace patchlight

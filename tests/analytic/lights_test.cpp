@@ -94,7 +94,10 @@ TEST(Cie171, Case56LightReflectedByAnEvenlyLitFloor) {
   // over the floor's radiosity to the sensors nothing is sampled but visibility, which is complete.
   Scene scene = with_quad(empty_scene({grey(0.3)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene.sun = Sun{Vector::UnitZ(), watts(50000)};
-  const Simulation simulation = simulate(scene, {.max_edge = 1, .sides = Sides::front});
+  Request request;
+  request.max_edge = 1;
+  request.sides = Sides::front;
+  const Simulation simulation = simulate(scene, request);
   struct Case {
     double y, z, percent;
   };
@@ -129,7 +132,10 @@ TEST_P(Case58, IndirectLightInAClosedCube) {
   const auto [rho, expected] = GetParam();
   Scene scene = with_box(empty_scene({grey(rho)}), Point(-2, -2, -2), Point(2, 2, 2), true);
   scene.luminaires = {isotropic(Point::Zero(), 10000)};
-  const Simulation simulation = simulate(scene, {.patches = 600, .tolerance = 1e-8});
+  Request request;
+  request.patches = 600;
+  request.tolerance = 1e-8;
+  const Simulation simulation = simulate(scene, request);
   const Field indirect = simulation.solution.irradiance - simulation.solution.direct_irradiance;
   const double mean = (indirect.col(0) * simulation.problem.area.array()).sum() / simulation.problem.area.sum();
   EXPECT_NEAR(luminous_efficacy * mean, expected, 0.001 * expected);
@@ -159,7 +165,9 @@ TEST(Simulate, FluxOfALuminaireInAClosedRoomIsAbsorbed) {
   // Theorem: absorbed = arriving in a closed room, whatever stands in it; and all of the lamp's flux arrives.
   Scene scene = furnished_room(0.5, 0);
   scene.luminaires = {isotropic(Point(3.2, 2.2, 1.9), 1000)};
-  const Simulation simulation = simulate(scene, {.patches = 1500});
+  Request request;
+  request.patches = 1500;
+  const Simulation simulation = simulate(scene, request);
   const EnergyBalance& balance = simulation.balance;
   EXPECT_EQ(balance.emitted[0], 0);
   // Shadows' edges are sampled: 0.5 % is three times the standard error, which the next line bounds.

@@ -13,7 +13,7 @@ namespace patchlight {
 struct LightingOptions {
   int lamp_samples = 64;   ///< per luminaire; at a point those without extent take one
   int sun_samples = 64;    ///< at a point one
-  int sky_samples = 1024;  ///< directions
+  int sky_samples = 1024;  ///< directions; where there are clear openings half of them towards these
   std::uint64_t seed = 1;
 };
 

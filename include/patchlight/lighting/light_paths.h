@@ -9,6 +9,18 @@
 
 namespace patchlight {
 
+/// A clear opening that a ray crosses.
+struct Crossing {
+  PolygonIndex polygon = no_polygon;
+  double distance = 0;  ///< metres from the ray's origin
+};
+
+/// What a ray meets on its way.
+struct Passage {
+  Spectrum transmittance;           ///< 0 behind something opaque
+  std::vector<Crossing> crossings;  ///< in order; left out behind something opaque
+};
+
 /// How much light gets straight from one point to another: nothing where an opaque polygon stands between them, else
 /// the product of the transmittances of the clear openings on the way, each face of which counts once. Points may lie
 /// outside the scene.
@@ -19,6 +31,9 @@ class LightPaths {
   /// Per segment (row) and band (column).
   Field transmittance(std::span<const Segment> segments) const;
 
+  /// The same with the openings on the way.
+  std::vector<Passage> passages(std::span<const Segment> segments) const;
+
   /// A point so far from another in a unit direction that all of the scene is nearer.
   Point beyond(const Point& from, const Vector& direction) const;
 
@@ -26,7 +41,7 @@ class LightPaths {
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
 
  private:
-  Spectrum through_openings(const Segment& segment) const;
+  Passage through_openings(const Segment& segment) const;
 
   Box bounds_;
   Occluder opaque_;

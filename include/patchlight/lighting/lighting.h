@@ -4,10 +4,20 @@
 #include "patchlight/lighting/sky.h"
 #include "patchlight/scene/scene.h"
 
+#include <array>
 #include <optional>
 #include <vector>
 
 namespace patchlight {
+
+/// A clear opening, towards which rays are sent to find the sky behind it.
+struct Opening {
+  PolygonIndex polygon = no_polygon;
+  Vector normal;  ///< unit
+  Point centre;
+  double area = 0;                              ///< m^2
+  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
+};
 
 /// What gives light in a scene and is no patch, ready for direct_irradiance(). Immutable and safe to use from several
 /// threads.
@@ -15,6 +25,7 @@ struct Lighting {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;  ///< nothing while it is below the horizon
   std::optional<SkyModel> sky;
+  std::vector<Opening> openings;
   Vector up;
   Eigen::Index bands = 0;
   LightPaths paths;
@@ -44,8 +55,5 @@ Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const Surfa
 
 /// From the sun, which must be there.
 Arrival from_sun(const Lighting& lighting, const SurfacePoint& at);
-
-/// From sky and ground, which must be there: one sample, with directions distributed as the cosine to the normal.
-Arrival from_sky(const Lighting& lighting, const SurfacePoint& at, const Eigen::Vector2d& uv);
 
 }  // namespace patchlight

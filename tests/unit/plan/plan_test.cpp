@@ -32,7 +32,7 @@ TEST(MakePlan, RefusesASceneWithoutLamp) {
 
 TEST(MakePlan, TakesLuminairesSunAndSkyForLamps) {
   Scene scene = cube_room(0.5, 0);
-  scene.luminaires.push_back({.name = "lamp", .position = Point(0.5, 0.5, 0.5)});
+  scene.luminaires.resize(1);
   EXPECT_NO_THROW(make_plan(scene, {}));
 }
 

@@ -113,10 +113,12 @@ TEST(SpotProfile, IsAHalfAtTheBeamAndATenthAtTheField) {
 }
 
 TEST(SpotSolidAngle, OfANarrowGaussianBeam) {
-  // 2^-(a / b)^2 integrates to pi b^2 / ln 2 in the plane; on the sphere less by about b^2 / 6 / ln 2, b = 0.0175.
+  // 2^-(a / b)^2 integrates to pi b^2 / ln 2 in the plane; on the sphere, where a ring is sin a = a - a^3 / 6 wide, to
+  // the share b^2 / (6 ln 2) less, with b = 0.0175 and terms of its square left out.
   const double field = std::sqrt(std::log2(10.0));
   const double b = pi / 180;
-  EXPECT_NEAR(spot_solid_angle({Spectrum::Ones(1), 1, field}), pi * b * b / std::log(2.0), 1e-4 * pi * b * b);
+  const double expected = pi * b * b / std::log(2.0) * (1 - b * b / (6 * std::log(2.0)));
+  EXPECT_NEAR(spot_solid_angle({Spectrum::Ones(1), 1, field}), expected, 1e-6 * expected);
 }
 
 }  // namespace
