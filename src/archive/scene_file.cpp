@@ -154,9 +154,10 @@ std::vector<Material> materials_of(const Json& json) {
   std::vector<Material> materials;
   for (const Json& entry : json) {
     Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
-                      spectrum_of(entry.at("exitance")), spectrum_of(entry.value("transmittance", Json::array()))};
+                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance"))};
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
-    require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands,
+    require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
+                (material.transmittance.size() == 0 || material.transmittance.size() == bands),
             "the materials do not all have the same bands");
     materials.push_back(std::move(material));
   }
@@ -283,7 +284,7 @@ StoredScene read_stored_scene(const std::filesystem::path& folder) {
   bool lights_left_out = false;
   try {
     const Json json = Json::parse(stream);
-    lights_left_out = json.value("has_point_or_daylight", false);
+    lights_left_out = json.at("has_point_or_daylight").get<bool>();
     stored = stored_scene_of(json);
   } catch (const std::exception& error) {
     throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
