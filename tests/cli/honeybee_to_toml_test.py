@@ -1,4 +1,5 @@
-"""scripts/honeybee_to_toml.py: geometry with holes for windows, grids, views; what comes out is solved."""
+"""scripts/honeybee_to_toml.py: geometry with holes for windows, grids, views; what comes out is solved, and drawn
+by scripts/sensor_map.py."""
 import csv
 import json
 import pathlib
@@ -73,6 +74,10 @@ class HoneybeeTest(ToolTest):
             self.assertGreater(line[1], 3 * line[5])
             self.assertGreater(min(line), 0.1)
             self.assertLess(max(line), 64)  # the share that the panes let through
+        command = [sys.executable, str(SCRIPT.with_name("sensor_map.py")), "model.irradiance.csv", "map.svg"]
+        subprocess.run(command, cwd=self.folder, check=True, timeout=600)
+        image = (self.folder / "map.svg").read_text()
+        self.assertEqual(image.count('stroke="white"'), 26)  # a square for each sensor
         # Room, windows and shades are symmetric about x = 2, and so is the light, but for its sampling and the patches.
         for y in range(6):
             left, right = (float(plane[x, 0.5 + y]["E_v_lx"]) for x in (1.5, 2.5))
