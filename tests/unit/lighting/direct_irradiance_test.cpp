@@ -3,6 +3,7 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/scene/photometric_web.h"
 #include "patchlight/scene/sides.h"
 
 #include "support/scenes.h"
@@ -351,6 +352,29 @@ TEST(DirectIrradiance, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.irradiance == two.irradiance).all());
   EXPECT_TRUE((one.standard_error == two.standard_error).all());
   EXPECT_GT(one.irradiance.minCoeff(), 0);
+}
+
+TEST(DirectIrradiance, OfAMeasuredLuminaireFollowsItsAimAndTilt) {
+  // 10 cd along the aim, 4 at 90 degrees from it in the 0 degree plane, 0 across; 0.5 of it when tilted by 90 degrees.
+  auto web = std::make_shared<PhotometricWeb>();
+  web->vertical = {0, 90};
+  web->horizontal = {0, 90};
+  web->candela = {10, 4, 10, 0};
+  web->tilt = {0, 90};
+  web->tilt_factor = {1, 0.5};
+  Luminaire lamp;
+  lamp.position = Point(0, 0, 2);
+  lamp.light = WebLight{web, one_band(0.25)};
+  Scene scene = only_floor(-5);
+  scene.luminaires = {lamp};
+  EXPECT_NEAR(at(scene, {Point(0, 0, 0), Vector::UnitZ()}).irradiance(0, 0), 0.25 * 10 / 4, 1e-12);
+  EXPECT_NEAR(at(scene, {Point(2, 0, 2), -Vector::UnitX()}).irradiance(0, 0), 0.25 * 4 / 4, 1e-12);
+  EXPECT_NEAR(at(scene, {Point(0, 2, 2), -Vector::UnitY()}).irradiance(0, 0), 0, 1e-12);
+  // Aimed at x, the 0 degree plane across: along y there are 4 cd, half of them when tilted so far.
+  scene.luminaires[0].aim = Vector::UnitX();
+  scene.luminaires[0].zero_plane = Vector::UnitY();
+  EXPECT_NEAR(at(scene, {Point(2, 0, 2), -Vector::UnitX()}).irradiance(0, 0), 0.5 * 0.25 * 10 / 4, 1e-12);
+  EXPECT_NEAR(at(scene, {Point(0, 2, 2), -Vector::UnitY()}).irradiance(0, 0), 0.5 * 0.25 * 4 / 4, 1e-12);
 }
 
 TEST(DirectIrradiance, OfAPointInsideALampIsNothing) {
