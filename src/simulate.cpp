@@ -10,6 +10,7 @@
 #include "patchlight/transport/ray_rate.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "effects.h"
 #include "memory.h"
 #include "problem_of.h"
 #include "stage_clock.h"
@@ -30,7 +31,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   require_memory(scene, request);
   result.plan = make_plan(scene, request);
   const Plan& plan = result.plan;
-  assert(!plan.on_demand || !with.exchange);
+  assert(!request.on_demand || !with.exchange);
+  if (with.exchange) result.plan.on_demand = false;
+  const Scene lit = scene_as_planned(scene, plan);
 
   // 2. Subdivide the kept sides of the polygons into patches.
   result.mesh = tessellate(scene, plan.sides, plan.max_edge);
@@ -42,7 +45,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   //    demand; and the share of each patch's hemisphere from which no patch is seen.
   const Coverings coverings = find_coverings(scene, plan.sides);
   for (const Problem& problem : problems_with_overlaps(scene, coverings)) result.plan.notes.push_back(problem.what);
-  const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
+  const Occluder occluder(scene, blockers_of(plan), coverings);
   for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
     result.plan.notes.push_back(std::move(note));
   const auto find = plan.on_demand ? exchange_on_demand : trace_exchange;
@@ -73,9 +76,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::closure);
 
   // 5. Light of luminaires, sun and sky where it first arrives.
-  result.problem = problem_of(scene, mesh, area, plan.sides.emit_from_back);
-  if (has_point_or_daylight(scene)) {
-    DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), mesh, {.seed = plan.seed}, observer);
+  result.problem = problem_of(lit, mesh, area, plan.sides.emit_from_back);
+  if (has_point_or_daylight(lit)) {
+    DirectIrradiance direct = direct_irradiance_as_planned(lit, coverings, plan, mesh, observer);
     result.problem.direct_irradiance = std::move(direct.irradiance);
     result.direct_standard_error = std::move(direct.standard_error);
     clock.finish(Stage::direct_light);
@@ -84,7 +87,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   // 6. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
   options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
-  result.solution = with.solve(*transport, result.problem, options, observer);
+  result.solution = solver_as_planned(with.solve, plan)(*transport, result.problem, options, observer);
   result.balance = energy_balance(result.problem, result.solution,
                                   plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
   clock.finish(Stage::solve);

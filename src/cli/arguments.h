@@ -52,6 +52,14 @@ struct SolveArguments {
   std::string command_line;  ///< for the record
 };
 
+/// What `patchlight plan` is asked to do.
+struct PlanArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  std::filesystem::path json;  ///< .json; empty when it is not wanted
+};
+
 /// What `patchlight check` is asked to do. A path that is empty stands for an output that is not wanted.
 struct CheckArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
@@ -110,8 +118,8 @@ struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, CompareArguments,
-                               VerifyArguments, ValidateArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments, PlanArguments, FormFactorArguments,
+                               CompareArguments, VerifyArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

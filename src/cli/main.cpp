@@ -7,6 +7,7 @@
 #include "cli/form_factors.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/plan.h"
 #include "cli/solve.h"
 #include "cli/validate.h"
 #include "cli/verify.h"
@@ -29,6 +30,7 @@ ExitCode run(int count, const char* const* values) {
     return good;
   }
   if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
+  if (const auto* to_plan = std::get_if<PlanArguments>(&arguments)) return plan(*to_plan);
   if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
   if (const auto* to_compare = std::get_if<CompareArguments>(&arguments)) return compare(*to_compare);
   if (const auto* to_verify = std::get_if<VerifyArguments>(&arguments)) return verify(*to_verify);

@@ -6,6 +6,7 @@
 #include "patchlight/lighting/direct_irradiance.h"
 
 #include "cli/text_table.h"
+#include "effects.h"
 
 #include <numbers>
 #include <utility>
@@ -43,14 +44,17 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
   throw InputError("--points-output", "the scene file has no sensors; give it a table [[sensors]], or --points FILE");
 }
 
-Readings read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
+Readings read_sensors(const Scene& whole, const Simulation& simulation, const Observer& observer) {
+  const Scene scene = scene_as_planned(whole, simulation.plan);
+  // Without interreflection sensors see what lamps send, and nothing that is reflected.
+  const Field& sent =
+      simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = all_sensors(scene.sensors);
   const std::uint64_t seed = simulation.plan.seed;
   const Coverings coverings = find_coverings(scene, simulation.plan.sides);
   const Occluder occluder(scene, Occluder::Blockers::all, coverings);
-  GatheredIrradiance gathered =
-      gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder, sensors,
-                        {.seed = seed}, observer);
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, simulation.problem.exitance, occluder, sensors,
+                                                  {.seed = seed}, observer);
   Readings readings = {.irradiance = std::move(gathered.irradiance),
                        .standard_error = std::move(gathered.standard_error),
                        .photometric = scene.photometric,

@@ -1,6 +1,7 @@
 #include "cli/solve_options.h"
 
 #include "cli/add_option.h"
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -54,6 +55,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
       "--on-demand", [&to] { to.mesh.request.on_demand = true; },
       "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
       "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
+  add_effect_options(command, to.mesh.request);
   add_solver_options(command, to.solution);
   add_sampling_options(command, to.mesh);
   add_machine_options(command, to.mesh.request);
@@ -72,6 +74,7 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.form_factors = options.form_factors;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
   require_solver_of_rows(arguments);
+  require_consistent_effects(arguments.request);
   return arguments;
 }
 

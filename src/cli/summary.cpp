@@ -110,12 +110,23 @@ std::string assembly(const Scene& scene, const Simulation& simulation) {
 std::string details(const Scene& scene, const Simulation& simulation) {
   std::ostringstream text;
   for (const Decision& decision : simulation.plan.decisions) {
-    text << "decision: " << decision.effect << (decision.simulate ? ": simulated; " : ": left out; ") << decision.reason
-         << '\n';
+    text << sentence(decision) << '\n';
   }
   text << "estimator of form factors: " << name_of(simulation.plan.estimator) << '\n';
   if (!simulation.plan.on_demand) return text.str() + assembly(scene, simulation);
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
+}
+
+// "effects: occlusion, closure; left out: colour, sun; by force: closure"
+std::string effects_line(const std::vector<Decision>& decisions) {
+  std::string on, off, forced;
+  for (const Decision& decision : decisions) {
+    std::string& list = decision.simulate ? on : off;
+    list += (list.empty() ? "" : ", ") + std::string(name_of(decision.effect));
+    if (decision.forced) forced += (forced.empty() ? "" : ", ") + std::string(name_of(decision.effect));
+  }
+  return "effects: " + (on.empty() ? "none" : on) + (off.empty() ? "" : "; left out: " + off) +
+         (forced.empty() ? "" : "; by force: " + forced) + '\n';
 }
 
 // True when --max-rows ended the solution, not --max-iterations.
@@ -141,6 +152,7 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
   text << scene.file << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x " << rounded(size.z()) << " m, "
        << scene.polygons.size() << " polygons, " << simulation.mesh.size() << " patches with edges up to "
        << rounded(simulation.plan.max_edge) << " m\n";
+  text << effects_line(simulation.plan.decisions);
   if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
   text << energy(simulation) << '\n';

@@ -68,6 +68,7 @@ Scene with_materials(Scene scene, const aiScene& model) {
                             note_on("transparency is ignored, the surface is opaque", transparent)}) {
     scene.notes.insert(scene.notes.end(), notes.begin(), notes.end());
   }
+  scene.unsimulated = counted(0, transparent.size());
   return scene;
 }
 

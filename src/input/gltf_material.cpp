@@ -55,6 +55,13 @@ std::vector<int> colored_textures(const tinygltf::Material& material) {
   return textures;
 }
 
+bool is_metallic(const tinygltf::Material& material) { return material.pbrMetallicRoughness.metallicFactor > 0; }
+
+bool is_transparent(const tinygltf::Material& material) {
+  return material.alphaMode == "BLEND" || material.alphaMode == "MASK" ||
+         material.extensions.count("KHR_materials_transmission") > 0;
+}
+
 std::vector<std::string> names_with(const tinygltf::Model& model,
                                     const std::function<bool(const tinygltf::Material&)>& property) {
   std::vector<std::string> names;
@@ -73,6 +80,10 @@ std::vector<Material> gltf_materials(const GltfModel& gltf) {
   return materials;
 }
 
+std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
+  return counted(names_with(gltf.model, is_metallic).size(), names_with(gltf.model, is_transparent).size());
+}
+
 std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
   std::vector<std::string> notes;
   const auto note = [&](const std::string& sentence, const std::function<bool(const tinygltf::Material&)>& property) {
@@ -88,12 +99,8 @@ std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
   };
   note("textures are replaced by their mean colour", has_texture(true));
   note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
-  note("metallic surfaces are simulated as matt ones of their base colour",
-       [](const tinygltf::Material& material) { return material.pbrMetallicRoughness.metallicFactor > 0; });
-  note("transparency is ignored, the surface is opaque", [](const tinygltf::Material& material) {
-    return material.alphaMode == "BLEND" || material.alphaMode == "MASK" ||
-           material.extensions.count("KHR_materials_transmission") > 0;
-  });
+  note("metallic surfaces are simulated as matt ones of their base colour", is_metallic);
+  note("transparency is ignored, the surface is opaque", is_transparent);
   return notes;
 }
 

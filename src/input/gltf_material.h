@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/light/material.h"
+#include "patchlight/scene/scene.h"
 
 #include "input/gltf_model.h"
 
@@ -12,6 +13,9 @@ namespace patchlight {
 /// The materials of a glTF file as diffuse ones: reflectance is the base colour, radiance in W/(m^2 sr) the emissive
 /// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded.
 std::vector<Material> gltf_materials(const GltfModel& gltf);
+
+/// Those that are metallic or transparent, counted.
+std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf);
 
 /// One sentence per property that the materials have and the simulation ignores or simplifies.
 std::vector<std::string> notes_on_materials(const GltfModel& gltf);

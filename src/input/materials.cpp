@@ -47,6 +47,13 @@ Scene with_used_materials(Scene scene) {
   return scene;
 }
 
+std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass) {
+  std::vector<UnsimulatedMaterials> found;
+  if (mirrors > 0) found.push_back({UnsimulatedProperty::mirror, mirrors});
+  if (glass > 0) found.push_back({UnsimulatedProperty::glass, glass});
+  return found;
+}
+
 std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names) {
   if (names.empty()) return {};
   return {sentence + ": " + listed(names)};

@@ -17,6 +17,9 @@ Scene scene_without_materials(const std::string& file, double metres_per_unit);
 /// unique: "material 3", "wall (2)".
 Scene with_used_materials(Scene scene);
 
+/// How many materials have properties that are not simulated, those that none has left out.
+std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass);
+
 /// "sentence: a, b", or nothing when there are no names.
 std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names);
 

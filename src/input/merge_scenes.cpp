@@ -75,6 +75,7 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
     for (ProblemFace& face : problem.faces) face.file = file;
     scene.problems.push_back(std::move(problem));
   }
+  scene.unsimulated.insert(scene.unsimulated.end(), added.unsimulated.begin(), added.unsimulated.end());
   scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
   scene.files.push_back(added.file);
   return scene;

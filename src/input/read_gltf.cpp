@@ -195,6 +195,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
   scene.up_stated = true;
 
   // 3. What is not simulated.
+  scene.unsimulated = unsimulated(gltf);
   for (std::string& note : notes_on_materials(gltf)) scene.notes.push_back(std::move(note));
   return scene;
 }

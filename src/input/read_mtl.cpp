@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/materials.h"
 #include "input/text.h"
 
 #include <map>
@@ -74,6 +75,7 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.is_specular = any(read.specular);
   material.has_texture = has_texture(read);
   material.is_transparent = read.dissolve < 1;
+  material.is_metallic = read.metallic > 0;
   material.is_mirror_or_glass = read.illum >= 3 && read.illum <= 9;
   return material;
 }
@@ -115,12 +117,21 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   };
   note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular; });
+  note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic; });
   note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return m.has_texture; });
   note("d and Tr (transparency) are ignored, the surface is opaque",
        [](const MtlMaterial& m) { return m.is_transparent; });
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",
        [](const MtlMaterial& m) { return m.is_mirror_or_glass; });
   return notes;
+}
+
+std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials) {
+  const auto is_mirror = [](const MtlMaterial& m) {
+    return m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.is_transparent);
+  };
+  const auto is_glass = [](const MtlMaterial& m) { return m.is_transparent; };
+  return counted(names_with(materials, is_mirror).size(), names_with(materials, is_glass).size());
 }
 
 }  // namespace patchlight

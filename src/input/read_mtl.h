@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/light/spectrum.h"
+#include "patchlight/scene/scene.h"
 
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@ struct MtlMaterial {
   bool has_texture = false;         ///< any map_, bump, disp, refl or norm
   bool is_transparent = false;      ///< d < 1 or Tr > 0
   bool is_mirror_or_glass = false;  ///< illum 3 to 9
+  bool is_metallic = false;         ///< Pm is not 0
 };
 
 /// Reads the materials of an MTL file; of materials with the same name the first is kept.
@@ -27,5 +29,8 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
 
 /// One sentence per property that these materials have and the simulation ignores.
 std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials);
+
+/// Those of these properties that have a place in the plan, counted.
+std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials);
 
 }  // namespace patchlight

@@ -225,6 +225,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit) {
   scene.file = file.string();
   scene.metres_per_unit = metres_per_unit;
   scene.notes = notes_on(scan, palette);
+  scene.unsimulated = unsimulated(palette.materials);
   scene.lamp_hints = lamp_hints(palette.materials);
   scene.problems = libraries.problems;
   for (Problem& problem : problems_with_names(file.string(), scan, libraries.materials)) {

@@ -107,6 +107,11 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(texts->size());
     for (const std::string& text : *texts) out.text(text);
   }
+  out.plain(scene.unsimulated.size());
+  for (const UnsimulatedMaterials& found : scene.unsimulated) {
+    out.plain(static_cast<std::uint8_t>(found.property));
+    out.plain(found.materials);
+  }
   out.text(scene.file);
   out.text(scene.sha256);
   out.plain(scene.metres_per_unit);
@@ -127,6 +132,11 @@ Scene scene_from_bytes(std::string_view bytes) {
   for (auto* texts : {&scene.groups, &scene.notes}) {
     texts->resize(in.plain<std::size_t>());
     for (std::string& text : *texts) text = in.text();
+  }
+  scene.unsimulated.resize(in.plain<std::size_t>());
+  for (UnsimulatedMaterials& found : scene.unsimulated) {
+    found.property = static_cast<UnsimulatedProperty>(in.plain<std::uint8_t>());
+    found.materials = in.plain<std::size_t>();
   }
   scene.file = in.text();
   scene.sha256 = in.text();

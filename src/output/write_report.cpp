@@ -2,6 +2,7 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "output/decisions_part.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
@@ -37,6 +38,12 @@ Json input_part(const Scene& scene) {
   return part;
 }
 
+Json names_of(const std::vector<Effect>& effects) {
+  Json names = Json::array();
+  for (const Effect effect : effects) names.push_back(name_of(effect));
+  return names;
+}
+
 Json request_part(const Request& request) {
   Json part;
   part["max_edge_m"] = json_of(request.max_edge);
@@ -54,6 +61,8 @@ Json request_part(const Request& request) {
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
+  part["force"] = names_of(request.force);
+  part["skip"] = names_of(request.skip);
   return part;
 }
 
@@ -93,11 +102,7 @@ Json plan_part(const Plan& plan) {
   part["emit_from_back"] = plan.sides.emit_from_back;
   part["sides_notes"] = plan.sides.notes;
   part["notes"] = plan.notes;
-  part["decisions"] = Json::array();
-  for (const Decision& decision : plan.decisions) {
-    part["decisions"].push_back(
-        {{"effect", decision.effect}, {"simulate", decision.simulate}, {"reason", decision.reason}});
-  }
+  part["decisions"] = decisions_part(plan.decisions);
   return part;
 }
 

@@ -110,6 +110,9 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   facts.AddArray(strings("command_line", {provenance.command_line}));
   facts.AddArray(strings("input_file", {scene.file}));
   facts.AddArray(strings("sha256", {scene.sha256}));
+  std::vector<std::string> decisions;
+  for (const Decision& decision : simulation.plan.decisions) decisions.push_back(sentence(decision));
+  facts.AddArray(strings("decisions", decisions));
   facts.AddArray(strings("seed", {std::to_string(simulation.plan.seed)}));  // 64 bits do not fit a double
   facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
   const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);

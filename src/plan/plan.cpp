@@ -2,9 +2,10 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/plan/decide.h"
+#include "patchlight/plan/effect_facts.h"
 #include "patchlight/plan/left_out_sides.h"
 #include "patchlight/plan/survey.h"
-#include "patchlight/visibility/convex_hull.h"
 
 #include <algorithm>
 #include <cassert>
@@ -20,22 +21,24 @@ void require_lamp(const Scene& scene) {
   if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
 }
 
-Decision decide_occlusion(const Scene& scene) {
-  const auto on_hull = on_convex_hull(scene);
-  const auto inner = std::count(on_hull.begin(), on_hull.end(), std::uint8_t{0});
-  if (inner == 0)
-    return {"occlusion", false, "all faces lie on one convex hull: nothing can stand between two patches"};
-  return {"occlusion", true,
-          std::to_string(inner) + " of " + std::to_string(scene.polygons.size()) +
-              " faces lie inside the convex hull and can stand between two patches"};
+// A run without any light is not meant.
+void require_light(const Scene& scene, const EffectFacts& facts, const Plan& plan) {
+  if (facts.lamps > 0) return;
+  std::string skipped;
+  for (const Decision& decision : plan.decisions) {
+    const bool is_light =
+        decision.effect == Effect::luminaires || decision.effect == Effect::sun || decision.effect == Effect::sky;
+    if (is_light && decision.simulate) return;
+    if (is_light && decision.forced) skipped += std::string(skipped.empty() ? "" : ", ") + name_of(decision.effect);
+  }
+  if (skipped.empty()) return;
+  throw InputError(scene.file, "found no light left when these are skipped: " + skipped + "; expected one at least");
 }
 
-Decision decide_interreflection(const Scene& scene) {
-  double highest = 0;
-  for (const Material& material : scene.materials) highest = std::max(highest, material.reflectance.maxCoeff());
-  if (highest == 0)
-    return {"interreflection", false, "all reflectances are 0: light is absorbed where it first arrives"};
-  return {"interreflection", true, "the highest reflectance is " + std::to_string(highest)};
+// With light that is not reflected again the rows of the lamps are enough, and no matrix is needed.
+bool takes_lamps_alone(const Plan& plan) {
+  return !simulates(plan, Effect::interreflection) && !plan.close && !plan.standard_errors &&
+         plan.estimator == Estimator::automatic;
 }
 
 // A sun below the horizon gives no light.
@@ -66,7 +69,15 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
 Plan make_plan(const Scene& scene, const Request& request) {
   require_lamp(scene);
   Plan plan = plan_form_factors(scene, request);
-  plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  const EffectFacts facts = survey_effects(scene, plan.sides);
+  plan.decisions = decide(facts, request);
+  require_light(scene, facts, plan);
+  plan.close = simulates(plan, Effect::closure);
+  plan.on_demand = request.on_demand || takes_lamps_alone(plan);
+  // By force every pair takes its rays, also those between which nothing is found to stand.
+  if (simulates(plan, Effect::occlusion) && facts.inside_hull == 0) plan.short_cuts.free = false;
+  if (!simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour) plan.lamp_colour = *facts.lamp_colour;
+  plan.solver.every_band = simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour;
   for (std::string& note : notes_on_sun(scene)) plan.notes.push_back(std::move(note));
   if (request.kept_sides) {
     for (std::string& note : notes_on_left_out_sides(scene, *request.kept_sides, request.sides))
@@ -77,7 +88,11 @@ Plan make_plan(const Scene& scene, const Request& request) {
 
 KeptSides sides_for(const Scene& scene, const Request& request) {
   assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
-  return request.kept_sides ? *request.kept_sides : kept_sides(scene, request.sides);
+  if (request.kept_sides) return *request.kept_sides;
+  const auto forced = [&](Effect effect) {
+    return std::find(request.force.begin(), request.force.end(), effect) != request.force.end();
+  };
+  return kept_sides(scene, request.sides, {.unreached = forced(Effect::reach), .turned_away = forced(Effect::backs)});
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
@@ -107,6 +122,11 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
                  .max_rows = request.max_rows,
                  .relaxation = request.relaxation};
   return plan;
+}
+
+bool simulates(const Plan& plan, Effect effect) {
+  return std::none_of(plan.decisions.begin(), plan.decisions.end(),
+                      [effect](const Decision& decision) { return decision.effect == effect && !decision.simulate; });
 }
 
 AssemblyOptions assembly_options(const Plan& plan) {

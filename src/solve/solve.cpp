@@ -144,7 +144,7 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
   //    need it.
   const RadiosityProblem with_source{problem.reflectance, source_radiosity(problem), problem.area,
                                      problem.direct_irradiance};
-  const SolvedBands bands = solved_bands(with_source);
+  const SolvedBands bands = options.every_band ? all_bands(with_source) : solved_bands(with_source);
   const RadiosityProblem needed{reduced(with_source.reflectance, bands), reduced(with_source.exitance, bands),
                                 problem.area, reduced(problem.direct_irradiance, bands)};
   SolverOptions used = options;

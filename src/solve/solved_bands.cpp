@@ -12,8 +12,8 @@ std::optional<double> factor_of(const RadiosityProblem& problem, Eigen::Index a,
   Eigen::Index brightest = 0;
   const double of_a = problem.exitance.col(a).maxCoeff(&brightest);
   const double factor = problem.exitance(brightest, b) / of_a;
-  // Rounding of a product and a quotient.
-  constexpr double tolerance = 4 * std::numeric_limits<double>::epsilon();
+  // Rounding of sums and products of E, rho and H_direct, and of a quotient.
+  constexpr double tolerance = 16 * std::numeric_limits<double>::epsilon();
   const auto expected = factor * problem.exitance.col(a);
   const bool is_multiple = ((expected - problem.exitance.col(b)).abs() <= tolerance * expected).all();
   return is_multiple ? std::optional(factor) : std::nullopt;
@@ -36,6 +36,15 @@ SolvedBands solved_bands(const RadiosityProblem& problem) {
     bands.sources.push_back({from, factor.value_or(1)});
   }
   if (bands.solved.empty()) bands.solved.push_back(0);
+  return bands;
+}
+
+SolvedBands all_bands(const RadiosityProblem& problem) {
+  SolvedBands bands;
+  for (Eigen::Index band = 0; band < problem.exitance.cols(); ++band) {
+    bands.solved.push_back(band);
+    bands.sources.push_back({band, 1});
+  }
   return bands;
 }
 

@@ -20,6 +20,9 @@ struct SolvedBands {
 
 SolvedBands solved_bands(const RadiosityProblem& problem);
 
+/// Each band as it is.
+SolvedBands all_bands(const RadiosityProblem& problem);
+
 /// The columns of the solved bands; nothing of nothing.
 Field reduced(const FieldView& field, const SolvedBands& bands);
 

@@ -122,6 +122,8 @@ std::vector<Contestant> all_contestants() {
 Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
                    const Observer& observer) {
   const ThreadLimit threads(request.threads);
+  Request with_matrix = request;  // even where no light is reflected
+  with_matrix.force.push_back(Effect::interreflection);
   Comparison comparison;
   // 1. Assemble once; while the matrix is there, find the reference and let the solvers run that use it.
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
@@ -142,7 +144,7 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     }
     return reference;
   };
-  comparison.simulation = simulate(scene, request, observer, {.solve = solve_all});
+  comparison.simulation = simulate(scene, with_matrix, observer, {.solve = solve_all});
   const double assembly = assembly_seconds(comparison.simulation);
   for (SolverRun& run : comparison.runs) run.assembly_seconds = assembly;
   if (!comparison.simulation.solution.trapped.empty()) return comparison;
@@ -151,7 +153,7 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
   const Race race{options, comparison.simulation.solution.radiosity};
   for (const Contestant& contestant : options.contestants) {
     if (contestant.on_demand) {
-      comparison.runs.push_back(run_on_demand(scene, request, contestant, race, observer));
+      comparison.runs.push_back(run_on_demand(scene, with_matrix, contestant, race, observer));
     }
   }
   return comparison;

@@ -49,6 +49,7 @@ std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::
 // The polygons that cannot block a segment.
 std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
   if (which == Occluder::Blockers::all) return none_of(scene);
+  if (which == Occluder::Blockers::none) return std::vector<std::uint8_t>(scene.polygons.size(), 1);
   if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
   std::vector<std::uint8_t> left_out;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
@@ -98,7 +99,8 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings
   const Box box = bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  build(everything, scene, which == Blockers::inside_hull ? none_of(scene) : left_out);
+  const bool some_meet_rays_alone = which == Blockers::inside_hull || which == Blockers::none;
+  build(everything, scene, some_meet_rays_alone ? none_of(scene) : left_out);
   build(blockers, scene, left_out);
   covered_places.coverings = std::move(coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/plan/effects.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/solve/solve.h"
@@ -31,16 +32,11 @@ struct Request {
   bool close = true;          ///< correct the form factors so that rows sum up to what is seen
   bool on_demand = false;     ///< no matrix: rows of form factors are computed whenever the solver asks for them, and
                               ///< not closed. Memory in proportion to the patches; for progressive refinement
-  bool standard_errors = false;  ///< keep one for each entry: a quarter more memory
-  int threads = 0;               ///< 0: all processors
-  std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
-};
-
-/// A physical effect that can be simulated or left out.
-struct Decision {
-  std::string effect;
-  bool simulate = true;
-  std::string reason;  ///< the fact that decides
+  bool standard_errors = false;    ///< keep one for each entry: a quarter more memory
+  int threads = 0;                 ///< 0: all processors
+  std::optional<double> memory;    ///< bytes that the run may take; without it 0.8 of the machine's memory
+  std::vector<Effect> force = {};  ///< effects that are simulated whatever the scene is like
+  std::vector<Effect> skip = {};   ///< effects that are left out; none that is forced
 };
 
 /// How a scene is going to be solved.
@@ -58,6 +54,8 @@ struct Plan {
   bool standard_errors = false;
   SolverOptions solver;
   std::vector<Decision> decisions;
+  Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else
+                              ///< empty
   std::vector<std::string> notes;  ///< what was asked and cannot be
 };
 
@@ -68,11 +66,14 @@ inline constexpr std::size_t default_patches = 4000;
 KeptSides sides_for(const Scene& scene, const Request& request);
 
 /// Fills the request's open ends from the facts of the scene. Pure.
-/// \throws InputError when the scene has no lamp.
+/// \throws InputError when the scene has no lamp, or none but those that Request::skip leaves out.
 Plan make_plan(const Scene& scene, const Request& request);
 
 /// The same for a scene that need not have a lamp, without decisions about light: what form factors take.
 Plan plan_form_factors(const Scene& scene, const Request& request);
+
+/// False when the plan has decided to leave the effect out.
+bool simulates(const Plan& plan, Effect effect);
 
 /// What the plan says about form factors.
 AssemblyOptions assembly_options(const Plan& plan);

@@ -7,6 +7,7 @@
 #include "patchlight/scene/problem.h"
 #include "patchlight/scene/sensor.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -49,6 +50,15 @@ struct LampHint {
   std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
+/// A property of surfaces that is not simulated: they are taken for matt and opaque.
+enum class UnsimulatedProperty : std::uint8_t { mirror, glass };
+
+/// How many materials of a model's files have it.
+struct UnsimulatedMaterials {
+  UnsimulatedProperty property = UnsimulatedProperty::mirror;
+  std::size_t materials = 0;
+};
+
 /// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance; besides them there
 /// may be luminaires, sun and sky.
 struct Scene {
@@ -66,12 +76,13 @@ struct Scene {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;
   std::optional<Sky> sky;
-  std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
-  std::vector<Problem> problems;     ///< what is wrong with the model, worst first
-  std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to
-  bool photometric = false;          ///< lights are stated in lumens or lux: illuminance has a meaning
-  std::vector<SensorGroup> sensors;  ///< where irradiance is wanted
-  std::vector<Camera> cameras;       ///< where pictures are taken from
+  std::vector<std::string> notes;                 ///< what the file holds that is not simulated, and other remarks
+  std::vector<UnsimulatedMaterials> unsimulated;  ///< counted per file that the scene comes from
+  std::vector<Problem> problems;                  ///< what is wrong with the model, worst first
+  std::vector<LampHint> lamp_hints;               ///< materials that do not emit, but may be meant to
+  bool photometric = false;                       ///< lights are stated in lumens or lux: illuminance has a meaning
+  std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
+  std::vector<Camera> cameras;                    ///< where pictures are taken from
 };
 
 /// The corner points of a polygon.

@@ -2,6 +2,7 @@
 
 #include "patchlight/scene/scene.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,12 +20,27 @@ enum class Sides {
 /// "auto", "front" or "both", as on the command line.
 const char* name_of(Sides sides);
 
+/// A closed solid into which no light can get.
+struct DarkSolid {
+  std::string name;          ///< that of its group, with the place of its first polygon: "'attic' (house.obj:12)"
+  std::size_t polygons = 0;  ///< that it consists of
+};
+
 /// The sides that become patches, per polygon.
 struct KeptSides {
   std::vector<std::uint8_t> front;  ///< 1 when the polygon's front side is kept
   std::vector<std::uint8_t> back;   ///< 1 when its back side is kept
   bool emit_from_back = false;      ///< lamps emit from their back sides too (Sides::both)
   std::vector<std::string> notes;   ///< what was decided, for the report
+  std::vector<DarkSolid> dark_solids = {};
+  std::size_t unreached = 0;    ///< sides that face the inside of one
+  std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid
+};
+
+/// Sides that no light reaches and that are kept nevertheless.
+struct KeptInTheDark {
+  bool unreached = false;    ///< those that face the inside of a dark solid
+  bool turned_away = false;  ///< those that face the dark outside of a closed solid
 };
 
 /// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; polygons of it that are turned against
@@ -33,10 +49,14 @@ struct KeptSides {
 /// through clear openings.
 ///
 /// Sides::automatic keeps a side unless
-/// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, or
+/// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
+/// belongs
+///   to the solid itself, or the point just before its middle and all its corners lie within, or
 /// - it faces the outside of a closed solid that holds every lamp of the scene: no light gets there.
+/// `in_the_dark` asks for such sides nevertheless; they are counted all the same. What stands in dark solids is looked
+/// for as long as that takes a fraction of a second; beyond that it is kept.
 /// So the inner sides of a closed room are used even when its normals point outward; a note says so.
-KeptSides kept_sides(const Scene& scene, Sides sides);
+KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark = {});
 
 /// Area of the kept sides in m^2; a polygon of which both are kept counts twice.
 double kept_area(const Scene& scene, const KeptSides& sides);

@@ -46,15 +46,15 @@ struct SolverOptions {
                                                ///< found, so that there is no bound
   std::optional<Field> reference = {};  ///< a solution to be met, radiosity in W/m^2 of all bands: stop when ||B_ref -
                                         ///< B_k||_A / ||B_ref - E||_A, worst band, is below relative_error
+  bool every_band = false;              ///< solve bands that follow from others, too
 };
 
 /// Solves B = E + rho o F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
-/// by a factor once. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times the largest row sum of F, of
-/// docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of the same section; where that is
-/// not known either, by the relative residual, with an infinite error_bound in the history. What cannot converge ends
-/// after max_iterations with converged = false and its history; a singular system at once, with Solution::trapped,
-/// unless the largest row sum is not to be found.
-/// \throws Cancelled.
+/// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times
+/// the largest row sum of F, of docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of
+/// the same section; where that is not known either, by the relative residual, with an infinite error_bound in the
+/// history. What cannot converge ends after max_iterations with converged = false and its history; a singular system at
+/// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled.
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

@@ -66,7 +66,8 @@ class Occluder {
                   ///< faster
     all,          ///< all: for points that may lie outside
     opaque,       ///< all but the clear openings
-    clear         ///< the clear openings alone
+    clear,        ///< the clear openings alone
+    none          ///< none: as if nothing stood in the way
   };
 
   explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {});

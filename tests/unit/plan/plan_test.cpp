@@ -13,11 +13,11 @@ namespace {
 
 using namespace test;
 
-const Decision& decision(const Plan& plan, const std::string& effect) {
+const Decision& decision(const Plan& plan, Effect effect) {
   for (const Decision& candidate : plan.decisions) {
     if (candidate.effect == effect) return candidate;
   }
-  throw std::out_of_range(effect);
+  throw std::out_of_range(name_of(effect));
 }
 
 TEST(MakePlan, RefusesASceneWithoutLamp) {
@@ -47,13 +47,31 @@ TEST(MakePlan, SaysThatTheSunIsBelowTheHorizon) {
 }
 
 TEST(MakePlan, OcclusionOnlyWhereSomethingCanStandBetween) {
-  EXPECT_FALSE(decision(make_plan(cube_room(0.5, 1), {}), "occlusion").simulate);
-  EXPECT_TRUE(decision(make_plan(furnished_room(0.5), {}), "occlusion").simulate);
+  EXPECT_FALSE(decision(make_plan(cube_room(0.5, 1), {}), Effect::occlusion).simulate);
+  EXPECT_TRUE(decision(make_plan(furnished_room(0.5), {}), Effect::occlusion).simulate);
 }
 
 TEST(MakePlan, InterreflectionOnlyWhereSomethingReflects) {
-  EXPECT_FALSE(decision(make_plan(cube_room(0, 1), {}), "interreflection").simulate);
-  EXPECT_TRUE(decision(make_plan(cube_room(0.1, 1), {}), "interreflection").simulate);
+  EXPECT_FALSE(decision(make_plan(cube_room(0, 1), {}), Effect::interreflection).simulate);
+  EXPECT_TRUE(decision(make_plan(cube_room(0.1, 1), {}), Effect::interreflection).simulate);
+}
+
+TEST(MakePlan, RefusesToSkipAllLight) {
+  Scene scene = cube_room(0.5, 0);
+  scene.luminaires.resize(1);
+  Request request;
+  request.skip = {Effect::luminaires};
+  EXPECT_THROW(make_plan(scene, request), InputError);
+}
+
+// No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
+TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
+  EXPECT_TRUE(make_plan(furnished_room(0), {}).on_demand);
+  EXPECT_FALSE(make_plan(furnished_room(0.5), {}).on_demand);
+  Request request;
+  request.force = {Effect::closure};
+  EXPECT_FALSE(make_plan(furnished_room(0), request).on_demand);
+  EXPECT_TRUE(make_plan(furnished_room(0), request).close);
 }
 
 // 2,000 small faces in a room of six large ones: these have to be cut as well.

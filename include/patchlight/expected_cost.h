@@ -1,0 +1,27 @@
+#pragma once
+
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+
+#include <cstddef>
+
+namespace patchlight {
+
+/// What a run is expected to take, told before it begins.
+struct ExpectedCost {
+  std::size_t patches = 0;
+  double bytes = 0;                 ///< of memory, at the peak
+  double form_factor_seconds = 0;   ///< processor seconds, as the next two
+  double direct_light_seconds = 0;  ///< by luminaires, sun and sky
+  double solve_seconds = 0;         ///< with closure
+  int threads = 1;
+
+  /// Wall-clock seconds with all threads busy.
+  double seconds() const { return (form_factor_seconds + direct_light_seconds + solve_seconds) / threads; }
+};
+
+/// An estimate from the number of patches and what the plan simulates, with rates that were measured on one machine:
+/// right to a factor of three or so, as how much of a scene hides from the rest is not known before.
+ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, std::size_t patches);
+
+}  // namespace patchlight

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "patchlight/plan/effect_facts.h"
+#include "patchlight/plan/effects.h"
+#include "patchlight/plan/plan.h"
+
+#include <vector>
+
+namespace patchlight {
+
+/// Which effects are simulated, given what the scene is like and what is asked for: one decision for each of
+/// simulated_effects(), and one for each effect that is not simulated and that the scene has. Pure.
+/// Request::force and Request::skip overrule the facts, as long as there is something to simulate: a sun that is not
+/// there cannot be forced.
+std::vector<Decision> decide(const EffectFacts& facts, const Request& request);
+
+}  // namespace patchlight

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// The sun of a scene.
+struct SunFacts {
+  double altitude = 0;  ///< degrees above the horizon
+};
+
+/// The facts of a scene that decide which effects are simulated.
+struct EffectFacts {
+  std::size_t polygons = 0;
+  std::size_t inside_hull = 0;     ///< polygons that can stand between two others
+  double highest_reflectance = 0;  ///< of the kept sides, worst band
+  Eigen::Index bands = 0;
+  bool grey = false;                     ///< reflectances and transmittances are the same in all bands
+  std::optional<Spectrum> lamp_colour;   ///< the spectrum of which all lights are multiples, relative to its brightest
+                                         ///< band; nothing where there is none
+  std::vector<Eigen::Index> dark_bands;  ///< in which nothing gives light; empty when there is no light at all
+  std::vector<DarkSolid> dark_solids;
+  std::size_t unreached = 0;    ///< sides that face the inside of one
+  std::size_t turned_away = 0;  ///< sides that look into the dark outside of a closed solid
+  std::size_t lamps = 0;        ///< polygons that emit
+  std::size_t luminaires = 0;
+  std::optional<SunFacts> sun;
+  bool sky = false;
+  std::size_t openings = 0;  ///< clear faces
+  bool sees_out = true;      ///< some kept side does not face the inside of a closed solid
+  std::size_t mirrors = 0;   ///< materials
+  std::size_t glass = 0;     ///< materials
+};
+
+/// Looks at a scene of which these sides are kept. Pure. O(n log n) for n corners, and what on_convex_hull() takes.
+EffectFacts survey_effects(const Scene& scene, const KeptSides& kept);
+
+}  // namespace patchlight

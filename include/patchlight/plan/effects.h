@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What can be simulated or left out. docs/effects.md has a row on each.
+enum class Effect : std::uint8_t {
+  occlusion,        ///< polygons that stand between two patches
+  interreflection,  ///< light that is reflected more than once before it is seen
+  colour,           ///< bands that differ
+  reach,            ///< rooms that no light can enter
+  backs,            ///< sides that look into the dark
+  luminaires,       ///< lamps that are no polygons
+  sun,
+  sky,
+  closure,  ///< correction of form factors so that rows sum up to what is seen
+  sheets,   ///< light between patches through clear faces; not simulated, so below
+  mirrors,
+  glass
+};
+
+/// The effects that a user may force or skip, in this order: all but the last three.
+std::vector<Effect> simulated_effects();
+
+/// The effect's name as on the command line.
+const char* name_of(Effect effect);
+
+/// Whether an effect is simulated, and why.
+struct Decision {
+  Effect effect = Effect::occlusion;
+  bool simulate = true;
+  std::string reason = {};  ///< the fact that decides
+  std::string saving = {};  ///< what it costs to simulate it or what is saved by leaving it out, in words
+  bool forced = false;      ///< the request overrules the fact
+};
+
+/// "occlusion: skipped by force; 6 of 12 faces can stand between two patches".
+std::string sentence(const Decision& decision);
+
+}  // namespace patchlight

@@ -1,0 +1,69 @@
+#include "cli/plan.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/expected_cost.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_plan.h"
+
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/text_table.h"
+#include "memory.h"
+
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+const char* word_for(const Decision& decision) {
+  if (decision.forced) return decision.simulate ? "on, by force" : "off, by force";
+  return decision.simulate ? "on" : "off";
+}
+
+// Two lines for each: the fact that decides, and what that costs or saves.
+std::string lines_of(const std::vector<Decision>& decisions) {
+  constexpr int width = 17;
+  std::ostringstream text;
+  for (const Decision& decision : decisions) {
+    text << std::left << std::setw(width) << name_of(decision.effect) << word_for(decision) << ": " << decision.reason
+         << '\n'
+         << std::setw(width) << "" << (decision.simulate ? "takes: " : "saves: ") << decision.saving << '\n';
+  }
+  return text.str();
+}
+
+std::string cost_lines(const ExpectedCost& cost) {
+  return "expected: " + std::to_string(cost.patches) + " patches, " + rounded(cost.bytes / 1e9, 2) + " GB, about " +
+         rounded(cost.seconds(), 2) + " s on " + std::to_string(cost.threads) +
+         (cost.threads == 1 ? " thread" : " threads") + " (an estimate, right to a factor of three or so)\n" +
+         "processor seconds: form factors " + rounded(cost.form_factor_seconds, 2) + ", direct light " +
+         rounded(cost.direct_light_seconds, 2) + ", closure and solution " + rounded(cost.solve_seconds, 2) + '\n';
+}
+
+}  // namespace
+
+ExitCode plan(const PlanArguments& arguments) {
+  if (!arguments.json.empty()) check_writable(arguments.json);
+  const ThreadLimit limit(arguments.request.threads);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  require_memory(scene, arguments.request);
+  const Plan plan = make_plan(scene, arguments.request);
+  const std::size_t patches = tessellate(scene, plan.sides, plan.max_edge).size();
+  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, patches);
+
+  const WritingGuard guard;
+  if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
+  for (const auto* notes : {&scene.notes, &plan.sides.notes, &plan.notes}) {
+    for (const std::string& note : *notes) print_message("note", note);
+  }
+  std::cout << scene.file << ": " << scene.polygons.size() << " polygons\n"
+            << lines_of(plan.decisions) << cost_lines(cost) << std::flush;
+  return good;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,53 @@
+#include "cli/plan_options.h"
+
+#include "cli/add_option.h"
+#include "cli/effect_options.h"
+#include "cli/mesh_options.h"
+#include "cli/model_options.h"
+#include "cli/parse_value.h"
+
+#include <filesystem>
+#include <string>
+
+namespace patchlight::cli {
+
+struct PlanOptions {
+  ModelOptions model;
+  MeshOptions mesh;
+  std::string json;
+};
+
+std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
+  auto options = std::make_shared<PlanOptions>();
+  PlanOptions& to = *options;
+  CLI::App& command =
+      *tool.add_subcommand("plan", "tells what a solve would simulate and leave out, why, and what it would cost");
+  add_model_options(command, to.model);
+  add_sides_option(command, to.mesh);
+  add(command, "--json", "FILE", "the same as JSON (.json)", [&to](const std::string& text) {
+    if (!text.ends_with(".json")) throw refusal("--json", text, "a name that ends in .json");
+    to.json = text;
+  });
+  add_patch_options(command, to.mesh);
+  add_effect_options(command, to.mesh.request);
+  add_sampling_options(command, to.mesh);
+  add_machine_options(command, to.mesh.request);
+  return options;
+}
+
+PlanArguments finish_plan(const PlanOptions& options) {
+  if (options.model.models.empty()) throw UsageError("plan: found no model; expected: patchlight plan MODEL");
+  PlanArguments arguments;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.json = options.json;
+  require_consistent_effects(arguments.request);
+  for (const std::filesystem::path& model : arguments.models) {
+    if (arguments.json.empty() || weakly_canonical(arguments.json) != weakly_canonical(model)) continue;
+    throw UsageError("--json: '" + options.json + "' is a model; expected another file for the result");
+  }
+  return arguments;
+}
+
+}  // namespace patchlight::cli

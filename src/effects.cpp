@@ -1,0 +1,110 @@
+#include "effects.h"
+
+#include "patchlight/light/photometry.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Every spectrum of a luminaire, sun, sky or material changed by change(spectrum); empty ones stay empty.
+template <typename Change>
+void change_light(Luminaire& luminaire, const Change& change) {
+  std::visit(
+      [&](auto& light) {
+        using Light = std::decay_t<decltype(light)>;
+        if constexpr (std::is_same_v<Light, WebLight>) {
+          light.watts_per_lumen = change(light.watts_per_lumen);
+        } else if constexpr (std::is_same_v<Light, SphericalLamp>) {
+          light.exitance = change(light.exitance);
+        } else {
+          light.intensity = change(light.intensity);
+        }
+      },
+      luminaire.light);
+}
+
+template <typename Change>
+Scene with_spectra(Scene scene, const Change& change) {
+  const auto apply = [&](Spectrum& spectrum) {
+    if (spectrum.size() > 0) spectrum = change(spectrum);
+  };
+  for (Material& material : scene.materials) {
+    for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.exitance}) apply(*s);
+  }
+  for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
+  if (scene.sun) apply(scene.sun->normal_irradiance);
+  if (scene.sky) {
+    for (Spectrum* s : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
+      apply(*s);
+  }
+  return scene;
+}
+
+// The same luminance without colour.
+Spectrum without_colour(const Spectrum& spectrum) {
+  return Spectrum::Constant(spectrum.size(), luminance(spectrum) / luminous_efficacy);
+}
+
+bool is_skipped_by_force(const Plan& plan, Effect effect) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
+    return decision.effect == effect && decision.forced && !decision.simulate;
+  });
+}
+
+bool is_forced(const Plan& plan, Effect effect) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
+    return decision.effect == effect && decision.forced && decision.simulate;
+  });
+}
+
+}  // namespace
+
+Occluder::Blockers blockers_of(const Plan& plan) {
+  if (is_skipped_by_force(plan, Effect::occlusion)) return Occluder::Blockers::none;
+  return is_forced(plan, Effect::occlusion) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
+}
+
+Scene scene_as_planned(Scene scene, const Plan& plan) {
+  if (!simulates(plan, Effect::luminaires)) scene.luminaires.clear();
+  if (!simulates(plan, Effect::sun)) scene.sun.reset();
+  if (!simulates(plan, Effect::sky)) scene.sky.reset();
+  if (is_skipped_by_force(plan, Effect::colour)) scene = with_spectra(std::move(scene), without_colour);
+  return scene;
+}
+
+DirectIrradiance direct_irradiance_as_planned(const Scene& scene, const Coverings& coverings, const Plan& plan,
+                                              const PatchMesh& mesh, const Observer& observer) {
+  const LightingOptions options{.seed = plan.seed};
+  if (plan.lamp_colour.size() == 0) return direct_irradiance(lighting_of(scene, coverings), mesh, options, observer);
+  // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
+  Eigen::Index brightest = 0;
+  plan.lamp_colour.maxCoeff(&brightest);
+  const auto band = [brightest](const Spectrum& spectrum) { return Spectrum::Constant(1, spectrum[brightest]); };
+  const Scene one = with_spectra(scene, band);
+  const DirectIrradiance found = direct_irradiance(lighting_of(one, coverings), mesh, options, observer);
+  const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
+  return {in_all(found.irradiance), in_all(found.standard_error)};
+}
+
+SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
+  if (simulates(plan, Effect::interreflection)) return solve;
+  return [solve = std::move(solve), on_demand = plan.on_demand](const RowTransport& transport,
+                                                                const RadiosityProblem& problem,
+                                                                const SolverOptions& usual, const Observer& observer) {
+    RadiosityProblem black = problem;
+    black.reflectance.setZero();
+    SolverOptions options = usual;
+    // It takes the lamps' rows and no others.
+    if (on_demand) options.solver = Solver::progressive;
+    options.max_rows.reset();
+    options.largest_row_sum = 1;  // of no matter where nothing is reflected
+    Solution solution = solve(transport, black, options, observer);
+    solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
+    return solution;
+  };
+}
+
+}  // namespace patchlight

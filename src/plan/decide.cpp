@@ -1,0 +1,202 @@
+#include "patchlight/plan/decide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+bool contains(const std::vector<Effect>& effects, Effect effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+// The decision that the facts call for, or the one that the request asks for instead.
+Decision overruled(Decision by_facts, const Request& request) {
+  const bool wanted =
+      contains(request.force, by_facts.effect) || (by_facts.simulate && !contains(request.skip, by_facts.effect));
+  by_facts.forced = wanted != by_facts.simulate;
+  by_facts.simulate = wanted;
+  return by_facts;
+}
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+Decision occlusion(const EffectFacts& facts) {
+  if (facts.inside_hull == 0) {
+    return {Effect::occlusion, false, "all faces lie on one convex hull: nothing can stand between two patches",
+            "no shadow ray between patches"};
+  }
+  return {
+      Effect::occlusion, true,
+      std::to_string(facts.inside_hull) + " of " + counted(facts.polygons, "face") + " can stand between two patches",
+      "shadow rays, most of the time; none where nothing stands between two groups of patches"};
+}
+
+// Light of relative size rho^n is left after n bounces.
+std::string bounces(double reflectance, double error) {
+  if (reflectance >= 1) return "a reflectance of 1 sets no limit to the number of bounces";
+  const double count = std::max(1.0, std::ceil(std::log(error) / std::log(reflectance)));
+  return "after " + number(count) + " bounces at most " + number(error) + " of the light is left";
+}
+
+Decision interreflection(const EffectFacts& facts, const Request& request) {
+  if (facts.highest_reflectance == 0) {
+    return {Effect::interreflection, false, "all reflectances are 0: light is absorbed where it first arrives",
+            "form factors of the lamps alone, and no equations"};
+  }
+  return {Effect::interreflection, true, "the highest reflectance is " + number(facts.highest_reflectance),
+          bounces(facts.highest_reflectance, request.tolerance)};
+}
+
+std::string numbers_of(const std::vector<Eigen::Index>& bands) {
+  std::string list;
+  for (const Eigen::Index band : bands) list += (list.empty() ? "" : ", ") + std::to_string(band + 1);
+  return (bands.size() == 1 ? "band " : "bands ") + list;
+}
+
+Decision colour(const EffectFacts& facts) {
+  if (facts.bands == 1)
+    return {Effect::colour, false, "the scene has one band", "nothing: one band is solved in any case"};
+  const std::string all = std::to_string(facts.bands) + " bands";
+  if (facts.grey && facts.lamp_colour) {
+    return {Effect::colour, false, "no surface reflects one band better than another, and all lights have one colour",
+            "one band is solved instead of " + all};
+  }
+  const std::string dark = facts.dark_bands.empty() ? "" : "; " + numbers_of(facts.dark_bands) + " without light";
+  const auto solved = static_cast<std::size_t>(facts.bands) - facts.dark_bands.size();
+  return {Effect::colour, true,
+          (facts.grey ? "lights differ in colour" : "some surfaces reflect one band better than another") + dark,
+          std::to_string(solved) + " of " + all + " are solved, together"};
+}
+
+std::string first_names(const std::vector<DarkSolid>& solids) {
+  constexpr std::size_t few = 3;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k) list += (k > 0 ? ", " : "") + solids[k].name;
+  return solids.size() > few ? list + " and " + std::to_string(solids.size() - few) + " more" : list;
+}
+
+Decision reach(const EffectFacts& facts, const Request& request) {
+  if (request.kept_sides || request.sides != Sides::automatic)
+    return {Effect::reach, true, "the sides are chosen already, or by --sides", "unknown"};
+  if (facts.dark_solids.empty())
+    return {Effect::reach, true, "no closed solid is without light inside",
+            "nothing more than without: there is nothing to leave out"};
+  return {Effect::reach, false,
+          "no light can get into " + counted(facts.dark_solids.size(), "closed solid") + ": " +
+              first_names(facts.dark_solids),
+          counted(facts.unreached, "side") + " of faces without patches"};
+}
+
+Decision backs(const EffectFacts& facts, const Request& request) {
+  if (request.kept_sides || request.sides != Sides::automatic)
+    return {Effect::backs, true, "the sides are chosen already, or by --sides", "unknown"};
+  if (facts.turned_away == 0)
+    return {Effect::backs, true, "no side is known to look into the dark",
+            "nothing more than without: there is nothing to leave out"};
+  return {Effect::backs, false, "all lamps are inside: the outer sides of what encloses them look into the dark",
+          counted(facts.turned_away, "side") + " of faces without patches"};
+}
+
+Decision luminaires(const EffectFacts& facts) {
+  if (facts.luminaires == 0) return {Effect::luminaires, false, "the scene has none", "no rays towards them"};
+  return {Effect::luminaires, true, "the scene has " + std::to_string(facts.luminaires),
+          std::to_string(facts.luminaires) + " times 64 shadow rays per patch"};
+}
+
+// Light from outside arrives only where something sees out.
+Decision daylight(Effect effect, const EffectFacts& facts, const char* rays) {
+  if (facts.openings == 0 && !facts.sees_out)
+    return {effect, false, "no face is clear, and no side sees out of the closed solids", "no rays towards it"};
+  return {effect, true,
+          facts.openings > 0 ? counted(facts.openings, "clear face") + " let it in" : "some sides see out", rays};
+}
+
+Decision sun(const EffectFacts& facts) {
+  if (!facts.sun) return {Effect::sun, false, "the scene has none", "no rays towards it"};
+  if (facts.sun->altitude > 0) return daylight(Effect::sun, facts, "64 shadow rays per patch");
+  return {Effect::sun, false, "it is " + number(-facts.sun->altitude) + " degrees below the horizon",
+          "no rays towards it"};
+}
+
+Decision sky(const EffectFacts& facts) {
+  if (!facts.sky) return {Effect::sky, false, "the scene has none", "no rays towards it"};
+  return daylight(Effect::sky, facts, "1024 shadow rays per patch");
+}
+
+// By what is decided about interreflection.
+Decision closure(const Request& request, bool interreflects) {
+  Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
+                    "a few products with the matrix"};
+  if (request.on_demand) return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
+  if (!interreflects)
+    decision = {Effect::closure, false, "no light is reflected twice: no error of row sums adds up", "the matrix"};
+  Request asked = request;
+  if (!request.close) asked.skip.push_back(Effect::closure);
+  return overruled(std::move(decision), asked);
+}
+
+// What the scene has and no run simulates.
+std::vector<Decision> not_simulated(const EffectFacts& facts) {
+  std::vector<Decision> decisions;
+  const auto add = [&](Effect effect, std::size_t count, const std::string& reason) {
+    if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
+  };
+  add(Effect::sheets, facts.openings,
+      counted(facts.openings, "clear face") + " let light in from outside, but none through that patches send");
+  add(Effect::mirrors, facts.mirrors, counted(facts.mirrors, "material") + " with gloss or metal, taken for matt");
+  add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
+  return decisions;
+}
+
+// An effect of which the scene has nothing can neither be forced nor skipped.
+bool is_there(const Decision& decision, const EffectFacts& facts) {
+  switch (decision.effect) {
+    case Effect::luminaires:
+      return facts.luminaires > 0;
+    case Effect::sun:
+      return facts.sun && facts.sun->altitude > 0;
+    case Effect::sky:
+      return facts.sky;
+    case Effect::colour:
+      return facts.bands > 1;
+    case Effect::reach:
+      return !facts.dark_solids.empty();
+    case Effect::backs:
+      return facts.turned_away > 0;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
+  std::vector<Decision> decisions = {occlusion(facts),
+                                     interreflection(facts, request),
+                                     colour(facts),
+                                     reach(facts, request),
+                                     backs(facts, request),
+                                     luminaires(facts),
+                                     sun(facts),
+                                     sky(facts)};
+  for (Decision& decision : decisions) {
+    if (is_there(decision, facts)) decision = overruled(std::move(decision), request);
+  }
+  decisions.push_back(closure(request, decisions[1].simulate));
+  for (Decision& decision : not_simulated(facts)) decisions.push_back(std::move(decision));
+  return decisions;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,53 @@
+#include "patchlight/plan/effects.h"
+
+namespace patchlight {
+namespace {
+
+const char* word_for(const Decision& decision) {
+  if (decision.forced) return decision.simulate ? "simulated by force" : "skipped by force";
+  return decision.simulate ? "simulated" : "left out";
+}
+
+}  // namespace
+
+std::vector<Effect> simulated_effects() {
+  return {Effect::occlusion, Effect::interreflection, Effect::colour, Effect::reach,
+          Effect::backs,     Effect::luminaires,      Effect::sun,    Effect::sky,
+          Effect::closure};
+}
+
+const char* name_of(Effect effect) {
+  switch (effect) {
+    case Effect::occlusion:
+      return "occlusion";
+    case Effect::interreflection:
+      return "interreflection";
+    case Effect::colour:
+      return "colour";
+    case Effect::reach:
+      return "reach";
+    case Effect::backs:
+      return "backs";
+    case Effect::luminaires:
+      return "luminaires";
+    case Effect::sun:
+      return "sun";
+    case Effect::sky:
+      return "sky";
+    case Effect::closure:
+      return "closure";
+    case Effect::sheets:
+      return "sheets";
+    case Effect::mirrors:
+      return "mirrors";
+    case Effect::glass:
+      return "glass";
+  }
+  return "";
+}
+
+std::string sentence(const Decision& decision) {
+  return std::string(name_of(decision.effect)) + ": " + word_for(decision) + "; " + decision.reason;
+}
+
+}  // namespace patchlight

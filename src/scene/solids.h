@@ -1,0 +1,39 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/shells.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// A closed set of polygons with a volume, consistently oriented once those that are turned are turned back.
+struct Solid {
+  std::vector<PolygonIndex> polygons;
+  bool fronts_face_inside = false;  ///< those of the polygons that are not turned
+  bool has_opening = false;
+  Box box;
+  std::vector<std::array<Point, 3>> triangles;  ///< oriented as the polygons
+};
+
+std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells);
+
+/// The side of one of its polygons that faces its inside.
+Side inner_side(const Solid& solid, const Shells& shells, PolygonIndex polygon);
+
+/// True when the solid has winding number +-1 around the point. O(triangles).
+bool holds(const Solid& solid, const Point& point);
+
+/// A point just before the middle of a side, by 1e-6 of the scene's `extent`. The middle is that of the polygon's
+/// largest triangle, inside the polygon even when that is not convex.
+Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
+
+/// At 2 * polygon + side 1 when the side faces the inside of one of these solids: it belongs to the solid, or
+/// point_before() and the like of all its corners lie within. Looks for at most 2e7 tests of a box or triangle, a
+/// fraction of a second, in the largest solids first; what it does not come to is 0.
+std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
+
+}  // namespace patchlight

@@ -1,0 +1,111 @@
+"""patchlight plan: what is simulated, why and at what cost; --force and --skip, and what results say about them."""
+import json
+import unittest
+
+from support import MATERIALS, ROOM, ToolTest, content
+
+GOOD, USAGE, INPUT = 0, 1, 2
+
+EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "closure"]
+
+
+class PlanTest(ToolTest):
+    def plan(self, *arguments):
+        """The plan of room.obj as JSON, with its decisions by effect."""
+        done = self.run_tool("plan", "room.obj", "--json", "plan.json", *arguments)
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        plan = json.loads((self.folder / "plan.json").read_text())
+        plan["by_effect"] = {decision["effect"]: decision for decision in plan["decisions"]}
+        return plan
+
+    def assert_refused(self, words, *arguments):
+        before = content(self.folder)
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, USAGE, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(content(self.folder), before)
+
+    def test_tells_every_effect_with_its_fact_and_the_cost(self):
+        before = content(self.folder)
+        done = self.run_tool("plan", "room.obj", "--patches", "1000")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        for effect in EFFECTS:
+            self.assertIn(f"\n{effect}", done.stdout)
+        self.assertRegex(done.stdout, r"expected: \d+ patches, [\d.]+ GB, about [\d.]+ s on \d+ thread")
+        self.assertEqual(content(self.folder), before, "nothing is written, nothing is solved")
+
+    def test_facts_decide(self):
+        plan = self.plan("--patches", "1000")
+        self.assertEqual(list(plan["by_effect"]), EFFECTS)
+        on = {effect for effect, decision in plan["by_effect"].items() if decision["simulate"]}
+        # The walls are not grey; all lamps are inside, so the outer sides are dark; there are no other lights.
+        self.assertEqual(on, {"occlusion", "interreflection", "colour", "reach", "closure"})
+        self.assertLess(abs(plan["expected"]["patches"] - 1000), 100)
+        self.assertGreater(plan["expected"]["seconds"], 0)
+        black = self.plan("--set", "white.reflectance=0,0,0")["by_effect"]
+        self.assertFalse(black["interreflection"]["simulate"])
+        self.assertFalse(black["closure"]["simulate"])
+
+    def test_what_is_not_simulated_is_named(self):
+        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 0.6 0.5\nKs 0.1 0.1 0.1\nd 0.5"))
+        plan = self.plan()["by_effect"]
+        self.assertIn("1 material", plan["mirrors"]["reason"])
+        self.assertIn("1 transparent material", plan["glass"]["reason"])
+        self.assertFalse(plan["mirrors"]["simulate"])
+
+    def test_results_say_what_was_overruled(self):
+        done = self.run_tool("solve", "room.obj", "--patches", "200", "--skip", "occlusion", "--report", "report.json", "-o",
+                             "room.vtp")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        self.assertIn("by force: occlusion", done.stdout)
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertEqual(report["request"]["skip"], ["occlusion"])
+        decision = report["plan"]["decisions"][0]
+        self.assertEqual((decision["effect"], decision["simulate"], decision["forced"]), ("occlusion", False, True))
+        self.assertIn(b"occlusion: skipped by force; 2 of 8 faces", self.field_data())
+
+    def field_data(self):
+        """The bytes of room.vtp as any reader gets them, FieldData being compressed."""
+        try:
+            import vtk
+        except ImportError:
+            self.skipTest("vtk is not there")
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(str(self.folder / "room.vtp"))
+        reader.Update()
+        array = reader.GetOutput().GetFieldData().GetAbstractArray("decisions")
+        return "\n".join(array.GetValue(k) for k in range(array.GetNumberOfValues())).encode()
+
+    def test_an_empty_room_takes_no_shadow_rays_unless_forced(self):
+        empty = ROOM.replace("f 13 14 15 16\n", "").replace("usemtl lamp\nf 9 12 11 10\n", "usemtl lamp\nf 5 8 7 6\n")
+        self.write("room.obj", empty.replace("f 5 8 7 6\nf 1 5 6 2", "f 1 5 6 2"))
+        rays = {}
+        for name, options in {"planned": [], "forced": ["--force", "occlusion"]}.items():
+            done = self.run_tool("solve", "room.obj", "--patches", "200", "--report", "report.json", *options)
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            rays[name] = json.loads((self.folder / "report.json").read_text())["transport"]["shadow_rays"]
+        self.assertEqual(rays["planned"], 0)
+        self.assertGreater(rays["forced"], 0)
+
+    def test_contradictions_are_refused(self):
+        outputs = ("solve", "room.obj", "-o", "room.vtp")
+        self.assert_refused(["--force sun", "--skip sun"], *outputs, "--force", "sun", "--skip", "sun")
+        self.assert_refused(["--force closure", "--no-closure"], *outputs, "--force", "closure", "--no-closure")
+        self.assert_refused(["--force closure", "--on-demand"], *outputs, "--force", "closure", "--on-demand", "--solver",
+                            "progressive")
+        self.assert_refused(["--skip reach", "--sides"], *outputs, "--skip", "reach", "--sides", "both")
+        self.assert_refused(["shadows", "occlusion"], *outputs, "--skip", "shadows")
+        self.assert_refused(["--skip", "mirrors"], *outputs, "--skip", "mirrors")
+
+    def test_skipping_all_light_is_refused(self):
+        self.write("sky.toml", '[[model]]\nfile = "room.obj"\n[sky]\nkind = "uniform"\nirradiance = 10\n')
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 0 0 0"))
+        done = self.run_tool("solve", "sky.toml", "--patches", "100", "--skip", "sky", "-o", "room.vtp")
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        self.assertIn("skipped: sky", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

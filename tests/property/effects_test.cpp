@@ -1,0 +1,265 @@
+// What the planner leaves out changes nothing beyond the asked error, and what it simulates does: each effect with and
+// without it, on a scene made for it.
+#include "patchlight/simulate.h"
+
+#include "support/effect_scenes.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// The solver's relative error is 1e-6; two solutions may be twice that apart, in the norm of the reflected light.
+constexpr double solver_error = 2e-6;
+
+// What closed forms and quadrature promise of a pair without shadow rays (docs/form_factors.md) is 1e-3; a tenth more
+// for sampled pairs, whose errors are of both signs and average out over a row.
+constexpr double form_factor_error = 1.1e-3;
+
+// By so much an effect that matters has to differ for its test to be able to fail.
+constexpr double clear_difference = 0.02;
+
+Request coarse(double max_edge = 0.4) {
+  Request request;
+  request.max_edge = max_edge;
+  request.sides = Sides::front;
+  return request;
+}
+
+Request forcing(Effect effect, Request request) {
+  request.force.push_back(effect);
+  return request;
+}
+
+Request skipping(Effect effect, Request request) {
+  request.skip.push_back(effect);
+  return request;
+}
+
+const Decision& decision(const Simulation& simulation, Effect effect) {
+  return *std::find_if(simulation.plan.decisions.begin(), simulation.plan.decisions.end(),
+                       [effect](const Decision& decision) { return decision.effect == effect; });
+}
+
+// ||H_a - H_b||_A / ||H_b||_A, worst band.
+double difference(const Simulation& a, const Simulation& b) {
+  const Field& H = b.solution.irradiance;
+  const Field apart = a.solution.irradiance - H;
+  return (area_norm(apart, b.problem.area) / area_norm(H, b.problem.area)).maxCoeff();
+}
+
+// The effect is left out by the planner, and by force it is simulated: so far are the two apart.
+double planned_difference(const Scene& scene, Effect effect, const Request& request) {
+  const Simulation planned = simulate(scene, request);
+  const Simulation forced = simulate(scene, forcing(effect, request));
+  EXPECT_FALSE(decision(planned, effect).simulate);
+  EXPECT_FALSE(decision(planned, effect).forced);
+  EXPECT_TRUE(decision(forced, effect).simulate);
+  EXPECT_TRUE(decision(forced, effect).forced);
+  return difference(planned, forced);
+}
+
+// The effect is simulated by the planner, and by force it is skipped.
+double skipped_difference(const Scene& scene, Effect effect, const Request& request) {
+  const Simulation planned = simulate(scene, request);
+  const Simulation skipped = simulate(scene, skipping(effect, request));
+  EXPECT_TRUE(decision(planned, effect).simulate);
+  EXPECT_FALSE(decision(skipped, effect).simulate);
+  EXPECT_TRUE(decision(skipped, effect).forced);
+  return difference(skipped, planned);
+}
+
+// With shadow rays that find nothing entries are the same but for rounding to float, 6e-8 of each.
+TEST(Occlusion, IsNotNeededInAnEmptyRoom) {
+  EXPECT_LT(planned_difference(lit_box(0.5), Effect::occlusion, coarse()), solver_error + 1e-7);
+}
+
+TEST(Occlusion, MattersInAFurnishedRoom) {
+  EXPECT_GT(skipped_difference(furnished_room(0.5), Effect::occlusion, coarse()), clear_difference);
+}
+
+// The rows of the lamps have the bits of the matrix: sums of some hundred terms in another order.
+TEST(Interreflection, IsNotNeededWhereNothingReflects) {
+  Request raw = coarse();
+  raw.close = false;
+  EXPECT_LT(planned_difference(furnished_room(0), Effect::interreflection, raw), 1e-12);
+}
+
+TEST(Interreflection, MattersWhereSomethingReflects) {
+  EXPECT_GT(skipped_difference(furnished_room(0.5), Effect::interreflection, coarse()), clear_difference);
+}
+
+// H = F E and B = E + rho o H, with nothing reflected twice: the sum of the first two terms of the Neumann series.
+TEST(Interreflection, SkippedLeavesTheLightOfTheLamps) {
+  const Simulation whole = simulate(furnished_room(0.5), coarse());
+  Request request = skipping(Effect::interreflection, coarse());
+  request.force = {Effect::closure};
+  const Simulation direct = simulate(furnished_room(0.5), request);
+  EXPECT_LT((direct.solution.irradiance - whole.solution.direct_irradiance).abs().maxCoeff(),
+            1e-12 * whole.solution.direct_irradiance.maxCoeff());
+  const Field B = direct.problem.exitance + direct.problem.reflectance * direct.solution.irradiance;
+  EXPECT_EQ((direct.solution.radiosity - B).abs().maxCoeff(), 0);
+}
+
+TEST(Colour, OneBandStandsForAllOfGreySurfaces) {
+  const Scene scene = in_colours(rgb(0.5, 0.5, 0.5), rgb(10, 7, 3), rgb(20, 14, 6));
+  EXPECT_LT(planned_difference(scene, Effect::colour, coarse()), solver_error);
+  const Simulation planned = simulate(scene, coarse());
+  EXPECT_NEAR((planned.solution.irradiance.col(1) / planned.solution.irradiance.col(0) - 0.7).abs().maxCoeff(), 0,
+              1e-12);
+}
+
+TEST(Colour, MattersWhereSurfacesOrLightsDiffer) {
+  const Scene red_walls = in_colours(rgb(0.8, 0.3, 0.1), rgb(10, 10, 10), rgb(20, 20, 20));
+  EXPECT_GT(skipped_difference(red_walls, Effect::colour, coarse()), clear_difference);
+  const Scene two_lights = in_colours(rgb(0.5, 0.5, 0.5), rgb(10, 7, 3), rgb(20, 20, 20));
+  EXPECT_GT(skipped_difference(two_lights, Effect::colour, coarse()), clear_difference);
+}
+
+TEST(Colour, SkippedLeavesTheSameLuminanceInAllBands) {
+  const Scene scene = in_colours(rgb(0.8, 0.3, 0.1), rgb(10, 7, 3), rgb(20, 14, 6));
+  const Simulation skipped = simulate(scene, skipping(Effect::colour, coarse()));
+  const Field& H = skipped.solution.irradiance;
+  EXPECT_EQ((H.col(0) - H.col(1)).abs().maxCoeff(), 0);
+  EXPECT_EQ((H.col(0) - H.col(2)).abs().maxCoeff(), 0);
+}
+
+// Irradiance of the patches on the front sides of the first polygons.
+Field irradiance_on_first(const Simulation& simulation, PolygonIndex polygons) {
+  const PatchRange last = simulation.mesh.patches_on(polygons - 1, Side::front);
+  const PatchRange first = simulation.mesh.patches_on(0, Side::front);
+  std::vector<PatchIndex> patches;
+  for (PolygonIndex p = 0; p < polygons; ++p) {
+    const PatchRange range = simulation.mesh.patches_on(p, Side::front);
+    for (PatchIndex i = range.begin; i < range.end; ++i) patches.push_back(i);
+  }
+  EXPECT_LT(first.begin, last.end);
+  Field H(static_cast<Eigen::Index>(patches.size()), simulation.solution.irradiance.cols());
+  for (Eigen::Index k = 0; k < H.rows(); ++k)
+    H.row(k) = simulation.solution.irradiance.row(patches[static_cast<std::size_t>(k)]);
+  return H;
+}
+
+Request automatic(double max_edge = 0.4) {
+  Request request = coarse(max_edge);
+  request.sides = Sides::automatic;
+  return request;
+}
+
+// The dark patches neither send nor block; of the sampled pairs others share their packets, so that random numbers
+// differ.
+TEST(Reach, RoomsWithoutLightNeedNoPatches) {
+  const Scene scene = two_rooms(0.5);
+  const Simulation planned = simulate(scene, automatic());
+  const Simulation forced = simulate(scene, forcing(Effect::reach, automatic()));
+  EXPECT_FALSE(decision(planned, Effect::reach).simulate);
+  EXPECT_EQ(planned.mesh.patches_on(13, Side::front).begin, planned.mesh.patches_on(13, Side::front).end);
+  EXPECT_GT(forced.mesh.size(), planned.mesh.size() + 100);
+  constexpr PolygonIndex lit = polygons_of_lit_room;
+  const Field H = irradiance_on_first(planned, lit);
+  const Field H_forced = irradiance_on_first(forced, lit);
+  ASSERT_EQ(H.rows(), H_forced.rows());
+  EXPECT_LT(((H - H_forced).square().sum() / H_forced.square().sum()), form_factor_error * form_factor_error);
+  const PatchRange dark = forced.mesh.patches_on(lit, Side::front);
+  EXPECT_EQ(forced.solution.irradiance.middleRows(dark.begin, dark.end - dark.begin).abs().maxCoeff(), 0);
+}
+
+// With a lamp in the second room its sides are kept; without them its light would be lost.
+TEST(Reach, MattersWhereALampIs) {
+  Scene scene = two_rooms(0.5);
+  Request left_out = automatic();
+  left_out.kept_sides = kept_sides(scene, Sides::automatic);
+  scene = with_quad(std::move(scene), {Point(5.5, 1, 2.4), Point(5.5, 2, 2.4), Point(6, 2, 2.4), Point(6, 1, 2.4)}, 1);
+  left_out.kept_sides->front.push_back(1);
+  left_out.kept_sides->back.push_back(1);
+  const Simulation planned = simulate(scene, automatic());
+  const Simulation without = simulate(scene, left_out);
+  EXPECT_GT(planned.balance.absorbed[0], (1 + clear_difference) * without.balance.absorbed[0]);
+  EXPECT_LT(without.balance.escaped[0] + without.balance.lost_at_backs[0] + without.balance.absorbed[0],
+            1.01 * without.balance.emitted[0]);
+}
+
+TEST(Backs, SidesInTheDarkNeedNoPatches) {
+  const Scene scene = furnished_room(0.5);
+  const Simulation planned = simulate(scene, automatic());
+  const Simulation forced = simulate(scene, forcing(Effect::backs, automatic()));
+  EXPECT_FALSE(decision(planned, Effect::backs).simulate);
+  EXPECT_GT(forced.mesh.size(), planned.mesh.size() + 100);
+  const Field H = irradiance_on_first(planned, 13);
+  const Field H_forced = irradiance_on_first(forced, 13);
+  ASSERT_EQ(H.rows(), H_forced.rows());
+  EXPECT_LT(((H - H_forced).square().sum() / H_forced.square().sum()), form_factor_error * form_factor_error);
+}
+
+// A second lamp outside shines on the outer sides, and from there on a wall that stands beside the room.
+TEST(Backs, MatterWhereALampShinesOnThem) {
+  Scene scene = furnished_room(0.5);
+  scene = with_quad(std::move(scene), {Point(-2, 0, 0), Point(-2, 3, 0), Point(-2, 3, 2.5), Point(-2, 0, 2.5)}, 0);
+  scene = with_quad(std::move(scene), {Point(-1.9, 1, 1), Point(-1.9, 2, 1), Point(-1.9, 2, 2), Point(-1.9, 1, 2)}, 1);
+  const Simulation planned = simulate(scene, automatic());
+  EXPECT_TRUE(decision(planned, Effect::backs).simulate);
+  Request left_out = automatic();
+  left_out.kept_sides = planned.plan.sides;
+  for (PolygonIndex p = 0; p < 6; ++p) left_out.kept_sides->back[p] = 0;
+  const Simulation without = simulate(scene, left_out);
+  EXPECT_GT(planned.balance.absorbed[0], (1 + clear_difference) * without.balance.absorbed[0]);
+}
+
+TEST(Luminaires, MatterWhereTheyAre) {
+  EXPECT_FALSE(decision(simulate(furnished_room(0.5), coarse()), Effect::luminaires).simulate);
+  EXPECT_GT(
+      skipped_difference(with_point_light(furnished_room(0.5), Spectrum::Constant(1, 5)), Effect::luminaires, coarse()),
+      clear_difference);
+}
+
+// A closed room whose inner sides are kept: rays towards sun and sky end at its walls. Edges are tight to 1e-7 of the
+// extent; sky rays that slip through would be some of 1,024 per patch.
+TEST(Daylight, IsNotNeededInAClosedRoom) {
+  const Scene scene = with_daylight(furnished_room(0.5));
+  EXPECT_LT(planned_difference(scene, Effect::sun, coarse()), solver_error);
+  EXPECT_LT(planned_difference(scene, Effect::sky, coarse()), solver_error);
+}
+
+TEST(Daylight, MattersThroughAnOpening) {
+  Scene scene = with_daylight(furnished_room(0.5));
+  Material glass = grey(0);
+  glass.transmittance = Spectrum::Constant(1, 0.8);
+  scene.materials.push_back(glass);
+  scene.polygons[1].material = 2;
+  EXPECT_GT(skipped_difference(scene, Effect::sun, coarse()), clear_difference);
+  EXPECT_GT(skipped_difference(scene, Effect::sky, coarse()), clear_difference);
+}
+
+TEST(Daylight, MattersThroughAHole) {
+  Scene scene = with_daylight(furnished_room(0.5));
+  scene.polygons.erase(scene.polygons.begin() + 1);
+  EXPECT_GT(skipped_difference(scene, Effect::sun, coarse()), clear_difference);
+  EXPECT_GT(skipped_difference(scene, Effect::sky, coarse()), clear_difference);
+}
+
+// Where nothing is reflected twice closure moves irradiance by the form factors' own error.
+TEST(Closure, IsNotNeededWithoutInterreflection) {
+  EXPECT_LT(planned_difference(lit_box(0), Effect::closure, coarse()), form_factor_error);
+}
+
+// Where much is reflected errors of row sums add up, by 1 / (1 - rho) at most. Light appears or gets lost: the balance
+// without closure is off by the defect, with it by nothing.
+TEST(Closure, MattersWithInterreflection) {
+  Request few = coarse();
+  few.samples = 4;
+  const Simulation closed = simulate(furnished_room(0.95), few);
+  const Simulation raw = simulate(furnished_room(0.95), skipping(Effect::closure, few));
+  EXPECT_TRUE(decision(closed, Effect::closure).simulate);
+  EXPECT_TRUE(decision(raw, Effect::closure).forced);
+  EXPECT_GT(difference(raw, closed), form_factor_error);
+  EXPECT_LT(closed.balance.defect.abs().maxCoeff(), 1e-6 * closed.balance.emitted[0]);
+  EXPECT_GT(raw.balance.defect.abs().maxCoeff(), 1e-3 * raw.balance.emitted[0]);
+}
+
+}  // namespace
+}  // namespace patchlight

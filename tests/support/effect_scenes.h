@@ -1,0 +1,53 @@
+#pragma once
+
+#include "support/scenes.h"
+
+#include <utility>
+
+// Scenes made for one effect each.
+namespace patchlight::test {
+
+/// An empty room of 4 x 3 x 2.5 m whose ceiling is the lamp: nothing can stand between two patches.
+inline Scene lit_box(double reflectance) {
+  Scene scene = empty_scene({grey(reflectance), grey(reflectance, 10)});
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  scene.polygons[1].material = 1;
+  return scene;
+}
+
+inline Scene with_point_light(Scene scene, const Spectrum& intensity) {
+  Luminaire luminaire;
+  luminaire.position = {0.5, 0.5, 2};
+  luminaire.light = PointLight{intensity};
+  scene.luminaires = {luminaire};
+  return scene;
+}
+
+/// The furnished room in three bands, with a luminaire besides its lamp.
+inline Scene in_colours(const Spectrum& reflectance, const Spectrum& lamp, const Spectrum& luminaire) {
+  Scene scene = furnished_room(0.5);
+  const Spectrum none = Spectrum::Zero(3);
+  scene.materials = {{"wall", reflectance, none}, {"lamp", none, lamp}};
+  return with_point_light(std::move(scene), luminaire);
+}
+
+/// The polygons of the lit one of two_rooms().
+inline constexpr PolygonIndex polygons_of_lit_room = 13;
+
+/// The furnished room, and beside it a dark one with a box in it; the normals of both look inward.
+inline Scene two_rooms(double reflectance) {
+  Scene scene = furnished_room(reflectance);
+  scene = with_box(std::move(scene), Point(5, 0, 0), Point(8, 3, 2.5), true);
+  return with_box(std::move(scene), Point(6, 1, 0.5), Point(7, 2, 1.5), false);
+}
+
+/// With a sun halfway up and a uniform sky.
+inline Scene with_daylight(Scene scene) {
+  scene.sun = Sun{Vector(0.48, 0.6, 0.64), Spectrum::Constant(1, 20)};
+  Sky sky;
+  sky.horizontal_irradiance = Spectrum::Constant(1, 10);
+  scene.sky = sky;
+  return scene;
+}
+
+}  // namespace patchlight::test
