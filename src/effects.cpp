@@ -1,5 +1,7 @@
 #include "effects.h"
 
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
 #include "patchlight/light/photometry.h"
 
 #include <algorithm>
@@ -60,6 +62,47 @@ bool is_forced(const Plan& plan, Effect effect) {
   });
 }
 
+// Ranges of patches that emit.
+std::vector<PatchRange> lamps_of(const RadiosityProblem& problem) {
+  std::vector<PatchRange> lamps;
+  for (Eigen::Index row = 0; row < problem.exitance.rows(); ++row) {
+    if (!(problem.exitance.row(row) > 0).any()) continue;
+    const auto i = static_cast<PatchIndex>(row);
+    if (!lamps.empty() && lamps.back().end == i) {
+      ++lamps.back().end;
+    } else {
+      lamps.push_back({i, i + 1});
+    }
+  }
+  return lamps;
+}
+
+// H = F E + H_direct, from the rows of the lamps alone; B = E + rho o H.
+Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& problem, const Observer& observer) {
+  const double start = wall_seconds();
+  Field H = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
+  if (problem.direct_irradiance.size() > 0) H = problem.direct_irradiance;
+  Eigen::Index rows = 0;
+  for (const PatchRange& lamp : lamps_of(problem)) {
+    if (observer && !observer({.stage = Stage::solve})) throw Cancelled();
+    const Eigen::Index count = lamp.end - lamp.begin;
+    H += transport.shoot(lamp, problem.exitance.middleRows(lamp.begin, count));
+    rows += count;
+  }
+  Solution solution;
+  solution.radiosity = problem.exitance + problem.reflectance * H;
+  solution.direct_irradiance = H;
+  solution.irradiance = H;
+  solution.error = Field::Zero(H.rows(), H.cols());
+  solution.patch_bound = 0;
+  solution.converged = true;
+  solution.history = {{.seconds = wall_seconds() - start,
+                       .work = static_cast<double>(rows) / static_cast<double>(problem.exitance.rows())}};
+  const Progress last{.stage = Stage::solve, .fraction = 1, .iteration = &solution.history[0], .irradiance = &H};
+  if (observer && !observer(last)) throw Cancelled();
+  return solution;
+}
+
 }  // namespace
 
 Occluder::Blockers blockers_of(const Plan& plan) {
@@ -91,20 +134,8 @@ DirectIrradiance direct_irradiance_as_planned(const Scene& scene, const Covering
 
 SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
   if (simulates(plan, Effect::interreflection)) return solve;
-  return [solve = std::move(solve), on_demand = plan.on_demand](const RowTransport& transport,
-                                                                const RadiosityProblem& problem,
-                                                                const SolverOptions& usual, const Observer& observer) {
-    RadiosityProblem black = problem;
-    black.reflectance.setZero();
-    SolverOptions options = usual;
-    // It takes the lamps' rows and no others.
-    if (on_demand) options.solver = Solver::progressive;
-    options.max_rows.reset();
-    options.largest_row_sum = 1;  // of no matter where nothing is reflected
-    Solution solution = solve(transport, black, options, observer);
-    solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
-    return solution;
-  };
+  return [](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
+            const Observer& observer) { return light_of_lamps(transport, problem, observer); };
 }
 
 }  // namespace patchlight

@@ -100,7 +100,9 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
     dark.push_back(std::move(solid));
   }
   kept.notes = notes_on(count);
-  const std::vector<std::uint8_t> within = sides_within(scene, shells, dark);
+  // Where nothing is lit, what stands in a dark solid is no darker than the rest.
+  const bool any_light = daylight || !lamps.empty();
+  const auto within = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
   return without_unreached(std::move(kept), scene, within, in_the_dark.unreached);
 }
 

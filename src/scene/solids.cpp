@@ -124,13 +124,18 @@ Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double e
   return inner_point(corner_points(scene, polygon)) + step_before(scene, polygon, side, extent);
 }
 
-std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids) {
+std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids) {
   std::vector<std::uint8_t> within(2 * scene.polygons.size(), 0);
   for (const Solid& solid : solids) {
     for (const PolygonIndex p : solid.polygons) {
       within[2 * p + static_cast<std::size_t>(inner_side(solid, shells, p))] = 1;
     }
   }
+  return within;
+}
+
+std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids) {
+  std::vector<std::uint8_t> within = inner_sides(scene, shells, solids);
   const std::vector<Box> boxes = boxes_of(scene);
   double tests = 0;
   for (const std::size_t k : largest_first(solids)) {

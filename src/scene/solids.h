@@ -31,6 +31,9 @@ bool holds(const Solid& solid, const Point& point);
 /// largest triangle, inside the polygon even when that is not convex.
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
 
+/// At 2 * polygon + side 1 when the side belongs to one of these solids and faces its inside.
+std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
+
 /// At 2 * polygon + side 1 when the side faces the inside of one of these solids: it belongs to the solid, or
 /// point_before() and the like of all its corners lie within. Looks for at most 2e7 tests of a box or triangle, a
 /// fraction of a second, in the largest solids first; what it does not come to is 0.

@@ -5,12 +5,17 @@
 #include "transport/cluster_pairs.h"
 #include "transport/narrow.h"
 
+#include <algorithm>
 #include <cassert>
+#include <map>
 #include <utility>
 #include <vector>
 
 namespace patchlight {
 namespace {
+
+// Rows found together, so that clusters are looked at once for several of their patches.
+constexpr PatchIndex rows_at_once = 64;
 
 // Where a patch stands among the clusters.
 struct Place {
@@ -41,7 +46,9 @@ class OnDemandTransport : public RowTransport {
   Eigen::MatrixXd form_factors(PatchRange from, PatchRange to) const override;
 
  private:
-  std::vector<float> row(PatchIndex patch) const;
+  std::vector<std::vector<float>> rows(PatchRange patches) const;
+  template <typename Use>
+  void for_rows(PatchRange patches, Use use) const;
   template <typename Use>
   void for_exchange_areas(const ClusterPair& pair, LaneMask rows, LaneMask columns, Use use) const;
 
@@ -71,51 +78,69 @@ void OnDemandTransport::for_exchange_areas(const ClusterPair& pair, LaneMask row
   }
 }
 
-// S_ij of one patch i with all patches j, in m^2. Of the two clusters of a pair the one with the lower number comes
-// first, as in the whole matrix: rounding depends on it.
-std::vector<float> OnDemandTransport::row(PatchIndex patch) const {
-  const Place place = places_[patch];
-  const auto lane = static_cast<LaneMask>(1U << static_cast<unsigned>(place.lane));
-  std::vector<float> S(size());
-  const auto set = [&](PatchIndex i, PatchIndex j, float area) { S[i == patch ? j : i] = area; };
-  parallel_for(pairs_.clusters().size(), [&](std::size_t other) {
-    if (place.cluster <= other) for_exchange_areas({place.cluster, other}, lane, all_lanes, set);
-    if (other <= place.cluster) for_exchange_areas({other, place.cluster}, all_lanes, lane, set);
-  });
+// S_ij of these patches i with all patches j, in m^2; those of one cluster are found together. Of the two clusters of a
+// pair the one with the lower number comes first, as in the whole matrix: rounding depends on it.
+std::vector<std::vector<float>> OnDemandTransport::rows(PatchRange patches) const {
+  std::map<std::size_t, LaneMask> lanes_of;
+  for (PatchIndex i = patches.begin; i < patches.end; ++i) {
+    LaneMask& lanes = lanes_of[places_[i].cluster];
+    lanes = static_cast<LaneMask>(lanes | 1U << static_cast<unsigned>(places_[i].lane));
+  }
+  std::vector<std::vector<float>> S(patches.end - patches.begin, std::vector<float>(size()));
+  const auto set_row = [&](PatchIndex i, PatchIndex j, float area) {
+    if (i >= patches.begin && i < patches.end) S[i - patches.begin][j] = area;
+  };
+  const auto set = [&](PatchIndex i, PatchIndex j, float area) {
+    set_row(i, j, area);
+    set_row(j, i, area);
+  };
+  for (const auto& [cluster, lanes] : lanes_of) {
+    parallel_for(pairs_.clusters().size(), [&, own = cluster, wanted = lanes](std::size_t other) {
+      if (own <= other) for_exchange_areas({own, other}, wanted, all_lanes, set);
+      if (other <= own) for_exchange_areas({other, own}, all_lanes, wanted, set);
+    });
+  }
   return S;
+}
+
+// Calls use(i, row of i) in order for these patches.
+template <typename Use>
+void OnDemandTransport::for_rows(PatchRange patches, Use use) const {
+  for (PatchIndex begin = patches.begin; begin < patches.end; begin += rows_at_once) {
+    const PatchRange some{begin, std::min(begin + rows_at_once, patches.end)};
+    const std::vector<std::vector<float>> S = rows(some);
+    for (PatchIndex i = some.begin; i < some.end; ++i) use(i, S[i - some.begin]);
+  }
 }
 
 Field OnDemandTransport::gather(PatchRange receivers, const FieldView& radiosity) const {
   assert(receivers.begin <= receivers.end && receivers.end <= size());
   Field irradiance = Field::Zero(receivers.end - receivers.begin, radiosity.cols());
-  for (PatchIndex i = receivers.begin; i < receivers.end; ++i) {
-    const std::vector<float> S = row(i);
+  for_rows(receivers, [&](PatchIndex i, const std::vector<float>& S) {
     auto H = irradiance.row(i - receivers.begin);
     for (PatchIndex j = 0; j < size(); ++j) H += static_cast<double>(S[j]) * radiosity.row(j);
     H /= area_[i];
-  }
+  });
   return irradiance;
 }
 
 Field OnDemandTransport::shoot(PatchRange sources, const FieldView& radiosity) const {
   assert(sources.begin <= sources.end && sources.end <= size());
   Field irradiance = Field::Zero(size(), radiosity.cols());
-  for (PatchIndex j = sources.begin; j < sources.end; ++j) {
-    const std::vector<float> S = row(j);
+  for_rows(sources, [&](PatchIndex j, const std::vector<float>& S) {
     const auto B = radiosity.row(j - sources.begin);
     for (PatchIndex i = 0; i < size(); ++i) irradiance.row(i) += static_cast<double>(S[i]) * B;
-  }
+  });
   return irradiance.colwise() / area_.array();
 }
 
 Eigen::MatrixXd OnDemandTransport::form_factors(PatchRange from, PatchRange to) const {
   Eigen::MatrixXd F(from.end - from.begin, to.end - to.begin);
-  for (PatchIndex i = from.begin; i < from.end; ++i) {
-    const std::vector<float> S = row(i);
+  for_rows(from, [&](PatchIndex i, const std::vector<float>& S) {
     for (PatchIndex j = to.begin; j < to.end; ++j) {
       F(i - from.begin, j - to.begin) = static_cast<double>(S[j]) / area_[i];
     }
-  }
+  });
   return F;
 }
 

@@ -5,6 +5,7 @@
 #include "support/effect_scenes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <utility>
 #include <vector>
@@ -117,7 +118,7 @@ TEST(Colour, OneBandStandsForAllOfGreySurfaces) {
 TEST(Colour, MattersWhereSurfacesOrLightsDiffer) {
   const Scene red_walls = in_colours(rgb(0.8, 0.3, 0.1), rgb(10, 10, 10), rgb(20, 20, 20));
   EXPECT_GT(skipped_difference(red_walls, Effect::colour, coarse()), clear_difference);
-  const Scene two_lights = in_colours(rgb(0.5, 0.5, 0.5), rgb(10, 7, 3), rgb(20, 20, 20));
+  const Scene two_lights = in_colours(rgb(0.5, 0.5, 0.5), rgb(10, 7, 3), rgb(1, 1, 1));
   EXPECT_GT(skipped_difference(two_lights, Effect::colour, coarse()), clear_difference);
 }
 
@@ -131,14 +132,11 @@ TEST(Colour, SkippedLeavesTheSameLuminanceInAllBands) {
 
 // Irradiance of the patches on the front sides of the first polygons.
 Field irradiance_on_first(const Simulation& simulation, PolygonIndex polygons) {
-  const PatchRange last = simulation.mesh.patches_on(polygons - 1, Side::front);
-  const PatchRange first = simulation.mesh.patches_on(0, Side::front);
   std::vector<PatchIndex> patches;
   for (PolygonIndex p = 0; p < polygons; ++p) {
     const PatchRange range = simulation.mesh.patches_on(p, Side::front);
     for (PatchIndex i = range.begin; i < range.end; ++i) patches.push_back(i);
   }
-  EXPECT_LT(first.begin, last.end);
   Field H(static_cast<Eigen::Index>(patches.size()), simulation.solution.irradiance.cols());
   for (Eigen::Index k = 0; k < H.rows(); ++k)
     H.row(k) = simulation.solution.irradiance.row(patches[static_cast<std::size_t>(k)]);
@@ -151,8 +149,15 @@ Request automatic(double max_edge = 0.4) {
   return request;
 }
 
-// The dark patches neither send nor block; of the sampled pairs others share their packets, so that random numbers
-// differ.
+// The dark patches neither send nor block, but with them other pairs take rays, whose errors then differ. So far apart
+// are two solutions with other random points, and half as much again, as that is the root mean square of some hundred
+// patches.
+double noise(const Scene& scene) {
+  Request other = automatic();
+  other.seed = 2;
+  return 1.5 * difference(simulate(scene, automatic()), simulate(scene, other));
+}
+
 TEST(Reach, RoomsWithoutLightNeedNoPatches) {
   const Scene scene = two_rooms(0.5);
   const Simulation planned = simulate(scene, automatic());
@@ -164,7 +169,7 @@ TEST(Reach, RoomsWithoutLightNeedNoPatches) {
   const Field H = irradiance_on_first(planned, lit);
   const Field H_forced = irradiance_on_first(forced, lit);
   ASSERT_EQ(H.rows(), H_forced.rows());
-  EXPECT_LT(((H - H_forced).square().sum() / H_forced.square().sum()), form_factor_error * form_factor_error);
+  EXPECT_LT(std::sqrt((H - H_forced).square().sum() / H_forced.square().sum()), noise(scene));
   const PatchRange dark = forced.mesh.patches_on(lit, Side::front);
   EXPECT_EQ(forced.solution.irradiance.middleRows(dark.begin, dark.end - dark.begin).abs().maxCoeff(), 0);
 }
@@ -193,7 +198,7 @@ TEST(Backs, SidesInTheDarkNeedNoPatches) {
   const Field H = irradiance_on_first(planned, 13);
   const Field H_forced = irradiance_on_first(forced, 13);
   ASSERT_EQ(H.rows(), H_forced.rows());
-  EXPECT_LT(((H - H_forced).square().sum() / H_forced.square().sum()), form_factor_error * form_factor_error);
+  EXPECT_LT(std::sqrt((H - H_forced).square().sum() / H_forced.square().sum()), noise(scene));
 }
 
 // A second lamp outside shines on the outer sides, and from there on a wall that stands beside the room.
@@ -247,18 +252,21 @@ TEST(Closure, IsNotNeededWithoutInterreflection) {
   EXPECT_LT(planned_difference(lit_box(0), Effect::closure, coarse()), form_factor_error);
 }
 
-// Where much is reflected errors of row sums add up, by 1 / (1 - rho) at most. Light appears or gets lost: the balance
-// without closure is off by the defect, with it by nothing.
+// In a closed room no light gets lost. Where much is reflected the errors of row sums are met again and again, up to
+// 1 / (1 - rho) times.
 TEST(Closure, MattersWithInterreflection) {
-  Request few = coarse();
+  Request few = automatic();
   few.samples = 4;
-  const Simulation closed = simulate(furnished_room(0.95), few);
-  const Simulation raw = simulate(furnished_room(0.95), skipping(Effect::closure, few));
+  const Simulation closed = simulate(furnished_room(0.98), few);
+  const Simulation raw = simulate(furnished_room(0.98), skipping(Effect::closure, few));
   EXPECT_TRUE(decision(closed, Effect::closure).simulate);
   EXPECT_TRUE(decision(raw, Effect::closure).forced);
-  EXPECT_GT(difference(raw, closed), form_factor_error);
-  EXPECT_LT(closed.balance.defect.abs().maxCoeff(), 1e-6 * closed.balance.emitted[0]);
-  EXPECT_GT(raw.balance.defect.abs().maxCoeff(), 1e-3 * raw.balance.emitted[0]);
+  const auto lost = [](const Simulation& simulation) {
+    return simulation.balance.defect.abs().maxCoeff() / simulation.balance.emitted.maxCoeff();
+  };
+  EXPECT_GT(difference(raw, closed), 100 * solver_error);
+  EXPECT_LT(lost(closed), solver_error);
+  EXPECT_GT(lost(raw), 100 * solver_error);
 }
 
 }  // namespace
