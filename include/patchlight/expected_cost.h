@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 
@@ -20,8 +21,8 @@ struct ExpectedCost {
   double seconds() const { return (form_factor_seconds + direct_light_seconds + solve_seconds) / threads; }
 };
 
-/// An estimate from the number of patches and what the plan simulates, with rates that were measured on one machine:
-/// right to a factor of three or so, as how much of a scene hides from the rest is not known before.
-ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, std::size_t patches);
+/// An estimate for the patches of a mesh and what the plan simulates: form factors by a look at some pairs of patches,
+/// the rest by counts and rates that were measured on one machine. Right to a factor of two or so.
+ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, const PatchMesh& mesh);
 
 }  // namespace patchlight

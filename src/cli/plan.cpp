@@ -40,7 +40,7 @@ std::string lines_of(const std::vector<Decision>& decisions) {
 std::string cost_lines(const ExpectedCost& cost) {
   return "expected: " + std::to_string(cost.patches) + " patches, " + rounded(cost.bytes / 1e9, 2) + " GB, about " +
          rounded(cost.seconds(), 2) + " s on " + std::to_string(cost.threads) +
-         (cost.threads == 1 ? " thread" : " threads") + " (an estimate, right to a factor of three or so)\n" +
+         (cost.threads == 1 ? " thread" : " threads") + " (an estimate, right to a factor of two or so)\n" +
          "processor seconds: form factors " + rounded(cost.form_factor_seconds, 2) + ", direct light " +
          rounded(cost.direct_light_seconds, 2) + ", closure and solution " + rounded(cost.solve_seconds, 2) + '\n';
 }
@@ -53,8 +53,8 @@ ExitCode plan(const PlanArguments& arguments) {
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_memory(scene, arguments.request);
   const Plan plan = make_plan(scene, arguments.request);
-  const std::size_t patches = tessellate(scene, plan.sides, plan.max_edge).size();
-  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, patches);
+  const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh);
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);

@@ -57,7 +57,7 @@ Cost cost_of(const Scene& scene, const Request& request) {
   const double planning = cpu_seconds();
   survey_effects(scene, simulation.plan.sides);
   cost.planning = cpu_seconds() - planning;
-  const ExpectedCost expected = expected_cost(scene, simulation.plan, request, cost.patches);
+  const ExpectedCost expected = expected_cost(scene, simulation.plan, request, simulation.mesh);
   cost.expected = expected.form_factor_seconds + expected.direct_light_seconds + expected.solve_seconds;
   return cost;
 }
