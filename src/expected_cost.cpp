@@ -15,10 +15,10 @@ namespace {
 constexpr double seconds_per_hemisphere_ray = 2.5e-7;
 constexpr double seconds_per_light_ray = 2.2e-7;  // docs/lights.md: 0.9 s for 3,980 patches and 1,024 rays
 
-// Closure takes some 40 products with the matrix, a solver some 15; a product of n^2 entries.
-constexpr double products_of_closure = 40;
+// Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
+constexpr double products_of_closure = 100;
 constexpr double products_of_solver = 15;
-constexpr double seconds_per_entry = 5e-10;
+constexpr double seconds_per_entry = 1.1e-10;
 
 // The share of all rows that are those of lamps, by area.
 double share_of_lamps(const Scene& scene, const PatchMesh& mesh) {
