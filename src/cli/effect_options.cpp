@@ -46,7 +46,8 @@ void add_effect_options(CLI::App& command, Request& request) {
               "simulates an effect even where the scene does not call for it:\n" + names(", ") +
                   ";\nmay be repeated; default: as the scene calls for",
               request.force);
-  add_effects(command, "--skip", "leaves an effect out that the scene calls for; the same words; may be\nrepeated",
+  add_effects(command, "--skip",
+              "leaves an effect out that the scene calls for; the same words; may be\nrepeated; default: none",
               request.skip);
 }
 

@@ -58,16 +58,77 @@ std::string name_of_solid(const Scene& scene, const Solid& solid) {
       .append(")");
 }
 
-// Leaves out the sides that face the inside of these solids, unless they are wanted, and counts them.
-KeptSides without_unreached(KeptSides kept, const Scene& scene, const std::vector<std::uint8_t>& within, bool wanted) {
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const Side side : {Side::front, Side::back}) {
-      if (!within[2 * p + static_cast<std::size_t>(side)]) continue;
-      ++kept.unreached;
-      (side == Side::front ? kept.front : kept.back)[p] = wanted;
-    }
+// At 2 * polygon + side.
+using SideMask = std::vector<std::uint8_t>;
+
+std::size_t at(PolygonIndex polygon, Side side) { return 2 * polygon + static_cast<std::size_t>(side); }
+
+// Leaves these sides out, or keeps them when they are wanted all the same.
+KeptSides with_sides(KeptSides kept, const SideMask& mask, bool wanted) {
+  for (PolygonIndex p = 0; p < kept.front.size(); ++p) {
+    if (mask[at(p, Side::front)]) kept.front[p] = wanted;
+    if (mask[at(p, Side::back)]) kept.back[p] = wanted;
   }
   return kept;
+}
+
+// The sides of polygons that lie beside this box for sure, sharing no volume with it, and do not look into it.
+SideMask sides_beside(const Scene& scene, const Box& room) {
+  SideMask mask(2 * scene.polygons.size(), 0);
+  const double extent = bounds(scene).diagonal().norm();
+  const Vector touching = Vector::Constant(1e-6 * extent);
+  const Box inner(room.min() + touching, room.max() - touching);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    Box box;
+    for (const std::uint32_t corner : scene.polygons[p].corners) box.extend(scene.vertices[corner]);
+    if (box.intersects(inner)) continue;
+    for (const Side side : {Side::front, Side::back})
+      mask[at(p, side)] = !room.contains(point_before(scene, p, side, extent));
+  }
+  return mask;
+}
+
+// The sides that lie outside of one of these solids for sure: the outer ones of its own polygons, and those beside it.
+SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vector<Solid>& solids) {
+  SideMask mask(2 * scene.polygons.size(), 0);
+  for (const Solid& solid : solids) {
+    for (const PolygonIndex p : solid.polygons)
+      mask[at(p, inner_side(solid, shells, p) == Side::front ? Side::back : Side::front)] = 1;
+    // Light of luminaires gets out through clear faces.
+    if (solid.has_opening) continue;
+    const SideMask beside = sides_beside(scene, solid.box);
+    for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= beside[k];
+  }
+  return mask;
+}
+
+// Sides in the dark, of both kinds.
+struct DarkSides {
+  SideMask unreached;
+  SideMask turned_away;
+};
+
+KeptSides without(KeptSides kept, DarkSides dark, const KeptInTheDark& wanted) {
+  for (std::size_t k = 0; k < dark.unreached.size(); ++k) {
+    if (dark.unreached[k]) dark.turned_away[k] = 0;
+    kept.unreached += dark.unreached[k];
+    kept.turned_away += dark.turned_away[k];
+  }
+  kept = with_sides(std::move(kept), dark.unreached, wanted.unreached);
+  return with_sides(std::move(kept), dark.turned_away, wanted.turned_away);
+}
+
+// What is lit of a solid.
+struct Lit {
+  bool inside = false;
+  bool outside = false;
+};
+
+Lit lit_sides(const Solid& solid, const std::vector<Point>& lamps, bool daylight) {
+  const auto held = static_cast<std::size_t>(
+      std::count_if(lamps.begin(), lamps.end(), [&](const Point& lamp) { return holds(solid, lamp); }));
+  const bool from_outside = daylight || held < lamps.size();
+  return {held > 0 || (from_outside && solid.has_opening), held == 0 || from_outside};
 }
 
 KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) {
@@ -78,32 +139,25 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   const bool daylight = scene.sun || scene.sky;
   const Shells shells = shells_of(scene);
   Count count;
-  std::vector<Solid> dark;
+  std::vector<Solid> dark, around_all_lamps;
   for (Solid& solid : closed_solids(scene, shells)) {
-    const auto held = static_cast<std::size_t>(
-        std::count_if(lamps.begin(), lamps.end(), [&](const Point& lamp) { return holds(solid, lamp); }));
-    const bool lit_from_outside = daylight || held < lamps.size();
-    const bool lit_inside = held > 0 || (lit_from_outside && solid.has_opening);
-    const bool lit_outside = held == 0 || lit_from_outside;
-    for (const PolygonIndex p : solid.polygons) {
-      const bool inner_is_front = inner_side(solid, shells, p) == Side::front;
-      if (!lit_outside) (inner_is_front ? kept.back : kept.front)[p] = in_the_dark.turned_away;
-    }
-    if (!lit_outside) kept.turned_away += solid.polygons.size();
-    if (lit_inside && !solid.fronts_face_inside && count.outward++ == 0) {
+    const Lit lit = lit_sides(solid, lamps, daylight);
+    if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
       count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     }
-    count.dark += !lit_inside && !in_the_dark.unreached;
-    count.outside += !lit_outside && !in_the_dark.turned_away;
-    if (lit_inside) continue;
-    kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
-    dark.push_back(std::move(solid));
+    count.dark += !lit.inside && !in_the_dark.unreached;
+    count.outside += !lit.outside && !in_the_dark.turned_away;
+    if (!lit.inside) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
+    if (!lit.inside)
+      dark.push_back(std::move(solid));
+    else if (!lit.outside)
+      around_all_lamps.push_back(std::move(solid));
   }
   kept.notes = notes_on(count);
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
-  const auto within = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
-  return without_unreached(std::move(kept), scene, within, in_the_dark.unreached);
+  const SideMask unreached = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
+  return without(std::move(kept), {unreached, sides_outside(scene, shells, around_all_lamps)}, in_the_dark);
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ struct KeptInTheDark {
 /// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
 ///   belongs to the solid itself, or there is light elsewhere and the point just before its middle and all its corners
 ///   lie within, or
-/// - it faces the outside of a closed solid that holds every lamp of the scene: no light gets there.
+/// - it faces the outside of a closed solid that holds every lamp of the scene, or lies beside the bounds of one
+///   without openings: no light gets there.
 /// `in_the_dark` asks for such sides nevertheless; they are counted all the same. What stands in dark solids is looked
 /// for as long as that takes a fraction of a second; beyond that it is kept.
 /// So the inner sides of a closed room are used even when its normals point outward; a note says so.

@@ -180,6 +180,11 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
     EXPECT_TRUE(any_contains(scene.notes, note)) << note;
   }
   EXPECT_FALSE(any_contains(scene.notes, "plain"));
+  ASSERT_EQ(scene.unsimulated.size(), 2U);
+  EXPECT_EQ(scene.unsimulated[0].property, UnsimulatedProperty::mirror);
+  EXPECT_EQ(scene.unsimulated[0].materials, 2U) << "glossy, mirror";
+  EXPECT_EQ(scene.unsimulated[1].property, UnsimulatedProperty::glass);
+  EXPECT_EQ(scene.unsimulated[1].materials, 2U) << "veil, film";
   ASSERT_EQ(scene.lamp_hints.size(), 1U) << "a Ka above 1 may be meant as a lamp's Ke";
   EXPECT_EQ(scene.lamp_hints[0].material, "bare");
   EXPECT_TRUE((scene.lamp_hints[0].radiance == 2).all());

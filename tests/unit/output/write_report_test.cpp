@@ -52,7 +52,12 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
   EXPECT_EQ(report["request"]["max_edge_m"], 0.25);
   EXPECT_TRUE(report["request"]["patches"].is_null());
   EXPECT_EQ(report["plan"]["seed"], (std::uint64_t{1} << 60) + 1);
-  EXPECT_EQ(report["plan"]["decisions"][0]["reason"], "a reason");
+  const auto& decision = report["plan"]["decisions"][0];
+  EXPECT_EQ(decision["effect"], "occlusion");
+  EXPECT_EQ(decision["simulate"], false);
+  EXPECT_EQ(decision["reason"], "a reason");
+  EXPECT_EQ(decision["saving"], "a saving");
+  EXPECT_EQ(decision["forced"], true);
   EXPECT_EQ(report["mesh"]["patches"], 3);
   EXPECT_EQ(report["transport"]["lost_share_rays"], 3 * 64);
   EXPECT_EQ(report["transport"]["raw_row_sum"]["max"], 0.75);

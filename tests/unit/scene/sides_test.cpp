@@ -195,6 +195,62 @@ TEST(KeptSides, TouchingAtACornerDoesNotJoinSolids) {
   expect_all(kept, 6, 12, back_only);
 }
 
+// A room with the lamp, and a dark one in which a box stands and a sheet lies; the sheet ends at a wall.
+Scene lit_and_dark_room() {
+  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward), {0, 0, 0.5});
+  scene = with_cube(std::move(scene), {5, 0, 0}, 2, Normals::inward);
+  scene = with_cube(std::move(scene), {5, 0, 0}, 1, Normals::outward);
+  return with_polygon(std::move(scene), {{4, -0.9, -0.9}, {4.3, -0.9, -0.9}, {4.3, -0.7, -0.9}, {4, -0.7, -0.9}});
+}
+
+TEST(KeptSides, WhatStandsInADarkRoomIsLeftOutWithIt) {
+  const KeptSides kept = automatic(lit_and_dark_room());
+  expect_all(kept, 0, 6, front_only);
+  expect_all(kept, 7, 20, no_side);
+  // The second room's inner sides and the box's outer ones, both of the box's inner ones and of the sheet.
+  EXPECT_EQ(kept.unreached, 6U + 12U + 2U);
+  // The outer sides of both rooms.
+  EXPECT_EQ(kept.turned_away, 6U + 6U);
+  ASSERT_EQ(kept.dark_solids.size(), 2U);
+  EXPECT_EQ(kept.dark_solids[0].name, "'all' (room.obj:8)");
+  EXPECT_EQ(kept.dark_solids[0].polygons, 6U);
+}
+
+TEST(KeptSides, SidesInTheDarkAreKeptWhenAskedFor) {
+  const Scene scene = lit_and_dark_room();
+  const KeptSides unreached = kept_sides(scene, Sides::automatic, {.unreached = true});
+  expect_all(unreached, 0, 6, front_only);
+  expect_all(unreached, 7, 13, front_only);
+  expect_all(unreached, 13, 20, both_sides);
+  EXPECT_EQ(unreached.unreached, 20U) << "counted all the same";
+  const KeptSides turned_away = kept_sides(scene, Sides::automatic, {.turned_away = true});
+  expect_all(turned_away, 0, 6, both_sides);
+  expect_all(turned_away, 7, 13, back_only);
+  expect_all(turned_away, 13, 20, no_side);
+}
+
+// Beside the lit room: a sheet in the open, one on a wall from outside, a rug on the floor, and ground that the room
+// stands on and reaches into.
+TEST(KeptSides, OutsideOfTheLitRoomItIsDark) {
+  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward), {0, 0, 0.5});
+  scene = with_polygon(std::move(scene), {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}});
+  scene = with_polygon(std::move(scene), {{1, 0, 0}, {1, 0.5, 0}, {1, 0.5, 0.5}});
+  scene = with_polygon(std::move(scene), {{0, 0, -1}, {0.5, 0, -1}, {0.5, 0.5, -1}});
+  scene = with_polygon(std::move(scene), {{-5, -5, -0.5}, {5, -5, -0.5}, {5, 5, -0.5}, {-5, 5, -0.5}});
+  const KeptSides kept = automatic(scene);
+  EXPECT_EQ(sides_of(kept, 7), no_side);
+  EXPECT_EQ(sides_of(kept, 8), back_only) << "its front looks outward";
+  EXPECT_EQ(sides_of(kept, 9), front_only) << "its front looks up";
+  EXPECT_EQ(sides_of(kept, 10), both_sides);
+}
+
+// A sheet that sticks through the wall of the dark room is lit outside.
+TEST(KeptSides, WhatReachesOutOfADarkRoomStays) {
+  Scene scene = lit_and_dark_room();
+  scene = with_polygon(std::move(scene), {{4.5, 0.9, 0}, {4.9, 0.9, 0}, {4.9, 1.4, 0}, {4.5, 1.4, 0}});
+  EXPECT_EQ(sides_of(automatic(scene), 20), both_sides);
+}
+
 TEST(KeptSides, WithoutALampNothingIsLeftOutButTheInsides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward);
   scene = with_polygon(std::move(scene), {{1, 1, 0}, {1.5, 1, 0}, {1, 1, 1}});

@@ -37,5 +37,12 @@ TEST(SolvedBands, KeepOneWhenAllAreDark) {
   EXPECT_TRUE((expanded(Field::Ones(2, 1), bands) == 0).all());
 }
 
+TEST(AllBands, TakesEachAsItIs) {
+  const Field exitance = Field::Constant(2, 3, 1.0);
+  const RadiosityProblem problem = two_patches(Field::Constant(2, 3, 0.5), exitance);
+  EXPECT_EQ(all_bands(problem).solved, (std::vector<Eigen::Index>{0, 1, 2}));
+  EXPECT_TRUE((expanded(exitance, all_bands(problem)) == exitance).all());
+}
+
 }  // namespace
 }  // namespace patchlight
