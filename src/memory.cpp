@@ -25,7 +25,7 @@ constexpr double usable_share = 0.8;
 
 double bytes_of_a_pair(const Request& request) {
   if (request.on_demand) return 0;
-  return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
+  return bytes_per_pair + (request.standard_errors || request.error_bars ? bytes_per_error : 0);
 }
 
 double installed_bytes() {

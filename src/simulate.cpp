@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/mesh/refine.h"
 #include "patchlight/plan/close_lamps.h"
 #include "patchlight/solve/energy.h"
 #include "patchlight/transport/dense.h"
@@ -9,6 +10,7 @@
 #include "patchlight/transport/ray_rate.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "error_bars.h"
 #include "memory.h"
 #include "problem_of.h"
 #include "stage_clock.h"
@@ -31,7 +33,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   assert(!plan.on_demand || !with.exchange);
 
   // 2. Subdivide the kept sides of the polygons into patches.
-  result.mesh = tessellate(scene, plan.sides, plan.max_edge);
+  result.mesh = plan.error_bars ? refine(tessellate(scene, plan.sides, 2 * plan.max_edge))
+                                : tessellate(scene, plan.sides, plan.max_edge);
   const PatchMesh& mesh = result.mesh;
   require_memory(mesh.size(), request);
   clock.finish(Stage::mesh);
@@ -55,6 +58,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   if (!with.exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
   clock.finish(Stage::form_factors);
 
+  const EntryErrors entry_errors = std::move(exchange.entry_errors);
   // 4. Closure: each row sums up to what its patch sees.
   std::unique_ptr<RowTransport> transport;
   if (plan.on_demand) {
@@ -77,6 +81,12 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   result.balance = energy_balance(result.problem, result.solution,
                                   plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
   clock.finish(Stage::solve);
+
+  // 6. How far off that may be: mesh, form factors, solver.
+  if (plan.error_bars) {
+    result.error_bars = error_bars(scene, request, {result, *transport, entry_errors}, observer);
+    clock.finish(Stage::error_bars);
+  }
   result.costs = clock.costs();
   return result;
 }

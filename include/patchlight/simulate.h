@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/accuracy/error_bars.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
@@ -8,6 +9,7 @@
 #include "patchlight/transport/exchange.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,7 @@ struct Simulation {
   RadiosityProblem problem;
   Solution solution;
   EnergyBalance balance;
+  std::optional<ErrorBars> error_bars;  ///< when asked for
   std::vector<StageCost> costs;
 };
 

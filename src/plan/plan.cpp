@@ -86,7 +86,8 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.short_cuts = request.short_cuts;
   plan.on_demand = request.on_demand;
   plan.close = request.close && !request.on_demand;
-  plan.standard_errors = request.standard_errors;
+  plan.standard_errors = request.standard_errors || request.error_bars;
+  plan.error_bars = request.error_bars;
   plan.solver = {.solver = request.solver,
                  .relative_error = request.tolerance,
                  .max_iterations = request.max_iterations,

@@ -31,6 +31,7 @@ struct Request {
   bool on_demand = false;     ///< no matrix: rows of form factors are computed whenever the solver asks for them, and
                               ///< not closed. Memory in proportion to the patches; for progressive refinement
   bool standard_errors = false;  ///< keep one for each entry: a quarter more memory
+  bool error_bars = false;       ///< of every patch, from mesh, form factors and solver; keeps standard errors
   int threads = 0;               ///< 0: all processors
   std::optional<double> memory;  ///< bytes that the run may take; without it 0.8 of the machine's memory
 };
@@ -55,6 +56,7 @@ struct Plan {
   bool close = true;
   bool on_demand = false;
   bool standard_errors = false;
+  bool error_bars = false;
   SolverOptions solver;
   std::vector<Decision> decisions;
   std::vector<std::string> notes;  ///< what was asked and cannot be
