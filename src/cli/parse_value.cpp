@@ -67,6 +67,14 @@ double bytes(const std::string& option, const std::string& text) {
   throw refusal(option, text, "a size above 0 such as 2GB, 512MiB or '2 GB'; units: B, kB, MB, GB, TB, MiB, GiB");
 }
 
+double share(const std::string& option, const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" %") + 1;
+  const std::optional<double> value = to_number(text.substr(0, end));
+  const bool is_share = text.find('%') != std::string::npos && text.find('%') == text.rfind('%');
+  if (!value || !is_share || !(*value > 0)) throw refusal(option, text, "a share above 0 such as 5%");
+  return *value / 100;
+}
+
 Point point(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text);
   Point result = Point::Zero();

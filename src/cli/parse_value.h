@@ -30,6 +30,9 @@ std::uint64_t whole_number(const std::string& option, const std::string& text, s
 /// The value of an option as a number of bytes, as in 2GB, 512 MiB or 2e9. \throws UsageError.
 double bytes(const std::string& option, const std::string& text);
 
+/// The value of an option as a share above 0, as 0.05 for 5%. \throws UsageError.
+double share(const std::string& option, const std::string& text);
+
 /// The value of an option as a point X,Y,Z. \throws UsageError.
 Point point(const std::string& option, const std::string& text);
 

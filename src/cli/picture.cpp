@@ -48,9 +48,9 @@ Camera in_metres(const Camera& camera, double metres_per_unit) {
 Field display_radiance(const Simulation& simulation) {
   const Solution& solution = simulation.solution;
   Field radiosity = solution.radiosity;
-  if (!solution.converged && solution.ambient.rows() == 1) {
+  if (!solution.converged && solution.ambient.size() > 0) {
     // B + rho H_ambient: Cohen et al. 1988, the ambient term
-    radiosity += simulation.problem.reflectance.rowwise() * solution.ambient.row(0);
+    radiosity += simulation.problem.reflectance * solution.ambient;
   }
   return radiosity / std::numbers::pi;  // L = B / pi
 }

@@ -170,6 +170,10 @@ void add_solver_options(CLI::App& command, SolutionOptions& options) {
       [&request](const std::string& text) {
         request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
       });
+  add(command, "--max-rows", "SHARE",
+      "a first picture: progressive or overshooting stops after this\nshare of the rows of form factors, e.g. 5%; "
+      "default: no such limit",
+      [&request](const std::string& text) { request.max_rows = share("--max-rows", text); });
 }
 
 void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
@@ -185,7 +189,10 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
   arguments.request.tolerance = options.request.tolerance;
   arguments.request.max_iterations = options.request.max_iterations;
+  arguments.request.max_rows = options.request.max_rows;
   arguments.request.relaxation = options.request.relaxation;
+  if (arguments.request.max_rows && !is_shooting(arguments.request.solver))
+    throw UsageError("--max-rows needs --solver progressive or overshooting");
   arguments.results.assign(options.results.begin(), options.results.end());
   arguments.series = options.series;
   arguments.report = options.report;

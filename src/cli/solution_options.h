@@ -28,7 +28,7 @@ void add_up_option(CLI::App& command, SolutionOptions& options);
 /// Adds -o, --series, --report, --picture, --false-color, --camera, --points and --points-output.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
-/// Adds --no-closure, --solver, --tolerance and --max-iterations.
+/// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows.
 void add_solver_options(CLI::App& command, SolutionOptions& options);
 
 /// Adds -q and -v.

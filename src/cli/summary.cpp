@@ -120,6 +120,13 @@ std::string details(const Scene& scene, const Simulation& simulation) {
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 
+// True when --max-rows ended the solution, not --max-iterations.
+bool stopped_by_rows(const Simulation& simulation) {
+  const SolverOptions& options = simulation.plan.solver;
+  const auto shots = static_cast<double>(simulation.solution.history.back().number);
+  return options.max_rows && shots < static_cast<double>(options.max_iterations) * simulation.mesh.size();
+}
+
 }  // namespace
 
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
@@ -152,6 +159,11 @@ std::string files_line(const std::vector<std::filesystem::path>& files) {
 std::string explain_not_converged(const Simulation& simulation) {
   const Plan& plan = simulation.plan;
   if (!simulation.solution.trapped.empty()) return "not solved: " + simulation.solution.trapped;
+  if (stopped_by_rows(simulation)) {
+    return convergence(plan, simulation.solution) + ": stopped after " + rounded(100 * *plan.solver.max_rows) +
+           " % of the rows of form factors, as asked for. A picture shows an estimate of the light still under way, "
+           "other results what has arrived";
+  }
   return convergence(plan, simulation.solution) + ", asked for " + rounded(plan.solver.relative_error, 2) +
          ". Either " + std::to_string(plan.solver.max_iterations) +
          " iterations are too few for this solver: try a larger --max-iterations or --tolerance; or light cannot "

@@ -163,7 +163,7 @@ void draw(const fs::path& folder, const Scene& scene, const Comparison& comparis
 }
 
 void write_frames(const fs::path& pvd, const Scene& scene, Simulation simulation, const SolverRun& run,
-                  const Provenance& provenance) {
+                  const Provenance& provenance, const Observer& observer) {
   std::vector<IterateIrradiance> iterates;
   simulation.solution = run.solution;
   simulation.solution.history.clear();
@@ -171,7 +171,7 @@ void write_frames(const fs::path& pvd, const Scene& scene, Simulation simulation
     simulation.solution.history.push_back(frame.iteration);
     iterates.push_back(frame.irradiance);
   }
-  write_series(pvd, scene, simulation, iterates, provenance);
+  write_series(pvd, scene, simulation, iterates, provenance, observer);
 }
 
 // An earlier result holds compare.json with the right kind, and nothing that was not written with it.
@@ -213,7 +213,7 @@ void write_comparison(const fs::path& folder, const Scene& scene, const Comparis
       if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
       const SolverRun& run = comparison.runs[k];
       if (run.frames.empty()) continue;
-      write_frames(in / (name_of(run.contestant) + ".pvd"), scene, comparison.simulation, run, provenance);
+      write_frames(in / (name_of(run.contestant) + ".pvd"), scene, comparison.simulation, run, provenance, observer);
     }
     write_bytes(in / facts_file, facts(scene, comparison, provenance));
   });

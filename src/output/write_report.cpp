@@ -45,6 +45,7 @@ Json request_part(const Request& request) {
   part["relaxation"] = json_of(request.relaxation);
   part["tolerance"] = request.tolerance;
   part["max_iterations"] = request.max_iterations;
+  part["max_rows"] = json_of(request.max_rows);
   part["samples"] = request.samples;
   part["estimator"] = name_of(request.estimator);
   part["close"] = request.close;

@@ -91,6 +91,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.solver = {.solver = request.solver,
                  .relative_error = request.tolerance,
                  .max_iterations = request.max_iterations,
+                 .max_rows = request.max_rows,
                  .relaxation = request.relaxation};
   return plan;
 }

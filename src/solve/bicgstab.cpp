@@ -15,7 +15,7 @@ Solution bicgstab(Iterations iterations) {
   const Field shadow = r;
   Field p = r;
   Eigen::ArrayXd rho = dot(shadow, r);
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     // v = (I - K) p, s = r - alpha v
     const Field Hp = iterations.apply(p);
     const Field v = p - problem.reflectance * Hp;

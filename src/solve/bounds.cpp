@@ -35,8 +35,8 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
   constexpr int most_iterations = 60;
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
   const RadiosityProblem glowing{problem.reflectance, ones, problem.area};
-  const Field v = glowing_radiosity(transport, glowing, most_iterations);
-  PatchWeights weights{v, v - problem.reflectance * transport.apply(v)};
+  const auto [v, applications] = glowing_radiosity(transport, glowing, most_iterations);
+  PatchWeights weights{v, v - problem.reflectance * transport.apply(v), applications + 1};
   if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
   return weights;
 }

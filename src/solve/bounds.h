@@ -9,10 +9,11 @@
 namespace patchlight {
 
 /// Positive weights v with g = v - K v > 0: for any non-negative K, |B* - B|_i <= v_i max_j |r_j| / g_j. One column per
-/// band.
+/// band. (Rows that were stored as floats have K_ii of -3e-7 at least, which is left out of account.)
 struct PatchWeights {
   Field v;
   Field g;
+  int applications = 0;  ///< that finding them took
 };
 
 /// What a residual says about the error.

@@ -83,7 +83,7 @@ Solution solved(Iterations iterations, bool deflated) {
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   ConjugateGradient method(problem, apply, iterations.direct_irradiance());
   if (deflated) method.deflate();
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     method.step();
     iterations.record(iterate_of(problem, method.radiosity(), method.irradiance()), k, Residual::recurred);
   }
@@ -104,16 +104,18 @@ Solution cg(Iterations iterations) { return solved(std::move(iterations), false)
 
 Solution deflated_cg(Iterations iterations) { return solved(std::move(iterations), true); }
 
-Field glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem, int max_iterations) {
+GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem,
+                                   int max_iterations) {
   constexpr double largest_residual = 0.5;
   const Apply apply = [&transport](const FieldView& B) { return transport.apply(B); };
   ConjugateGradient method(problem, apply, apply(problem.exitance));
-  for (int k = 0; k < max_iterations; ++k) {
+  int k = 0;
+  for (; k < max_iterations; ++k) {
     const Field r = problem.exitance + problem.reflectance * method.irradiance() - method.radiosity();
     if (r.maxCoeff() <= largest_residual) break;
     method.step();
   }
-  return method.radiosity();
+  return {method.radiosity(), k + 1};
 }
 
 }  // namespace patchlight

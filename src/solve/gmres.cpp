@@ -73,8 +73,9 @@ Solution gmres(Iterations iterations) {
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   Iterate start = iterate_of(problem, problem.exitance, iterations.direct_irradiance());
   Arnoldi arnoldi = begun(problem, start.residual, restart);
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
-    arnoldi = extended(std::move(arnoldi), problem, iterations.apply(arnoldi.v.back()));
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    Field irradiance = iterations.apply(arnoldi.v.back());
+    arnoldi = extended(std::move(arnoldi), problem, std::move(irradiance));
     const Iterate iterate = best(arnoldi, problem, start);
     iterations.record(iterate, k, Residual::recurred);
     if (k % restart != 0) continue;

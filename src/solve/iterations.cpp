@@ -17,6 +17,9 @@ constexpr double unknown = std::numeric_limits<double>::infinity();
 // 0 / 0 is 0: nothing is wrong where there is nothing.
 double ratio(double error, double size) { return error == 0 ? 0 : error / size; }
 
+// The larger; what is not a number is worse than any.
+double worse(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
+
 // The irradiance H for which an iterate is E + rho o H; F B where nothing is reflected.
 Field arrived(const RadiosityProblem& problem, const Iterate& iterate) {
   return (problem.reflectance > 0)
@@ -35,7 +38,14 @@ Iterations::Iterations(const TransportOperator& transport, const RadiosityProble
     : transport_(transport), problem_(problem), options_(options), observer_(observer), start_(wall_seconds()) {
   bounds_.contraction = contraction_of(transport, problem, options);
   if (!options.largest_row_sum) count(1);
-  if (!bounds_.contracts() && bounds_.contraction.isFinite().all()) bounds_.weights = patch_weights(transport, problem);
+  if (!bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport, problem);
+  if (bounds_.weights) count(bounds_.weights->applications);
+}
+
+// Not where a reference decides, nor where the transport is not to be applied as a whole.
+bool Iterations::wants_weights() const {
+  const bool known = !options_.largest_row_sum || std::isfinite(*options_.largest_row_sum);
+  return known && !options_.reference;
 }
 
 Field Iterations::apply(const FieldView& radiosity) {
@@ -61,8 +71,8 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
       const double worst = (iterate.residual.col(band).abs() / bounds_.weights->g.col(band)).maxCoeff();
       bound = std::sqrt((problem_.area.array() * v.square()).sum()) * worst;
     }
-    iteration.relative_residual = std::max(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
-    if (norm[band] > 0) iteration.error_bound = std::max(iteration.error_bound, bound / reflected[band]);
+    iteration.relative_residual = worse(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
+    if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
   if (options_.reference) {
     const Field& B = *options_.reference;
@@ -70,7 +80,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     const Eigen::ArrayXd size = area_norm(B - problem_.exitance, problem_.area);
     iteration.true_error = 0;
     for (Eigen::Index band = 0; band < error.size(); ++band) {
-      iteration.true_error = std::max(iteration.true_error, ratio(error[band], size[band]));
+      iteration.true_error = worse(iteration.true_error, ratio(error[band], size[band]));
     }
   }
   return iteration;
@@ -86,7 +96,16 @@ void Iterations::tell(const Iterate& iterate) {
   const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
   arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
-  if (!observer_({Stage::solve, reached / wanted, &iteration, &shown, ambient})) throw Cancelled();
+  const double of_rows = options_.max_rows ? std::min(1.0, work_ / *options_.max_rows) : 0;
+  fraction_ = std::max(reached / wanted, of_rows);
+  if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) throw Cancelled();
+}
+
+void Iterations::keep_observer() {
+  constexpr double interval = 0.1;
+  if (!observer_ || wall_seconds() < next_report_) return;
+  if (!observer_({.stage = Stage::solve, .fraction = fraction_})) throw Cancelled();
+  next_report_ = wall_seconds() + interval;
 }
 
 bool Iterations::start(Field direct_irradiance) {
@@ -98,21 +117,29 @@ bool Iterations::start(Field direct_irradiance) {
   return record(std::move(lamps), 0);
 }
 
+bool Iterations::is_good(const Iteration& iteration) const {
+  if (options_.reference) return iteration.true_error <= options_.relative_error;
+  const bool bounded = bounds_.contracts() || bounds_.weights;
+  return (bounded ? iteration.error_bound : iteration.relative_residual) <= options_.relative_error;
+}
+
 bool Iterations::record(Iterate iterate, int number, Residual residual) {
   Iteration iteration = measured(iterate, number);
-  const auto is_good = [this](const Iteration& row) {
-    if (options_.reference) return row.true_error <= options_.relative_error;
-    const bool bounded = bounds_.contracts() || bounds_.weights;
-    return (bounded ? row.error_bound : row.relative_residual) <= options_.relative_error;
-  };
   solution_.converged = is_good(iteration);
-  if (solution_.converged && residual == Residual::recurred) {
+  if (solution_.converged && residual == Residual::recurred && !options_.reference) {
     Field irradiance = apply(iterate.radiosity);
     iterate = iterate_of(problem_, std::move(iterate.radiosity), std::move(irradiance));
     iteration = measured(iterate, number);
     solution_.converged = is_good(iteration);
+    // Recurrences go on falling when the residual itself has come down to rounding.
+    hopeless_ = iteration.relative_residual > last_applied_residual_ / 2;
+    last_applied_residual_ = iteration.relative_residual;
   }
   solution_.history.push_back(iteration);
+  if (!std::isfinite(iteration.relative_residual)) {
+    hopeless_ = true;
+    return false;
+  }
   tell(iterate);
   last_ = std::move(iterate);
   return solution_.converged;
@@ -123,7 +150,7 @@ Solution Iterations::finish() {
   solution.irradiance = last_.irradiance;
   solution.radiosity = problem_.exitance + problem_.reflectance * last_.irradiance;
   solution.ambient = std::move(ambient_);
-  if (!bounds_.weights && bounds_.contracts()) bounds_.weights = patch_weights(transport_, problem_);
+  if (!bounds_.weights && bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport_, problem_);
   if (!bounds_.weights) return solution;
   solution.error = patch_errors(*bounds_.weights, last_.residual);
   const Eigen::ArrayXd error = area_norm(solution.error, problem_.area);

@@ -5,6 +5,7 @@
 #include "solve/bounds.h"
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace patchlight {
 
@@ -39,6 +40,9 @@ class Iterations {
   /// Counts work that was done otherwise, in applications.
   void count(double applications) { work_ += applications; }
 
+  /// Lets the observer know between two iterates, at most ten times a second. \throws Cancelled.
+  void keep_observer();
+
   /// Puts E into the history, with F E as it is found from the lamps. True when that is good enough.
   bool start(Field direct_irradiance);
   /// Puts the next iterate into the history. True when it is good enough; one with a recurred residual is measured once
@@ -50,12 +54,16 @@ class Iterations {
   void show_irradiance(Field arrived) { arrived_ = std::move(arrived); }
 
   const Field& direct_irradiance() const { return solution_.direct_irradiance; }
-  bool good() const { return solution_.converged; }
+  /// True when there is nothing more to do: the last iterate was good enough, or no further one will be better: the
+  /// residual is not finite any more, or has come down to rounding.
+  bool ended() const { return solution_.converged || hopeless_; }
   /// B = E + rho o H with the H of the last iterate.
   Solution finish();
 
  private:
   Iteration measured(const Iterate& iterate, int number) const;
+  bool is_good(const Iteration& iteration) const;
+  bool wants_weights() const;
   void tell(const Iterate& iterate);
 
   const TransportOperator& transport_;
@@ -65,7 +73,11 @@ class Iterations {
   Bounds bounds_;
   double start_;
   double work_ = 0;
+  double fraction_ = 0;
+  double next_report_ = 0;
   Eigen::ArrayXd first_residual_;
+  double last_applied_residual_ = std::numeric_limits<double>::infinity();
+  bool hopeless_ = false;
   Iterate last_;
   Field ambient_, arrived_;
   Solution solution_;

@@ -23,7 +23,12 @@ Solution gmres(Iterations iterations);
 Solution bicgstab(Iterations iterations);
 
 /// A loose solution for a problem of which all patches emit 1: by conjugate gradients until no residual is above 1/2.
-Field glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem, int max_iterations);
+struct GlowingRadiosity {
+  Field radiosity;
+  int applications = 0;
+};
+GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem,
+                                   int max_iterations);
 
 /// Area-weighted inner products sum_i A_i x_i y_i, one per band.
 Eigen::ArrayXd inner_product(const FieldView& x, const FieldView& y, const Eigen::VectorXd& area);

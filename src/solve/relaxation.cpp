@@ -34,7 +34,7 @@ Solution swept(Iterations iterations, const RowTransport& transport, double rela
   const Relax relax = relaxing(problem, relaxation, Order::forward);
   Sweep sweep = transport.sweep({problem.exitance, {}, {}}, relax, {});
   iterations.count(1);
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     Field B = sweep.radiosity;
     sweep = transport.sweep(std::move(sweep), relax, {});
     iterations.count(1);
@@ -50,7 +50,7 @@ Solution jacobi(Iterations iterations) {
   const RadiosityProblem& problem = iterations.problem();
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   Field H = iterations.direct_irradiance();
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     Field B = problem.exitance + problem.reflectance * H;
     iterations.show_irradiance(std::move(H));
     H = iterations.apply(B);
@@ -78,7 +78,7 @@ Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& trans
   const Relax there = relaxing(problem, 1, Order::forward);
   const Relax back = relaxing(problem, 1, Order::backward);
   Field B = problem.exitance;
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     B = transport.sweep({std::move(B), {}, {}}, there, back).radiosity;
     iterations.count(2);
     iterations.record(iterate_of(problem, B, iterations.apply(B)), k);
@@ -98,7 +98,7 @@ Solution chebyshev(Iterations iterations) {
   Field before = B;
   Field H = iterations.direct_irradiance();
   Eigen::ArrayXd omega = Eigen::ArrayXd::Ones(bound.size());
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.good(); ++k) {
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     if (k == 2) omega = 1 / (1 - bound.square() / 2);
     if (k > 2) omega = 1 / (1 - bound.square() * omega / 4);
     // E + K B_k, between that and B_k-1

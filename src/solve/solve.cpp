@@ -48,6 +48,7 @@ Solution solution_by(Solver solver, Iterations iterations, const RowTransport& t
 Observer for_all_bands(const Observer& observer, const SolvedBands& bands) {
   if (!observer) return {};
   return [&observer, &bands](const Progress& progress) {
+    if (progress.irradiance == nullptr) return observer(progress);
     Progress all = progress;
     const Field irradiance = expanded(*progress.irradiance, bands);
     const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();

@@ -9,8 +9,9 @@ enum class Shot { unshot, overshot };
 
 /// Progressive refinement: the lamps shoot first, then the patch with the most unshot flux, again and again. Cohen,
 /// Chen, Wallace and Greenberg 1988; it is Southwell relaxation of the same system (Gortler, Cohen and Slusallek 1994).
-/// Overshooting (Feda and Purgathofer 1992) shoots beforehand what the ambient term expects. Takes single rows of the
-/// transport. An iteration's number is that of its shots.
+/// Overshooting (Feda and Purgathofer 1992) shoots beforehand what the ambient term expects, and a little more than
+/// what is unshot: over-relaxation. docs/theory.md section 7. Takes single rows of the transport. An iteration's number
+/// is that of its shots.
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot);
 
 }  // namespace patchlight

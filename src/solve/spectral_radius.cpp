@@ -3,20 +3,20 @@
 namespace patchlight {
 
 Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const RadiosityProblem& problem, int steps) {
-  // With B = rho o h, h an irradiance: h <- F (rho o h), radius = <rho h, F (rho h)> / <rho h, h>, weighted by area.
+  // With B = rho o h, h an irradiance, w = (A rho)^1/2 h: h <- F (rho o h) is w <- G w, and radius = ||G w|| / ||w||.
   const Field& rho = problem.reflectance;
-  const auto dot = [&](const Field& x, const Field& y) -> Eigen::ArrayXd {
-    return ((x * y).colwise() * problem.area.array()).colwise().sum().transpose();
+  const auto squares = [&](const Field& h) -> Eigen::ArrayXd {
+    return ((rho * h.square()).colwise() * problem.area.array()).colwise().sum().transpose();
   };
   Field h = Field::Ones(rho.rows(), rho.cols());
   Eigen::ArrayXd radius = Eigen::ArrayXd::Zero(rho.cols());
   for (int k = 0; k < steps; ++k) {
-    const Field B = rho * h;
-    const Field next = transport.apply(B);
-    const Eigen::ArrayXd size = dot(B, h);
-    radius = (size > 0).select(dot(B, next) / size, 0.0);
-    const Eigen::ArrayXd length = dot(next, next).sqrt();
-    h = next.rowwise() * (length > 0).select(1 / length, 0.0).transpose();
+    const Field next = transport.apply(rho * h);
+    const Eigen::ArrayXd before = squares(h);
+    const Eigen::ArrayXd after = squares(next);
+    radius = (before > 0).select((after / before).sqrt(), 0.0);
+    const Eigen::ArrayXd scale = (after > 0).select(after.sqrt().inverse(), 0.0);
+    h = next.rowwise() * scale.transpose();
   }
   return radius;
 }

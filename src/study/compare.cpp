@@ -14,19 +14,23 @@ namespace {
 // The reference is so much nearer to the solution than the solvers have to come.
 constexpr double margin = 1e-4;
 
-// Keeps the first ten iterates, then those whose number is a tenth higher.
+// Keeps the first ten iterates, then those whose number is a fifth higher, and the last.
 class Frames {
  public:
   void keep(const Progress& progress) {
-    const int number = progress.iteration->number;
-    if (frames_.size() >= 10 && number < next_) return;
-    frames_.push_back({*progress.iteration, progress.irradiance->cast<float>()});
-    next_ = std::max(number + 1, static_cast<int>(1.2 * number));
+    last_ = {*progress.iteration, progress.irradiance->cast<float>()};
+    if (frames_.size() >= 10 && last_.iteration.number < next_) return;
+    frames_.push_back(last_);
+    next_ = std::max(last_.iteration.number + 1, static_cast<int>(1.2 * last_.iteration.number));
   }
-  std::vector<Frame> take() { return std::move(frames_); }
+  std::vector<Frame> take() {
+    if (!frames_.empty() && frames_.back().iteration.number < last_.iteration.number) frames_.push_back(last_);
+    return std::move(frames_);
+  }
 
  private:
   std::vector<Frame> frames_;
+  Frame last_;
   int next_ = 0;
 };
 
@@ -66,7 +70,7 @@ SolverRun Race::run(const Contestant& contestant, const RowTransport& transport,
   result.contestant = contestant;
   Frames frames;
   const Observer watch = [&](const Progress& progress) {
-    if (options.keep_iterates) frames.keep(progress);
+    if (options.keep_iterates && progress.irradiance != nullptr) frames.keep(progress);
     return !observer || observer(progress);
   };
   const double begin = wall_seconds();
@@ -129,7 +133,9 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     comparison.reference_residual = reference.history.back().relative_residual;
     if (!reference.trapped.empty()) return reference;
     constexpr int steps = 60;
-    comparison.spectral_radius = spectral_radius(transport, problem, steps).maxCoeff();
+    const Eigen::ArrayXd strongest_lamp = problem.exitance.colwise().maxCoeff().transpose();
+    comparison.spectral_radius =
+        (strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0).maxCoeff();
     const Race race{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
       if (!contestant.on_demand) comparison.runs.push_back(race.run(contestant, transport, problem, usual, watch));

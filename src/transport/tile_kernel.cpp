@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 namespace patchlight {
@@ -24,17 +25,19 @@ struct BandRange {
   std::size_t of;
 };
 
-// `bands` bands from range.first on. Four rows at once, so that b_J and out_J are loaded a quarter as often.
+// `bands` bands from range.first on; in one piece, as the sums have to stay in registers. Four rows at once, so that
+// b_J and out_J are loaded a quarter as often.
 template <std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const TileProduct product) {
   constexpr std::size_t rows = 4;
   for (std::size_t r = 0; r < edge; r += rows) {
     Doubles sums[rows][bands];
-    double* const sums_r = product.sums_I + (r * range.of + range.first) * width;
+    const std::size_t place_sums = (r * range.of + range.first) * width;
     if constexpr (gather) {
       for (std::size_t k = 0; k < rows; ++k) {
         for (std::size_t band = 0; band < bands; ++band) {
-          sums[k][band] = *reinterpret_cast<const Doubles*>(sums_r + (k * range.of + band) * width);
+          sums[k][band] =
+              *reinterpret_cast<const Doubles*>(product.sums_I + place_sums + (k * range.of + band) * width);
         }
       }
     }
@@ -48,9 +51,12 @@ PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const 
         }
       }
     }
-    // The rows in double, and those of later on their way into the cache.
+    // The rows in double, and those of later on their way into the cache, be it beyond the last tile.
     alignas(64) double wide[rows * edge];
-    for (std::size_t c = 0; c < rows * edge; c += 16) __builtin_prefetch(tile + r * edge + c + ahead);
+    const auto later = reinterpret_cast<std::uintptr_t>(tile + r * edge) + ahead * sizeof(float);
+    for (std::size_t line = 0; line < rows * edge * sizeof(float); line += 64) {
+      __builtin_prefetch(reinterpret_cast<const void*>(later + line));
+    }
     for (std::size_t c = 0; c < rows * edge; ++c) wide[c] = static_cast<double>(tile[r * edge + c]);
 
     for (std::size_t c = 0; c < edge; c += width) {
@@ -73,7 +79,7 @@ PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const 
     if constexpr (gather) {
       for (std::size_t k = 0; k < rows; ++k) {
         for (std::size_t band = 0; band < bands; ++band) {
-          *reinterpret_cast<Doubles*>(sums_r + (k * range.of + band) * width) = sums[k][band];
+          *reinterpret_cast<Doubles*>(product.sums_I + place_sums + (k * range.of + band) * width) = sums[k][band];
         }
       }
     }

@@ -43,10 +43,15 @@ class CompareTest(ToolTest):
         self.assertEqual(runs["progressive-on-demand"]["iterations"], 1)
 
     def test_jacobi_converges_with_the_spectral_radius(self):
-        """Its error is multiplied by K in every iteration: late in the run by the largest eigenvalue."""
+        """Its error is multiplied by K in every iteration: late in the run by the largest eigenvalue.
+
+        The rate is taken over the last third of the fall, some fifteen iterations from the thirtieth on. What the second
+        eigenvalue, at most .75 of the first, leaves of its share there is .75^30 = 2e-4; 2 % is what is promised.
+        """
         _, facts = self.compare("--solvers", "jacobi", "--tolerance", "1e-9")
         self.assertLess(abs(facts["runs"][0]["rate"] / facts["spectral_radius"] - 1), 0.02)
-        self.assertLess(facts["spectral_radius"], facts["highest_reflectance"] * 1.001)
+        # Row sums of the closed room are 1 within 1e-9.
+        self.assertLess(facts["spectral_radius"], facts["highest_reflectance"] * (1 + 1e-9))
 
     def test_tables_say_what_the_json_says(self):
         _, facts = self.compare("--solvers", "cg,progressive,progressive-on-demand")

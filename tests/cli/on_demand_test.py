@@ -5,7 +5,7 @@ import unittest
 
 from support import ToolTest
 
-NOT_CONVERGED, MEMORY = 3, 4
+USAGE, NOT_CONVERGED, MEMORY = 1, 3, 4
 TOLERANCE = 1e-6
 
 
@@ -75,6 +75,29 @@ class OnDemandTest(ToolTest):
         self.assertNotIn("row sums before closure", done.stdout)
         self.assertIn(b"radiosity", (self.folder / "a.vtp").read_bytes())
         self.assertNotIn(b'"row_sum"', (self.folder / "a.vtp").read_bytes())
+
+    def test_a_first_picture_after_a_share_of_the_rows(self):
+        """Rows are the lamps' and one per shot. What is under way is estimated for the picture; the summary says so."""
+        report = self.report("--patches", 400, "--on-demand", "--max-rows", "10%", "--picture", "early.png",
+                             code=NOT_CONVERGED)
+        last = report["solution"]["iterations"][-1]
+        self.assertEqual(report["request"]["max_rows"], 0.1)
+        self.assertLessEqual(last["work"], 0.1)
+        self.assertGreater(last["work"], 0.1 - 1 / report["mesh"]["patches"])
+        done = self.run_tool("solve", "room.obj", "--solver", "overshooting", "--patches", 400, "--max-rows", "10%",
+                             "--picture", "early.png")
+        self.assertEqual(done.returncode, NOT_CONVERGED)
+        self.assertIn("stopped after 10 % of the rows of form factors", done.stderr)
+        self.assertTrue((self.folder / "early.png").exists())
+
+    def test_shares_of_rows_that_are_refused(self):
+        for text in ("5", "0%", "-5%", "%", "5%%", "nan%", "five%"):
+            done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--solver", "progressive", "--max-rows", text)
+            self.assertEqual(done.returncode, USAGE, text)
+            self.assertIn(f"--max-rows: found '{text}'; expected a share above 0 such as 5%", done.stderr)
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--max-rows", "5%")
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("--max-rows needs --solver progressive or overshooting", done.stderr)
 
     def test_needs_no_memory_for_pairs(self):
         """4,000 patches: 32 MB for the pairs, 50 MB for the program."""

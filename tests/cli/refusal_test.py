@@ -136,7 +136,8 @@ class RefusalTest(ToolTest):
 
     def test_unknown_word_gets_the_list_of_allowed_ones(self):
         for option, allowed in {
-            "--solver": ["jacobi", "gauss-seidel", "progressive"],
+            "--solver": ["jacobi", "gauss-seidel", "sor", "symmetric-gauss-seidel", "chebyshev", "progressive",
+                         "overshooting", "cg", "deflated-cg", "gmres", "bicgstab"],
             "--unit": ["mm", "cm", "m", "in", "ft"],
             "--up": ["y", "z"],
             "--sides": ["auto", "front", "both"],

@@ -15,7 +15,7 @@ const char* name_of(Stage stage);
 
 /// One row of a solver's history.
 struct Iteration {
-  int number = 0;                ///< 0 is the starting value B = E
+  int number = 0;                ///< 0 is the starting value B = E; of what shoots, the number of its shots
   double relative_residual = 0;  ///< ||r||_A / ||K E||_A, worst band
   double error_bound = 0;        ///< bound on ||B - B_k||_A / ||B_k - E||_A, worst band; infinite when none is known
   double seconds = 0;            ///< wall time since the solver started
@@ -27,7 +27,7 @@ struct Iteration {
 struct Progress {
   Stage stage = Stage::read;
   double fraction = 0;                   ///< of this stage, 0 to 1
-  const Iteration* iteration = nullptr;  ///< in Stage::solve only
+  const Iteration* iteration = nullptr;  ///< in Stage::solve, with each new iterate
   const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
   const Field* ambient = nullptr;        ///< goes with it for progressive refinement: Solution::ambient of this iterate
 };

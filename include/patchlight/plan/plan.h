@@ -22,6 +22,7 @@ struct Request {
   Solver solver = Solver::cg;
   double tolerance = 1e-6;                ///< the solver's relative error
   int max_iterations = 1000;              ///< after which the solver gives up
+  std::optional<double> max_rows = {};    ///< or, of progressive refinement, after so many rows, as a share of all
   std::optional<double> relaxation = {};  ///< of SOR; without it estimated
   int samples = 16;                       ///< shadow rays of a partly occluded pair of patches
   std::uint64_t seed = 1;

@@ -21,7 +21,7 @@ struct Solution {
   Field radiosity;          ///< B, W/m^2; B = E + rho o H
   Field irradiance;         ///< H, W/m^2
   Field direct_irradiance;  ///< F E, W/m^2: the part of H that comes straight from the lamps
-  Field ambient;  ///< one row: progressive refinement's estimate of the irradiance still under way, for display
+  Field ambient;  ///< progressive refinement's estimate of the irradiance still under way, for display; else empty
   std::vector<Iteration> history;  ///< from iteration 0
   bool converged = false;
   std::string

@@ -38,19 +38,22 @@ struct SolverOptions {
   Solver solver = Solver::cg;
   double relative_error = 1e-6;  ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below
   int max_iterations = 1000;     ///< for progressive refinement one iteration is as many shots as there are patches
+  std::optional<double> max_rows = {};         ///< progressive refinement stops after so many rows of F, as a share of
+                                               ///< the patches; the lamps' are among them, and always taken
   std::optional<double> relaxation = {};       ///< of SOR, above 0 and below 2; without it estimated
   int restart = 30;                            ///< directions that GMRES keeps
   std::optional<double> largest_row_sum = {};  ///< of F, where it is known: saves an application. Infinite: not to be
                                                ///< found, so that there is no bound
-  std::optional<Field> reference = {};  ///< a solution to be met: stop when ||B_ref - B_k||_A / ||B_ref - E||_A, worst
-                                        ///< band, is below relative_error
+  std::optional<Field> reference = {};  ///< a solution to be met, radiosity in W/m^2 of all bands: stop when ||B_ref -
+                                        ///< B_k||_A / ||B_ref - E||_A, worst band, is below relative_error
 };
 
 /// Solves B = E + rho o F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
 /// by a factor once. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times the largest row sum of F, of
 /// docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of the same section; where that is
 /// not known either, by the relative residual, with an infinite error_bound in the history. What cannot converge ends
-/// after max_iterations with converged = false and its history; a singular system at once, with Solution::trapped.
+/// after max_iterations with converged = false and its history; a singular system at once, with Solution::trapped,
+/// unless the largest row sum is not to be found.
 /// \throws Cancelled.
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});

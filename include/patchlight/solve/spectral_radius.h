@@ -5,9 +5,10 @@
 
 namespace patchlight {
 
-/// The spectral radius of K = rho o F, per band, from below: Rayleigh quotients of the power iteration for the
-/// symmetric matrix that is similar to it, from equal irradiance everywhere. The error falls by the square of the ratio
-/// of the two largest eigenvalues with each of the `steps` applications. 0 where nothing is reflected.
+/// The spectral radius of K = rho o F, per band, from below: ||G w|| / ||w|| of the power iteration for the symmetric
+/// matrix G that is similar to it, from equal irradiance everywhere. It never falls, and its error falls by the square
+/// of the ratio of the two largest sizes of eigenvalues with each of the `steps` applications. 0 where nothing is
+/// reflected.
 Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const RadiosityProblem& problem, int steps);
 
 }  // namespace patchlight

@@ -45,7 +45,8 @@ TEST(SpectralRadius, IsThatOfADenseEigensolver) {
   }
 }
 
-// A Rayleigh quotient of a symmetric matrix never exceeds its largest eigenvalue, and does not fall from step to step.
+// For a symmetric matrix ||G w|| / ||w|| never exceeds the radius and does not fall from step to step: ||G w||^2 =
+// <w, G^2 w> <= ||w|| ||G^2 w||.
 TEST(SpectralRadius, IsApproachedFromBelow) {
   const ExchangeAreas S = made_up();
   const Eigen::VectorXd area = row_sums(S);
@@ -59,6 +60,17 @@ TEST(SpectralRadius, IsApproachedFromBelow) {
     EXPECT_LE(radius, limit + 1e-14);
     before = radius;
   }
+}
+
+// Two plates that see nothing but each other, with reflectances .2 and .8: the eigenvalues of K are +-sqrt(.2 .8) =
+// +-.4, for F = 1.
+TEST(SpectralRadius, OfTwoPlatesHasEigenvaluesOfBothSigns) {
+  ExchangeAreas S(2);
+  S.set(0, 1, 1);
+  const auto transport = dense_transport(keep_exchange_areas(std::move(S), "test"), Eigen::Vector2d(1, 1));
+  RadiosityProblem problem{Field(2, 1), Field::Zero(2, 1), Eigen::Vector2d(1, 1)};
+  problem.reflectance << 0.2, 0.8;
+  EXPECT_NEAR(spectral_radius(*transport, problem, 2)[0], 0.4, 1e-14);
 }
 
 // In a closed room of one reflectance the constant mode is the largest: rho.

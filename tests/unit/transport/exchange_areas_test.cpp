@@ -1,7 +1,5 @@
 #include "patchlight/transport/exchange_areas.h"
 
-#include "patchlight/transport/dense.h"
-
 #include "transport/narrow.h"
 
 #include <cmath>
@@ -43,13 +41,6 @@ Field radiosity() {
   return B;
 }
 
-Eigen::VectorXd areas() { return Eigen::VectorXd::LinSpaced(size, 1, 2); }
-
-// Remainders large enough to notice.
-Eigen::VectorXd remainders() { return Eigen::VectorXd::LinSpaced(size, 0.5, 0.1); }
-
-std::unique_ptr<RowTransport> transport() { return dense_transport({filled(), remainders(), "test"}, areas()); }
-
 // Sums of 150 products in another order: 150 roundings of terms up to 15.
 constexpr double rounding = 1e-11;
 
@@ -66,34 +57,6 @@ TEST(ExchangeAreas, AreReadBackSymmetrically) {
   EXPECT_EQ(S.at(3, 140), static_cast<float>(entry(3, 140)));
   EXPECT_EQ(S.at(140, 3), S.at(3, 140));
   EXPECT_EQ(ExchangeAreas::bytes(size), 6 * 64 * 64 * sizeof(float));
-}
-
-TEST(DenseTransport, ItsFourViewsAgree) {
-  const auto F = transport();
-  const Field whole = F->apply(radiosity());
-  const Eigen::MatrixXd with_remainder = full_matrix() + Eigen::MatrixXd(remainders().asDiagonal());
-  const Field expected = (with_remainder * radiosity().matrix()).array().colwise() / areas().array();
-  EXPECT_LT((whole - expected).abs().maxCoeff(), rounding);
-
-  const PatchRange range{60, 135};
-  EXPECT_LT((F->gather(range, radiosity()) - whole.middleRows(60, 75)).abs().maxCoeff(), rounding);
-
-  Field only = Field::Zero(size, 3);
-  only.middleRows(60, 75) = radiosity().middleRows(60, 75);
-  EXPECT_LT((F->shoot(range, radiosity().middleRows(60, 75)) - F->apply(only)).abs().maxCoeff(), rounding);
-
-  const Eigen::MatrixXd block = F->form_factors(range, {0, size});
-  // The exported form factors leave the remainder out: F_ii of a flat patch is 0.
-  const Field own = (radiosity().colwise() * (remainders().array() / areas().array())).middleRows(60, 75);
-  const Field seen = (block * radiosity().matrix()).array() + own;
-  EXPECT_LT((seen - whole.middleRows(60, 75)).abs().maxCoeff(), rounding);
-}
-
-TEST(DenseTransport, KeepsReciprocity) {
-  const auto F = transport();
-  const Eigen::MatrixXd factors = F->form_factors({0, size}, {0, size});
-  const Eigen::MatrixXd exchange = areas().asDiagonal() * factors;
-  EXPECT_LT((exchange - exchange.transpose()).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(NarrowTowardZero, NeverGrows) {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/scene/coverings.h"
+#include "patchlight/transport/dense.h"
+#include "patchlight/transport/exchange.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "problem_of.h"
+
+#include <memory>
+#include <utility>
+
+// A scene made ready for the solvers, as simulate() does it.
+namespace patchlight::test {
+
+struct Assembled {
+  PatchMesh mesh;
+  std::unique_ptr<RowTransport> transport;
+  RadiosityProblem problem;
+  bool closed = false;  ///< no ray of any patch is lost
+};
+
+inline Assembled assembled(const Scene& scene, double max_edge) {
+  constexpr int lost_share_rays = 256;
+  const KeptSides kept = kept_sides(scene, Sides::automatic);
+  PatchMesh mesh = tessellate(scene, kept, max_edge);
+  const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, kept));
+  Exchange exchange = trace_exchange(mesh, occluder, {}, lost_share_rays);
+  const bool closed = exchange.lost.closed();
+  const Eigen::VectorXd area = exchange.area;
+  RadiosityProblem problem = problem_of(scene, mesh, area, kept.emit_from_back);
+  auto transport = dense_transport(close_exchange(std::move(exchange)), area);
+  return {std::move(mesh), std::move(transport), std::move(problem), closed};
+}
+
+}  // namespace patchlight::test
