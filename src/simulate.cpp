@@ -33,8 +33,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   assert(!plan.on_demand || !with.exchange);
 
   // 2. Subdivide the kept sides of the polygons into patches.
-  result.mesh = plan.error_bars ? refine(tessellate(scene, plan.sides, 2 * plan.max_edge))
-                                : tessellate(scene, plan.sides, plan.max_edge);
+  result.mesh = plan.error_bars ? refine(with.mesh(scene, plan.sides, 2 * plan.max_edge))
+                                : with.mesh(scene, plan.sides, plan.max_edge);
   const PatchMesh& mesh = result.mesh;
   require_memory(mesh.size(), request);
   clock.finish(Stage::mesh);

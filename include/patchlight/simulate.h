@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/accuracy/error_bars.h"
+#include "patchlight/mesh/mesher.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
@@ -52,8 +53,12 @@ using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
                                          const SolverOptions& options, const Observer& observer)>;
 
+/// The patches of a scene; tessellate() makes some.
+using MeshOf = std::function<PatchMesh(const Scene& scene, const KeptSides& sides, double max_edge)>;
+
 /// Steps of simulate() that may be done otherwise.
 struct Steps {
+  MeshOf mesh = tessellate;
   ExchangeOf exchange = {};  ///< empty: form factors are computed
   SolveWith solve = patchlight::solve;
 };

@@ -18,6 +18,8 @@ const char* name_of(Stage stage) {
       return "error bars";
     case Stage::gather:
       return "gather";
+    case Stage::trace_paths:
+      return "trace paths";
     case Stage::render:
       return "render";
     case Stage::write:

@@ -9,6 +9,7 @@
 #include "cli/relight_options.h"
 #include "cli/solve_options.h"
 #include "cli/validate_options.h"
+#include "cli/verify_options.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -20,7 +21,7 @@ namespace {
 
 constexpr const char* exit_codes =
     "Exit codes: 0 good, 1 usage, 2 input, 3 not converged (results are written), 4 out of memory,\n"
-    "5 a validation failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
+    "5 a validation or verification failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
 
 // Number of insertions, removals and replacements that turn one word into the other (Levenshtein 1966), row by row.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -121,6 +122,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
   const std::shared_ptr<CompareCommandOptions> compare_options = add_compare(tool);
+  const std::shared_ptr<VerifyCommandOptions> verify_options = add_verify(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
   for (CLI::App* command : tool.get_subcommands({})) {
@@ -143,6 +145,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     }
     if (command.get_name() == "compare") {
       CompareArguments arguments = finish_compare(*compare_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
+    if (command.get_name() == "verify") {
+      VerifyArguments arguments = finish_verify(*verify_options);
       arguments.command_line = joined(count, values);
       return arguments;
     }

@@ -5,6 +5,7 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/study/compare.h"
+#include "patchlight/study/verify.h"
 
 #include "cli/messages.h"
 
@@ -81,6 +82,20 @@ struct CompareArguments {
   std::string command_line;  ///< for the record
 };
 
+/// The relative standard error that `patchlight verify` grants an irradiance.
+inline constexpr double default_bar = 0.02;
+
+/// What `patchlight verify` is asked to do.
+struct VerifyArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  VerifyOptions options;
+  double bar = default_bar;
+  std::filesystem::path json;  ///< .json; empty when it is not wanted
+  std::string command_line;    ///< for the record
+};
+
 /// What `patchlight validate` is asked to do.
 struct ValidateArguments {
   std::filesystem::path json;   ///< .json; empty when it is not wanted
@@ -93,8 +108,8 @@ struct Information {
   std::string text;
 };
 
-using Arguments =
-    std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, CompareArguments, ValidateArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, CompareArguments,
+                               VerifyArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

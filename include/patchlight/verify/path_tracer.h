@@ -1,0 +1,46 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/base/geometry.h"
+#include "patchlight/base/progress.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace patchlight {
+
+/// A flat piece of one side of a polygon, whose mean irradiance is wanted.
+struct Receiver {
+  std::array<Point, 4> corners;  ///< convex, metres; a triangle repeats its last
+  PolygonIndex polygon = 0;
+  Side side = Side::front;
+};
+
+/// Paths come in so many batches, each stratified on its own: their scatter is the standard error.
+inline constexpr std::uint32_t path_batches = 32;
+
+struct PathOptions {
+  std::uint32_t paths = 4096;  ///< per receiver; rounded up to path_batches times a power of two
+  std::uint64_t seed = 1;
+};
+
+/// One row per receiver, one column per band.
+struct PathEstimate {
+  Field irradiance;         ///< mean over what is exposed of the receiver, W/m^2; 0 if nothing is
+  Field standard_error;     ///< its standard error, W/m^2, estimated with path_batches - 1 degrees of freedom
+  std::uint32_t paths = 0;  ///< per receiver
+  std::uint64_t rays = 0;   ///< two per vertex of a path: one to a lamp, one scattered
+};
+
+/// Irradiance by path tracing: the rendering equation of Kajiya (1986) for diffuse surfaces, without patches, form
+/// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
+/// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. The mean is
+/// over the part of a receiver that is not covered (docs/theory.md section 2). The same bits for any number of threads.
+/// \throws Cancelled.
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Receiver> receivers,
+                              const PathOptions& options = {}, const Observer& observer = {});
+
+}  // namespace patchlight

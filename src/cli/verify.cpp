@@ -1,0 +1,133 @@
+#include "cli/verify.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_verification.h"
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/summary.h"
+#include "cli/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+// So many of the checked patches are shown, those that differ most.
+constexpr std::size_t shown = 10;
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string position(const Point& point) {
+  return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
+}
+
+// A checked patch in the band where it differs most.
+struct Difference {
+  Eigen::Index row = 0;
+  Eigen::Index band = 0;
+  double size = 0;
+};
+
+std::vector<Difference> worst_first(const Verification& verification) {
+  const Field sizes = deviations(verification).abs();
+  std::vector<Difference> differences;
+  for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
+    Difference difference{i};
+    difference.size = sizes.row(i).maxCoeff(&difference.band);
+    differences.push_back(difference);
+  }
+  const auto worse = [](const Difference& a, const Difference& b) { return a.size > b.size; };
+  std::stable_sort(differences.begin(), differences.end(), worse);
+  return differences;
+}
+
+std::string table(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
+  std::vector<TextRow> rows{
+      {"place", "material", "position, m", "band", "ours", "bar", "path", "standard error", "z", "z with bar"}};
+  const Field z = deviations_by_noise(verification);
+  const Field with_bar = deviations(verification);
+  for (const auto& [i, band, size] : worst_first(verification)) {
+    if (rows.size() > shown) break;
+    const PatchIndex patch = verification.patches[static_cast<std::size_t>(i)];
+    rows.push_back({place_of(scene, scene.polygons[mesh.polygon[patch]]), scene.materials[mesh.material[patch]].name,
+                    position(mesh.centroid[patch]), std::to_string(band + 1),
+                    rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
+                    rounded(verification.paths.irradiance(i, band), 5),
+                    rounded(verification.paths.standard_error(i, band), 2), rounded(z(i, band), 2),
+                    rounded(with_bar(i, band), 2)});
+  }
+  return text_table(rows);
+}
+
+// Of the values that are numbers.
+double root_mean_square(const Field& values) {
+  const Field squares = values.isFinite().select(values.square(), 0);
+  return std::sqrt(squares.sum() / static_cast<double>(std::max<Eigen::Index>(1, values.isFinite().count())));
+}
+
+std::string verdict(const Verification& verification, double bar) {
+  std::ostringstream text;
+  text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
+       << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
+       << 100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1) << " %\n"
+       << (verification.agrees ? "agrees" : "DISAGREES") << ": with a bar of " << 100 * bar
+       << " % of the irradiance, or of its mean where that is larger, chi-square " << verification.chi_square.maxCoeff()
+       << " of " << verification.patches.size() << " patches in the worst band, p = " << verification.probability
+       << (verification.agrees ? " >= " : " < ") << least_probability << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+ExitCode verify(const VerifyArguments& arguments) {
+  if (!arguments.json.empty()) check_writable(arguments.json);
+  const ThreadLimit limit(arguments.request.threads);
+  ProgressLine line(stderr_is_terminal());
+  const Observer observer = [&line](const Progress& progress) {
+    line.show(progress);
+    return !interrupted();
+  };
+
+  // 1. Solve
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Simulation simulation = simulate(scene, arguments.request, observer);
+  if (!simulation.solution.converged) {
+    line.hide();
+    print_message("warning", "not verified: " + explain_not_converged(simulation));
+    return not_converged;
+  }
+
+  // 2. Trace paths, and compare
+  const double begin = wall_seconds();
+  const Verification verification =
+      patchlight::verify(scene, simulation, irradiance_bar(simulation, arguments.bar), arguments.options, observer);
+  const double seconds = wall_seconds() - begin;
+  line.hide();
+  const WritingGuard guard;
+  if (!arguments.json.empty()) {
+    write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
+  }
+  std::cout << table(scene, simulation.mesh, verification) << scene.file << ": " << verification.patches.size()
+            << " of " << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
+            << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
+            << " s; irradiance in W/m^2\n"
+            << verdict(verification, arguments.bar) << std::flush;
+  return verification.agrees ? good : validation_failed;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,79 @@
+#include "cli/verify_options.h"
+
+#include "cli/add_option.h"
+#include "cli/mesh_options.h"
+#include "cli/model_options.h"
+#include "cli/parse_value.h"
+
+#include <string>
+
+namespace patchlight::cli {
+
+struct VerifyCommandOptions {
+  ModelOptions model;
+  MeshOptions mesh;
+  VerifyOptions verify;
+  double bar = default_bar;
+  std::string json;
+};
+
+namespace {
+
+void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
+  add(command, "--paths", "N",
+      "paths per patch, rounded up to 32 times a power of two; the noise\nof the check falls as their root; default "
+      "4096",
+      [&options](const std::string& text) {
+        options.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 30U));
+      });
+  add(command, "--checked", "N", "how many patches are checked, chosen at random by area; default 64",
+      [&options](const std::string& text) {
+        options.verify.checked = whole_number("--checked", text, 1, 1'000'000'000);
+      });
+  add(command, "--bar", "PERCENT",
+      "standard error that each patch's irradiance is granted for patch\nsize and form factors, in percent of it, or "
+      "of "
+      "the mean where that\nis larger; default 2%",
+      [&options](const std::string& text) {
+        const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
+        const auto inside = [](double x) { return x >= 0 && x <= 100; };
+        options.bar = number("--bar", digits, "a percentage from 0 to 100", inside) / 100;
+      });
+  add(command, "--json", "FILE", "the verdict and every patch that was checked (.json)",
+      [&options](const std::string& text) {
+        if (!text.ends_with(".json")) throw refusal("--json", text, "a name that ends in .json");
+        options.json = text;
+      });
+}
+
+}  // namespace
+
+std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
+  auto options = std::make_shared<VerifyCommandOptions>();
+  VerifyCommandOptions& to = *options;
+  CLI::App& command = *tool.add_subcommand("verify", "solves a model and checks the answer by path tracing");
+  add_model_options(command, to.model);
+  add_sides_option(command, to.mesh);
+  add_verify_options(command, to);
+  add_patch_options(command, to.mesh);
+  add_sampling_options(command, to.mesh);
+  add_machine_options(command, to.mesh.request);
+  return options;
+}
+
+VerifyArguments finish_verify(const VerifyCommandOptions& options) {
+  if (options.model.models.empty()) {
+    throw UsageError("verify: found no model; expected: patchlight verify MODEL");
+  }
+  VerifyArguments arguments;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.options = options.verify;
+  arguments.options.seed = arguments.request.seed;
+  arguments.bar = options.bar;
+  arguments.json = options.json;
+  return arguments;
+}
+
+}  // namespace patchlight::cli

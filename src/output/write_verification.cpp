@@ -1,0 +1,61 @@
+#include "patchlight/output/write_verification.h"
+
+#include "output/write_bytes.h"
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
+using Json = nlohmann::ordered_json;
+
+template <typename Values>
+std::vector<double> list(const Values& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+std::vector<double> row(const Field& field, Eigen::Index i) { return list(Spectrum(field.row(i))); }
+
+}  // namespace
+
+void write_verification(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+                        const Verification& verification, const Provenance& provenance) {
+  const PatchMesh& mesh = simulation.mesh;
+  Json json;
+  json["version"] = version();
+  json["command_line"] = provenance.command_line;
+  json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}};
+  json["agrees"] = verification.agrees;
+  json["probability"] = verification.probability;
+  json["least_probability"] = least_probability;
+  json["chi_square"] = list(verification.chi_square);
+  json["patches"] = mesh.size();
+  json["paths_per_patch"] = verification.paths.paths;
+  json["rays"] = verification.paths.rays;
+  json["checked"] = Json::array();
+  const Field z = deviations_by_noise(verification);
+  const Field with_bar = deviations(verification);
+  for (std::size_t k = 0; k < verification.patches.size(); ++k) {
+    const PatchIndex patch = verification.patches[k];
+    const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
+    const auto i = static_cast<Eigen::Index>(k);
+    json["checked"].push_back({{"patch", patch},
+                               {"place", place_of(scene, polygon)},
+                               {"source_polygon", polygon.face},
+                               {"group", group_name(scene, polygon.group)},
+                               {"material", scene.materials[mesh.material[patch]].name},
+                               {"centre_m", list(mesh.centroid[patch])},
+                               {"area_m2", mesh.area[patch]},
+                               {"irradiance_W_m2", row(verification.irradiance, i)},
+                               {"bar_W_m2", row(verification.bar, i)},
+                               {"traced_W_m2", row(verification.paths.irradiance, i)},
+                               {"standard_error_W_m2", row(verification.paths.standard_error, i)},
+                               {"z", row(z, i)},
+                               {"z_with_bar", row(with_bar, i)}});
+  }
+  write_bytes(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace patchlight

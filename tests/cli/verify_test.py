@@ -1,0 +1,65 @@
+"""patchlight verify: a solution against path tracing."""
+import json
+import os
+import pathlib
+import unittest
+
+from support import ToolTest
+
+GOOD, USAGE, INPUT, NOT_CONVERGED, DIFFERS, OUTPUT = 0, 1, 2, 3, 5, 6
+CORNELL_BOX = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell_box.obj"
+
+
+class VerifyTest(ToolTest):
+    def test_cornell_box_agrees_and_the_json_tells_the_same(self):
+        done = self.run_tool("verify", CORNELL_BOX, "--patches", 2000, "--sides", "front", "--json", "out.json")
+        self.assertEqual((done.returncode, done.stderr), (GOOD, ""), done.stdout)
+        self.assertIn("agrees: with a bar of 2 %", done.stdout)
+        facts = json.loads((self.folder / "out.json").read_text())
+        self.assertTrue(facts["agrees"])
+        self.assertGreaterEqual(facts["probability"], facts["least_probability"])
+        self.assertEqual((len(facts["checked"]), facts["paths_per_patch"]), (64, 4096))
+        chi_square = [0, 0, 0]
+        for patch in facts["checked"]:
+            for band in range(3):
+                ours, traced = patch["irradiance_W_m2"][band], patch["traced_W_m2"][band]
+                error, bar = patch["standard_error_W_m2"][band], patch["bar_W_m2"][band]
+                self.assertAlmostEqual(patch["z"][band], (ours - traced) / error, 6)
+                chi_square[band] += (ours - traced) ** 2 / (error ** 2 * 31 / 29 + bar ** 2)
+        for band in range(3):
+            self.assertAlmostEqual(facts["chi_square"][band] / chi_square[band], 1, 9)
+        # The worst patches come first, each with its place.
+        rows = done.stdout.splitlines()[1:11]
+        sizes = [abs(float(row.split()[-1])) for row in rows]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+        self.assertTrue(all("cornell_box.obj:" in row for row in rows))
+
+    def test_too_few_patches_disagree(self):
+        """Without a bar the error of a coarse mesh is many times the noise."""
+        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "0%", "--paths", 16384)
+        self.assertEqual(done.returncode, DIFFERS, done.stdout)
+        self.assertIn("DISAGREES", done.stdout)
+
+    def test_the_same_seed_gives_the_same_words(self):
+        def words(*options):
+            lines = self.run_tool("verify", "room.obj", "--patches", 100, "--paths", 256, *options).stdout.splitlines()
+            return [line for line in lines if " rays in " not in line]
+        self.assertEqual(words("--threads", 1), words("--threads", 2))
+        self.assertNotEqual(words(), words("--seed", 2))
+
+    def test_what_does_not_converge_is_not_verified(self):
+        done = self.run_tool("verify", "room.obj", "--set", "white.reflectance=1", "--set", "lamp.reflectance=1",
+                             "--patches", 100)
+        self.assertEqual(done.returncode, NOT_CONVERGED, done.stdout)
+        self.assertIn("not verified", done.stderr)
+
+    def test_refusals(self):
+        for words, code in ((["room.obj", "--bar", "a"], USAGE), (["room.obj", "--bar", "-1"], USAGE),
+                            (["room.obj", "--paths", "0"], USAGE), (["room.obj", "--json", "a.txt"], USAGE),
+                            ([], USAGE), (["missing.obj"], INPUT), (["room.obj", "--json", "missing/a.json"], OUTPUT)):
+            done = self.run_tool("verify", *words)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), words)
+
+
+if __name__ == "__main__":
+    unittest.main()

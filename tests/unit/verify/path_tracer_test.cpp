@@ -1,0 +1,176 @@
+#include "patchlight/verify/path_tracer.h"
+
+#include "patchlight/base/parallel.h"
+
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// The whole of one side of a polygon with four corners.
+Receiver whole(const Scene& scene, PolygonIndex polygon, Side side = Side::front) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  return {{corners[0], corners[1], corners[2], corners[3]}, polygon, side};
+}
+
+std::vector<Receiver> whole_fronts(const Scene& scene) {
+  std::vector<Receiver> receivers;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) receivers.push_back(whole(scene, p));
+  return receivers;
+}
+
+// Four standard errors, estimated with 31 degrees of freedom: a right value fails with a probability of 4e-4. The seeds
+// are fixed, so that it is decided once.
+void expect_within_four_errors(const PathEstimate& estimate, double exact) {
+  for (Eigen::Index i = 0; i < estimate.irradiance.rows(); ++i) {
+    EXPECT_NEAR(estimate.irradiance(i, 0), exact, 4 * estimate.standard_error(i, 0) + 1e-12) << "receiver " << i;
+  }
+}
+
+TEST(TraceIrradiance, FurnaceIsOne) {
+  // A closed room with E = 1 - rho everywhere: B = E + rho H = 1 and H = 1 at every point, whatever stands in it.
+  for (const double reflectance : {0.0, 0.3, 0.9}) {
+    Scene scene = empty_scene({grey(reflectance, 1 - reflectance)});
+    scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
+    scene = with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false);
+    const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), whole_fronts(scene));
+    expect_within_four_errors(estimate, 1);
+    EXPECT_LT(estimate.standard_error.maxCoeff(), 0.03);
+    EXPECT_GT(estimate.standard_error.minCoeff(), 0);
+  }
+}
+
+TEST(TraceIrradiance, OneLampInABlackCubeGivesTheFormFactor) {
+  // H = E F with the form factors of opposed unit squares at distance 1 (Howell C-11) and of squares that share an edge
+  // (C-14). Beside the lamp, points on it alone would have no finite variance.
+  Scene scene = empty_scene({grey(0), grey(0, 7)});
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(1, 1, 1), true);
+  for (std::size_t k = 0; k < faces.size(); ++k) scene = with_quad(std::move(scene), faces[k], k == 1 ? 1 : 0);
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  const std::vector<Receiver> opposed{whole(scene, 0)};
+  const std::vector<Receiver> touching{whole(scene, 2), whole(scene, 3), whole(scene, 4), whole(scene, 5)};
+  expect_within_four_errors(trace_irradiance(scene, sides, opposed), 7 * 0.19982489569838732);
+  expect_within_four_errors(trace_irradiance(scene, sides, touching), 7 * 0.20004377607540316);
+}
+
+TEST(TraceIrradiance, UniformCubeHasTheNeumannSeries) {
+  // B = E + rho H with H = B on all sides: H = E / (1 - rho). Per band; each with the throughput of its own.
+  Scene scene = cube_room(0, 0);
+  scene.materials[0].reflectance = rgb(0.2, 0.5, 0.8);
+  scene.materials[0].exitance = rgb(3, 1, 0.5);
+  const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), whole_fronts(scene));
+  const Spectrum exact = rgb(3 / 0.8, 1 / 0.5, 0.5 / 0.2);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    for (Eigen::Index band = 0; band < 3; ++band) {
+      EXPECT_NEAR(estimate.irradiance(i, band), exact[band], 4 * estimate.standard_error(i, band));
+    }
+  }
+  EXPECT_LT((estimate.standard_error.rowwise() / exact).maxCoeff(), 0.03);
+}
+
+TEST(TraceIrradiance, LampEmitsFromTheSidesThatSimulateSays) {
+  // A lamp halfway between two black plates, each 1 m away: C-11 on the side that it shines at, nothing on the other.
+  Scene scene = empty_scene({grey(0), grey(0, 7), grey(0, 2)});
+  const auto square = [](double z) { return Quad{Point(0, 0, z), Point(1, 0, z), Point(1, 1, z), Point(0, 1, z)}; };
+  scene = with_quad(std::move(scene), square(0));
+  scene = with_quad(std::move(scene), square(1), 1);
+  scene = with_quad(std::move(scene), square(2));
+  const std::vector<Receiver> below_and_above{whole(scene, 0, Side::front), whole(scene, 2, Side::back)};
+  const auto expect = [&](const KeptSides& sides, double below, double above) {
+    const PathEstimate estimate = trace_irradiance(scene, sides, below_and_above);
+    EXPECT_NEAR(estimate.irradiance(0, 0), below * 0.19982489569838732, 4 * estimate.standard_error(0, 0));
+    EXPECT_NEAR(estimate.irradiance(1, 0), above * 0.19982489569838732, 4 * estimate.standard_error(1, 0));
+  };
+  KeptSides sides{.front = {1, 1, 1}, .back = {1, 1, 1}, .emit_from_back = false, .notes = {}};
+  expect(sides, 0, 7);
+  sides.emit_from_back = true;
+  expect(sides, 7, 7);
+  sides.emit_from_back = false;
+  scene.polygons[1].back_material = 2;
+  expect(sides, 2, 7);
+  sides.front[1] = 0;
+  expect(sides, 2, 0);
+}
+
+TEST(TraceIrradiance, SidesThatAreNotKeptAreBlack) {
+  // In a closed room where one wall has no patches, the light that it would send back is missing: as if it were black.
+  Scene black = cube_room(0.5, 1);
+  black.materials.push_back(grey(0));
+  black.polygons[3].material = 1;
+  Scene without = black;
+  without.polygons[3].material = 0;
+  KeptSides sides = kept_sides(without, Sides::front);
+  sides.front[3] = 0;
+  const std::vector<Receiver> floor{whole(black, 0)};
+  const Field expected = trace_irradiance(black, kept_sides(black, Sides::front), floor).irradiance;
+  const PathEstimate estimate = trace_irradiance(without, sides, floor, {.seed = 2});
+  EXPECT_NEAR(estimate.irradiance(0, 0), expected(0, 0), 4 * std::sqrt(2) * estimate.standard_error(0, 0));
+  EXPECT_LT(expected(0, 0), 1.9);
+}
+
+TEST(TraceIrradiance, IsTheMeanOverWhatIsNotCovered) {
+  // A furnace in which a solid stands on the floor and covers a quarter of it: what is exposed still has 1.
+  Scene scene = empty_scene({grey(0.5, 0.5)});
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(2, 2, 2), true);
+  scene = with_box(std::move(scene), Point(0.5, 0.5, 0), Point(1.5, 1.5, 1), false);
+  const std::vector<Receiver> floor{whole(scene, 0)};
+  const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), floor);
+  expect_within_four_errors(estimate, 1);
+  EXPECT_LT(estimate.standard_error(0, 0), 0.02);
+}
+
+TEST(TraceIrradiance, StandardErrorIsTheScatterOverSeeds) {
+  // With n seeds, the squared deviations from their mean add up to a chi-square of n - 1 degrees of freedom times the
+  // variance, the mean of what n runs state: four of its standard deviations, sqrt(2 (n - 1)), to either side. With 32
+  // paths many runs miss what the small lamp lights, and their stated errors are small, those of the others large.
+  constexpr int seeds = 64;
+  const Scene scene = furnished_room(0.5);
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  const std::vector<Receiver> receivers{whole(scene, 0), whole(scene, 6)};
+  for (const std::uint32_t paths : {32U, 1024U}) {
+    Field irradiance(seeds, 2);
+    Field variance(seeds, 2);
+    for (int k = 0; k < seeds; ++k) {
+      const PathOptions options{.paths = paths, .seed = static_cast<std::uint64_t>(k)};
+      const PathEstimate estimate = trace_irradiance(scene, sides, receivers, options);
+      irradiance.row(k) = estimate.irradiance.transpose();
+      variance.row(k) = estimate.standard_error.square().transpose();
+    }
+    const Field deviation = irradiance.rowwise() - irradiance.colwise().mean();
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      const double chi_square = deviation.col(i).square().sum() / variance.col(i).mean();
+      EXPECT_NEAR(chi_square, seeds - 1, 4 * std::sqrt(2.0 * (seeds - 1))) << paths << " paths, receiver " << i;
+    }
+  }
+}
+
+TEST(TraceIrradiance, SameBitsWithAnyNumberOfThreads) {
+  const Scene scene = furnished_room(0.5);
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  const auto trace = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return trace_irradiance(scene, sides, whole_fronts(scene), {.paths = 256});
+  };
+  const PathEstimate one = trace(1);
+  const PathEstimate two = trace(2);
+  EXPECT_TRUE((one.irradiance == two.irradiance).all());
+  EXPECT_TRUE((one.standard_error == two.standard_error).all());
+  EXPECT_EQ(one.rays, two.rays);
+}
+
+TEST(TraceIrradiance, EndsBetweenSurfacesThatAbsorbNothing) {
+  const Scene scene = cube_room(1, 1);
+  const std::vector<Receiver> floor{whole(scene, 0)};
+  const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), floor, {.paths = 1});
+  EXPECT_EQ(estimate.paths, 32U);
+  EXPECT_GT(estimate.irradiance(0, 0), 100);
+}
+
+}  // namespace
+}  // namespace patchlight
