@@ -18,6 +18,7 @@ namespace {
 constexpr double bytes_per_pair = 2;
 constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
 constexpr double bytes_per_patch = 1500;
+constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
 
 // Share of the machine's memory that may be taken when nothing is said.
@@ -28,6 +29,10 @@ double bytes_of_a_pair(const Request& request) {
   return bytes_per_pair + (request.standard_errors || request.error_bars ? bytes_per_error : 0);
 }
 
+double bytes_of_a_patch(const Request& request) {
+  return bytes_per_patch + (request.on_demand ? bytes_of_coarse_transport : 0);
+}
+
 double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
@@ -36,8 +41,8 @@ double installed_bytes() {
 double patches_in(double bytes, const Request& request) {
   const double left = std::max(0.0, bytes - bytes_of_program);
   const double of_a_pair = bytes_of_a_pair(request);
-  if (of_a_pair == 0) return std::max(1.0, left / bytes_per_patch);
-  const double half = bytes_per_patch / (2 * of_a_pair);
+  if (of_a_pair == 0) return std::max(1.0, left / bytes_of_a_patch(request));
+  const double half = bytes_of_a_patch(request) / (2 * of_a_pair);
   return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
 }
 
@@ -51,7 +56,7 @@ std::string gigabytes(double bytes) {
 
 double memory_needed(std::size_t patches, const Request& request) {
   const auto n = static_cast<double>(patches);
-  return bytes_of_a_pair(request) * n * n + bytes_per_patch * n + bytes_of_program;
+  return bytes_of_a_pair(request) * n * n + bytes_of_a_patch(request) * n + bytes_of_program;
 }
 
 void require_memory(std::size_t patches, const Request& request) {

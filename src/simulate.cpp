@@ -51,10 +51,12 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
                                     : find(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
   const Eigen::VectorXd area = exchange.area;
   TransportFacts& facts = result.transport;
-  facts.raw_row_sum = exchange.raw_row_sum;
-  facts.lost = exchange.lost;
-  facts.counts = exchange.counts;
-  facts.error = exchange.error;
+  facts = {.raw_row_sum = exchange.raw_row_sum,
+           .row_sum = {},
+           .lost = exchange.lost,
+           .counts = exchange.counts,
+           .error = exchange.error,
+           .closure = exchange.closure};
   if (!with.exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
   clock.finish(Stage::form_factors);
 
@@ -62,7 +64,6 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   // 4. Closure: each row sums up to what its patch sees.
   std::unique_ptr<RowTransport> transport;
   if (plan.on_demand) {
-    facts.closure = exchange.closure;
     transport = on_demand_transport(mesh, occluder, assembly_options(plan), area);
   } else {
     ClosedExchangeAreas closed = plan.close ? close_exchange(std::move(exchange), observer)

@@ -7,6 +7,7 @@
 #include "patchlight/plan/survey.h"
 
 #include "cli/interrupt.h"
+#include "cli/text_table.h"
 
 #include <algorithm>
 #include <array>
@@ -17,11 +18,8 @@
 namespace patchlight::cli {
 namespace {
 
-std::string rounded(double value, int digits = 4) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
+// Of lengths and areas.
+constexpr int digits = 4;
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -30,27 +28,28 @@ std::string counted(std::size_t count, const std::string& noun) {
 template <class Values>
 std::string listed(const Values& values, const char* separator) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : separator) + rounded(value);
+  for (const double value : values) text += (text.empty() ? "" : separator) + rounded(value, digits);
   return text;
 }
 
 std::string size_line(const Scene& scene, const SceneReport& report) {
   std::ostringstream text;
   text << "size: " << listed(Vector(report.bounds.sizes()), " x ") << " m, from (" << listed(report.bounds.min(), ", ")
-       << ") to (" << listed(report.bounds.max(), ", ") << "), one model unit being " << rounded(scene.metres_per_unit)
-       << " m\n";
+       << ") to (" << listed(report.bounds.max(), ", ") << "), one model unit being "
+       << rounded(scene.metres_per_unit, digits) << " m\n";
   return text.str();
 }
 
 std::string counts_lines(const SceneReport& report) {
   std::ostringstream text;
-  text << "faces: " << counted(report.polygons, "polygon") << " of " << rounded(report.area) << " m^2, "
+  text << "faces: " << counted(report.polygons, "polygon") << " of " << rounded(report.area, digits) << " m^2, "
        << report.vertices << " vertices, " << counted(report.groups, "group") << '\n';
   text << "shells: " << report.shells << ", of these " << report.closed_shells << " closed; ";
   if (report.open_edges == 0) {
     text << "no open edges\n";
   } else {
-    text << counted(report.open_edges, "open edge") << ", " << rounded(report.open_edge_length) << " m in all\n";
+    text << counted(report.open_edges, "open edge") << ", " << rounded(report.open_edge_length, digits)
+         << " m in all\n";
   }
   return text.str();
 }
@@ -64,7 +63,7 @@ std::string material_lines(const SceneReport& report) {
   for (const MaterialFacts& facts : report.materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width)) << facts.material.name << "  reflectance "
          << listed(facts.material.reflectance, ", ") << "; " << counted(facts.faces, "face") << ", "
-         << rounded(facts.area) << " m^2\n";
+         << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }
@@ -75,7 +74,7 @@ std::string lamp_lines(const SceneReport& report) {
   for (const MaterialFacts& facts : report.materials) {
     if (!(facts.material.exitance > 0).any()) continue;
     text << "  " << facts.material.name << "  flux " << listed(facts.flux, ", ") << " W, "
-         << rounded(luminance(facts.flux)) << " lm from " << rounded(facts.area) << " m^2\n";
+         << rounded(luminance(facts.flux), digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }

@@ -8,6 +8,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 #include "cli/text_table.h"
 
 #include <cmath>
@@ -19,20 +20,13 @@
 namespace patchlight::cli {
 namespace {
 
-std::string rounded(double value, int digits = 3) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string table(const Comparison& comparison) {
   const PatchIndex patches = comparison.simulation.mesh.size();
   std::vector<TextRow> rows{
       {"solver", "true error", "bound", "iterations", "applications", "seconds", "with assembly", "rate"}};
   for (const SolverRun& run : comparison.runs) {
     const Iteration& last = run.solution.history.back();
-    rows.push_back({name_of(run.contestant) + (run.solution.converged ? "" : " (not there)"),
+    rows.push_back({name_of(run.contestant) + (run.solution.converged ? "" : " (not reached)"),
                     rounded(last.true_error, 2), rounded(last.error_bound, 2),
                     rounded(iterations_of(run, last, patches)), rounded(last.work), rounded(run.seconds),
                     rounded(run.seconds + run.assembly_seconds), rounded(run.rate)});
@@ -53,6 +47,16 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
           "error "
           "per iteration\n";
   return text.str();
+}
+
+// The solvers that have given up. Rows on demand are not closed: that they do not come as near is no failure.
+std::string not_reached(const Comparison& comparison) {
+  std::string names;
+  for (const SolverRun& run : comparison.runs) {
+    if (run.solution.converged || run.contestant.on_demand) continue;
+    names += (names.empty() ? "" : ", ") + name_of(run.contestant);
+  }
+  return names;
 }
 
 }  // namespace
@@ -83,9 +87,15 @@ ExitCode compare(const CompareArguments& arguments) {
   write_comparison(arguments.output, scene, comparison, {arguments.command_line, exposure}, observer);
   line.hide();
   if (!arguments.quiet) {
+    for (const std::string& note : notes(scene, simulation)) print_message("note", note);
     std::cout << table(comparison) << facts(scene, comparison) << "wrote " << arguments.output.string() << std::endl;
   }
-  if (simulation.solution.converged) return good;
+  const std::string missed = not_reached(comparison);
+  if (!missed.empty()) {
+    print_message("warning",
+                  "the tolerance was not reached by " + missed + "; a larger --max-iterations lets them go on");
+  }
+  if (simulation.solution.converged) return missed.empty() ? good : not_converged;
   print_message("warning", "the reference itself has not converged: relative residual " +
                                rounded(comparison.reference_residual) + "; the errors above are relative to it");
   return not_converged;

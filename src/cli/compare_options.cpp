@@ -56,17 +56,9 @@ void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
       [&compare](const std::string& text) {
         compare.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 1, 1'000'000));
       });
-  add(command, "--relaxation", "NUMBER",
-      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
-      [&options](const std::string& text) {
-        const auto inside = [](double x) { return x > 0 && x < 2; };
-        options.mesh.request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
-      });
   command.add_flag_callback(
       "--no-series", [&compare] { compare.keep_iterates = false; }, "no series for ParaView; default: one per solver");
-  command.add_flag_callback(
-      "--no-closure", [&options] { options.mesh.request.close = false; },
-      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add_equation_options(command, options.mesh.request);
 }
 
 }  // namespace
@@ -97,6 +89,11 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
     throw UsageError("compare: found no model; expected: patchlight compare MODEL -o FOLDER");
   }
   if (arguments.output.empty()) throw UsageError("compare: nothing would be written; give -o FOLDER");
+  const auto is_sor = [](const Contestant& contestant) { return contestant.solver == Solver::sor; };
+  const std::vector<Contestant>& all = arguments.options.contestants;
+  if (arguments.request.relaxation && std::none_of(all.begin(), all.end(), is_sor)) {
+    throw UsageError("--relaxation needs sor among --solvers");
+  }
   const auto on_demand = [](const Contestant& contestant) { return contestant.on_demand; };
   const std::vector<Contestant>& chosen = arguments.options.contestants;
   if (std::any_of(chosen.begin(), chosen.end(), on_demand) && arguments.request.estimator != Estimator::automatic) {

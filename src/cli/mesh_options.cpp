@@ -28,6 +28,18 @@ void add_patch_options(CLI::App& command, MeshOptions& options) {
       [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
 }
 
+void add_equation_options(CLI::App& command, Request& request) {
+  command.add_flag_callback(
+      "--no-closure", [&request] { request.close = false; },
+      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add(command, "--relaxation", "NUMBER",
+      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
+      [&request](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 2; };
+        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
+      });
+}
+
 void add_sampling_options(CLI::App& command, MeshOptions& options) {
   Request& request = options.request;
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",

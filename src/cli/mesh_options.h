@@ -19,6 +19,9 @@ void add_sides_option(CLI::App& command, MeshOptions& options);
 /// Adds --max-edge and --patches.
 void add_patch_options(CLI::App& command, MeshOptions& options);
 
+/// Adds --no-closure and --relaxation.
+void add_equation_options(CLI::App& command, Request& request);
+
 /// Adds --samples, --estimator and --seed.
 void add_sampling_options(CLI::App& command, MeshOptions& options);
 

@@ -3,6 +3,7 @@
 #include "patchlight/output/write_result.h"
 
 #include "cli/add_option.h"
+#include "cli/mesh_options.h"
 #include "cli/parse_value.h"
 
 #include <utility>
@@ -44,6 +45,9 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   }
   if (options.camera && options.camera->eye == options.camera->target) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
+  }
+  if (options.request.relaxation && options.request.solver != Solver::sor) {
+    throw UsageError("--relaxation needs --solver sor");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
@@ -147,19 +151,11 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
 
 void add_solver_options(CLI::App& command, SolutionOptions& options) {
   Request& request = options.request;
-  command.add_flag_callback(
-      "--no-closure", [&request] { request.close = false; },
-      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+  add_equation_options(command, request);
   add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
       [&request, &options](const std::string& text) {
         options.solver_given = true;
         request.solver = solver_named("--solver", text);
-      });
-  add(command, "--relaxation", "NUMBER",
-      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
-      [&request](const std::string& text) {
-        const auto inside = [](double x) { return x > 0 && x < 2; };
-        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
       });
   add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
       [&request](const std::string& text) {

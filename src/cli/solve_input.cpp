@@ -4,6 +4,7 @@
 #include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
 
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -15,6 +16,20 @@ void require_same_unit(const std::filesystem::path& folder, const FormFactorInfo
   std::ostringstream text;
   text << "found form factors of a model with " << info.metres_per_unit << " m per unit; this one is read with "
        << scene.metres_per_unit << ". Give the same --unit as then";
+  throw InputError(folder.string(), text.str());
+}
+
+// A patch with edges up to max_edge has an area up to its square: a model with more area is another one, which is said
+// before it is cut into very many patches.
+void require_room_for(const std::filesystem::path& folder, const FormFactorInfo& info, const Scene& scene,
+                      const Request& request) {
+  const double largest = info.max_edge * info.max_edge;
+  const double least = std::ceil(kept_area(scene, sides_for(scene, request)) / largest * (1 - 1e-9));
+  if (request.patches || request.max_edge != info.max_edge || least <= info.patches) return;
+  std::ostringstream text;
+  text << "found form factors of " << info.patches << " patches with edges up to " << info.max_edge << " m, made from "
+       << info.model << "; this model takes at least " << least
+       << " such patches. Give the model of then, or make them anew: patchlight form-factors MODEL -o FOLDER";
   throw InputError(folder.string(), text.str());
 }
 
@@ -52,6 +67,7 @@ SolveInput read_input(const SolveArguments& arguments) {
   require_same_unit(folder, info, input.scene);
   input.request = request_as_then(arguments, info);
   input.request.kept_sides = std::move(sides);
+  require_room_for(folder, info, input.scene, input.request);
   input.exchange = [folder, info](const PatchMesh& mesh) { return read_exchange(folder, info, mesh); };
   return input;
 }

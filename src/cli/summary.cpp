@@ -2,18 +2,14 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "cli/text_table.h"
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace patchlight::cli {
 namespace {
-
-std::string rounded(double value, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
 
 // Values per band, for three bands as R, G, B.
 std::string bands(const Eigen::ArrayXd& values) {
@@ -164,11 +160,20 @@ std::string explain_not_converged(const Simulation& simulation) {
            " % of the rows of form factors, as asked for. A picture shows an estimate of the light still under way, "
            "other results what has arrived";
   }
-  return convergence(plan, simulation.solution) + ", asked for " + rounded(plan.solver.relative_error, 2) +
-         ". Either " + std::to_string(plan.solver.max_iterations) +
-         " iterations are too few for this solver: try a larger --max-iterations or --tolerance; or light cannot "
-         "leave the scene because the largest reflectance, " +
-         rounded(simulation.problem.reflectance.maxCoeff(), 6) + ", is close to 1: lower it with --set";
+  const std::string asked = "NOT converged to " + rounded(plan.solver.relative_error, 2) + ". ";
+  const Iteration& last = simulation.solution.history.back();
+  constexpr double rounding = 1e-13;
+  if (last.relative_residual < rounding) {
+    return asked + "The residual has come down to rounding: no solver gets nearer; give a larger --tolerance";
+  }
+  std::string advice = std::to_string(plan.solver.max_iterations) +
+                       " iterations are too few for this solver: try a larger --max-iterations or --tolerance";
+  const double highest = simulation.problem.reflectance.maxCoeff();
+  constexpr double nearly_all = 0.99;
+  if (highest > nearly_all) {
+    advice += "; or lower the largest reflectance, " + rounded(highest, 6) + ", with --set: light hardly gets lost";
+  }
+  return asked + advice;
 }
 
 }  // namespace patchlight::cli

@@ -1,10 +1,18 @@
 #include "cli/text_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace patchlight::cli {
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
 
 std::string text_table(const std::vector<TextRow>& rows) {
   std::vector<std::size_t> width(rows.front().size());

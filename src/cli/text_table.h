@@ -7,6 +7,9 @@ namespace patchlight::cli {
 
 using TextRow = std::vector<std::string>;
 
+/// A number with so many digits; "-" for what is not finite.
+std::string rounded(double value, int digits = 3);
+
 /// Rows as lines with columns, each as wide as its widest cell; all rows have as many cells as the first.
 std::string text_table(const std::vector<TextRow>& rows);
 

@@ -18,19 +18,13 @@
 namespace patchlight::cli {
 namespace {
 
-std::string number_with(int digits, double value) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 TextRow row_of(const ValidationResult& result) {
   const Measured& measured = result.measured;
   return {result.name,
-          number_with(9, result.exact),
-          number_with(9, measured.value),
-          number_with(2, std::abs(measured.value - result.exact)),
-          number_with(2, measured.error_bar),
+          rounded(result.exact, 9),
+          rounded(measured.value, 9),
+          rounded(std::abs(measured.value - result.exact), 2),
+          rounded(measured.error_bar, 2),
           within_bar(result) ? "good" : "OUTSIDE",
           result.source,
           measured.bar_from};
@@ -64,7 +58,7 @@ ExitCode validate(const ValidateArguments& arguments, std::span<const Validation
     std::cout << validation_json(results) << std::flush;
   } else {
     std::cout << table(results) << results.size() << " cases, " << outside << " outside their error bars; "
-              << number_with(3, seconds) << " s" << std::endl;
+              << rounded(seconds, 3) << " s" << std::endl;
   }
   return outside == 0 ? good : validation_failed;
 }

@@ -24,13 +24,6 @@ namespace {
 // So many of the checked patches are shown, those that differ most.
 constexpr std::size_t shown = 10;
 
-std::string rounded(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string position(const Point& point) {
   return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
 }
@@ -83,7 +76,7 @@ std::string verdict(const Verification& verification, double bar) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
        << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
-       << 100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1) << " %\n"
+       << rounded(100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1), 3) << " %\n"
        << (verification.agrees ? "agrees" : "DISAGREES") << ": with a bar of " << 100 * bar
        << " % of the irradiance, or of its mean where that is larger, chi-square " << verification.chi_square.maxCoeff()
        << " of " << verification.patches.size() << " patches in the worst band, p = " << verification.probability
@@ -122,6 +115,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) {
     write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
   }
+  for (const std::string& note : notes(scene, simulation)) print_message("note", note);
   std::cout << table(scene, simulation.mesh, verification) << scene.file << ": " << verification.patches.size()
             << " of " << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
             << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)

@@ -24,7 +24,7 @@ void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
       "paths per patch, rounded up to 32 times a power of two; the noise\nof the check falls as their root; default "
       "4096",
       [&options](const std::string& text) {
-        options.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 30U));
+        options.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 22U));
       });
   add(command, "--checked", "N", "how many patches are checked, chosen at random by area; default 64",
       [&options](const std::string& text) {

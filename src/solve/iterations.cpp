@@ -135,9 +135,17 @@ bool Iterations::record(Iterate iterate, int number, Residual residual) {
     hopeless_ = iteration.relative_residual > last_applied_residual_ / 2;
     last_applied_residual_ = iteration.relative_residual;
   }
+  // Near rounding a residual that does not fall any more has come to its end.
+  constexpr double near_rounding = 1e-12;
+  constexpr int patience = 30;
+  without_progress_ = iteration.relative_residual < least_residual_ / 2 ? 0 : without_progress_ + 1;
+  least_residual_ = std::min(least_residual_, iteration.relative_residual);
+  if (least_residual_ < near_rounding && without_progress_ > patience) hopeless_ = true;
   solution_.history.push_back(iteration);
   if (!std::isfinite(iteration.relative_residual)) {
     hopeless_ = true;
+    // The last one with numbers is handed out; if there is none, the first.
+    if (last_.irradiance.size() == 0) last_ = std::move(iterate);
     return false;
   }
   tell(iterate);

@@ -77,6 +77,8 @@ class Iterations {
   double next_report_ = 0;
   Eigen::ArrayXd first_residual_;
   double last_applied_residual_ = std::numeric_limits<double>::infinity();
+  double least_residual_ = std::numeric_limits<double>::infinity();
+  int without_progress_ = 0;  // iterates since it was found
   bool hopeless_ = false;
   Iterate last_;
   Field ambient_, arrived_;

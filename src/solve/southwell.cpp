@@ -86,8 +86,12 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
                                       problem.reflectance.rowwise() * even_irradiance(unshot, problem).row(0));
     const Eigen::Index source = coarse.next_source(waiting);
     const Field shot_radiosity = waiting.row(source);
+    // Nothing is left to shoot: what there is is the solution.
+    const bool is_done = (shot_radiosity == 0).all();
+    if (is_done) next_record = shots;
     const auto index = static_cast<PatchIndex>(source);
-    const Field arriving = transport.shoot({index, index + 1}, shot_radiosity);
+    const Field arriving =
+        is_done ? Field::Zero(n, shot_radiosity.cols()) : transport.shoot({index, index + 1}, shot_radiosity);
     unshot.row(source) -= shot_radiosity;
     unshot += problem.reflectance * arriving;
     H += arriving;

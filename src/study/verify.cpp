@@ -54,8 +54,12 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
   const Eigen::ArrayXd& area = simulation.problem.area.array();
   const Spectrum mean = (solution.irradiance.colwise() * area).colwise().sum() / area.sum();
   Field bar = relative * solution.irradiance.max(mean.replicate(solution.irradiance.rows(), 1));
-  if (solution.error.size() > 0) bar.rowwise() += solution.error.colwise().maxCoeff().eval();
-  return bar;
+  if (solution.error.size() == 0) return bar;
+  // B = E + rho o H: |dB_i| = rho_i |dH_i|.
+  const Field& rho = simulation.problem.reflectance;
+  const Field of_solver = (rho > 0).select(solution.error / rho, 0.0);
+  const Spectrum largest = of_solver.colwise().maxCoeff();
+  return bar + (rho > 0).select(of_solver, largest.replicate(rho.rows(), 1));
 }
 
 Field deviations(const Verification& verification) {

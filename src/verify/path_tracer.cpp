@@ -145,8 +145,10 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
     if ((there.exitance > 0).any()) {
       const double cosine = surfaces.at(vertex.polygon, vertex.side).normal.dot(rays[k].direction);
       const double cosine_there = -there.normal.dot(rays[k].direction);
-      const double g = cosine * cosine_there / (std::numbers::pi * hit.distance * hit.distance);
-      step.irradiance += vertex.throughput * there.exitance * g / (sampling_density(lamps, there) + g);
+      // G / (p + G) with G = a / distance^2, as a / (p distance^2 + a): finite where a ray hardly gets off.
+      const double a = std::max(0.0, cosine * cosine_there) / std::numbers::pi;
+      const double by_area = sampling_density(lamps, there) * hit.distance * hit.distance;
+      if (a > 0) step.irradiance += vertex.throughput * there.exitance * (a / (by_area + a));
     }
 
     // 2. What it reflects: go on with the probability of the band that carries most, which then carries all it did

@@ -104,7 +104,8 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
   SolverOptions options{.solver = solver, .relative_error = 1e-9, .max_iterations = 1};
   options.largest_row_sum = std::numeric_limits<double>::infinity();
   solve(*transport, problem, options, [&](const Progress& progress) {
-    if (progress.iteration == nullptr || progress.iteration->number == 0) return true;  // the lamps, before their light has arrived
+    // Not the lamps, before their light has arrived.
+    if (progress.iteration == nullptr || progress.iteration->number == 0) return true;
     const double now = cpu_seconds();
     const Field H = *progress.irradiance + *progress.ambient;
     all.push_back({progress.iteration->work, now - begin - measuring,

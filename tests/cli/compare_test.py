@@ -15,7 +15,8 @@ PLOTS = [f"error_by_{x}.{kind}" for x in ("application", "iteration", "second") 
 class CompareTest(ToolTest):
     def compare(self, *words, out="out"):
         done = self.run_tool("compare", "room.obj", "--patches", 300, "-o", out, *words)
-        self.assertEqual((done.returncode, done.stderr), (GOOD, ""))
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        self.assertNotIn("warning", done.stderr)
         return done, json.loads((self.folder / out / "compare.json").read_text())
 
     def rows(self, name):
@@ -85,9 +86,16 @@ class CompareTest(ToolTest):
         self.assertEqual(done.returncode, OUTPUT)
         self.assertEqual(content(self.folder), before)
 
+    def test_who_gives_up_is_named(self):
+        done = self.run_tool("compare", "room.obj", "--patches", 100, "-o", "out", "--max-iterations", 2, "--solvers",
+                             "jacobi,cg")
+        self.assertEqual(done.returncode, NOT_CONVERGED)
+        self.assertIn("not reached by jacobi, cg", done.stderr)
+        self.assertTrue((self.folder / "out" / "compare.json").exists())
+
     def test_refusals(self):
         for words in (["--solvers", "cg,cg"], ["--solvers", ""], ["--solvers", "newton"], ["--tolerance", "0"],
-                      ["--relaxation", "2"], ["--estimator", "area"]):
+                      ["--relaxation", "2"], ["--relaxation", "1.2", "--solvers", "cg"], ["--estimator", "area"]):
             done = self.run_tool("compare", "room.obj", "-o", "out", *words)
             self.assertEqual(done.returncode, USAGE, words)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)

@@ -169,6 +169,17 @@ class FormFactorsTest(ToolTest):
             self.assertIn(words, done.stderr)
         self.assertFalse((self.folder / "a.vtp").exists())
 
+    def test_those_of_a_far_smaller_model_are_refused_before_it_is_cut(self):
+        """A room a thousand times as large would take 60 million patches with these edges."""
+        self.find("-o", "room.ff", "--patches", "60")
+        large = [" ".join(["v", *(str(1000 * float(x)) for x in line.split()[1:])]) if line.startswith("v ") else line
+                 for line in ROOM.splitlines()]
+        self.write("room.obj", "\n".join(large) + "\n")
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "room.ff")
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        self.assertIn("room.ff: found form factors of", done.stderr)
+        self.assertIn("made from room.obj", done.stderr)
+
     def test_a_model_without_a_lamp_will_do(self):
         self.write("room.mtl", "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\n")
         self.find("-o", "room.ff", "--patches", "60")

@@ -11,7 +11,7 @@ USAGE, INPUT = 1, 2
 class FormatsTest(ToolTest):
     def solve(self, *arguments, text=""):
         words = [str(argument) for argument in ("solve", *arguments, "--patches", 100, "-o", "out.vtp", "--quiet")]
-        return subprocess.run([TOOL, *words], cwd=self.folder, input=text, capture_output=True, text=True, timeout=120,
+        return subprocess.run([TOOL, *words], cwd=self.folder, input=text, capture_output=True, text=True, timeout=600,
                               check=False)
 
     def spots(self, *arguments, text=""):

@@ -35,7 +35,7 @@ class RoomsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, str(SCRIPT), folder], check=True, capture_output=True, timeout=120)
+            subprocess.run([sys.executable, str(SCRIPT), folder], check=True, capture_output=True, timeout=600)
             cls.rooms = {file.stem: read_room(file) for file in pathlib.Path(folder).glob("*.obj")}
 
     def test_every_edge_is_walked_once_each_way(self):

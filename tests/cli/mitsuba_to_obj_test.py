@@ -35,7 +35,7 @@ class MitsubaTest(ToolTest):
         self.write("scene.xml", SCENE)
         self.write("part.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3/1/1 -2/1/1 -1/1/1\n")
         command = [sys.executable, str(SCRIPT), "scene.xml", "out.obj"]
-        self.done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual(self.done.returncode, 0, self.done.stderr)
         self.vertices, self.faces = [], {}
         for line in (self.folder / "out.obj").read_text().splitlines():

@@ -25,7 +25,7 @@ def history(solvers):
 
 
 def run(*words, **variables):
-    return subprocess.run([sys.executable, str(SCRIPT), *map(str, words)], capture_output=True, text=True, timeout=120,
+    return subprocess.run([sys.executable, str(SCRIPT), *map(str, words)], capture_output=True, text=True, timeout=600,
                           env=os.environ | variables, check=False)
 
 

@@ -46,7 +46,7 @@ Ke 10 9 8
 """
 
 
-def run(*arguments, folder, timeout=120, text=""):
+def run(*arguments, folder, timeout=600, text=""):
     """Runs the tool in a folder, with a text on its standard input; its output as text."""
     words = [str(argument) for argument in arguments]
     return subprocess.run([TOOL, *words], cwd=folder, input=text, capture_output=True, text=True, timeout=timeout,

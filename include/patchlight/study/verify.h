@@ -30,8 +30,8 @@ struct Verification {
 };
 
 /// A bar on the irradiance of every patch, W/m^2: `relative` of it or of the mean by area, whichever is larger, as what
-/// leaks into a dark corner comes from bright patches around it; and what the solver leaves, max_j |dB_j| over all
-/// patches where that is known, as |dH_i| <= sum_j F_ij |dB_j|.
+/// leaks into a dark corner comes from bright patches around it; and what the solver leaves where that is known,
+/// |dH_i| = |dB_i| / rho_i, for patches that reflect nothing the largest of the others.
 Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares the irradiance of randomly chosen patches, the larger the likelier, with path tracing in `scene`. Bars are

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "patchlight/solve/problem.h"
+#include "patchlight/transport/dense.h"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace patchlight::test {
+
+// A made-up closed scene: symmetric positive exchange areas, areas their row sums times `openness`.
+struct Room {
+  std::unique_ptr<RowTransport> transport;
+  RadiosityProblem problem;
+};
+
+inline Room made_up(PatchIndex n, double reflectance, double openness = 1) {
+  ExchangeAreas S(n);
+  for (PatchIndex i = 0; i < n; ++i) {
+    for (PatchIndex j = i + 1; j < n; ++j) {
+      const auto entry = static_cast<float>(0.1 + 0.9 * std::abs(std::sin(1.7 * i + 0.3 * j * j)));
+      const PatchIndex I = i / ExchangeAreas::edge;
+      const PatchIndex J = j / ExchangeAreas::edge;
+      const std::size_t r = i % ExchangeAreas::edge;
+      const std::size_t c = j % ExchangeAreas::edge;
+      S.tile(I, J)[r * ExchangeAreas::edge + c] = entry;
+      if (I == J) S.tile(I, J)[c * ExchangeAreas::edge + r] = entry;
+    }
+  }
+  const Eigen::VectorXd area = openness * row_sums(S);
+  RadiosityProblem problem{Field::Constant(n, 3, reflectance), Field::Zero(n, 3), area};
+  // Two lamps of different colour; the third band has no light at all; one patch is black.
+  problem.exitance(1, 0) = 5;
+  problem.exitance(n - 1, 1) = 2;
+  problem.reflectance.row(2) = 0;
+  return {dense_transport(keep_exchange_areas(std::move(S), "test"), area), std::move(problem)};
+}
+
+}  // namespace patchlight::test

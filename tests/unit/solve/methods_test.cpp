@@ -1,0 +1,89 @@
+// What single methods promise.
+#include "patchlight/solve/solve.h"
+
+#include "support/direct_solution.h"
+#include "support/made_up_room.h"
+
+#include <gtest/gtest.h>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// Jacobi's residuals fall as ||K||_A < 1, those of GMRES as it minimises them over ever more directions, restarts
+// included.
+TEST(Residuals, FallForJacobiAndGmres) {
+  const Room room = made_up(100, 0.9);
+  for (const auto& [solver, restart] : {std::pair(Solver::jacobi, 1), {Solver::gmres, 30}, {Solver::gmres, 2}}) {
+    const Solution solution = solve(*room.transport, room.problem, {.solver = solver, .restart = restart});
+    ASSERT_TRUE(solution.converged);
+    for (std::size_t k = 1; k < solution.history.size(); ++k) {
+      EXPECT_LT(solution.history[k].relative_residual, solution.history[k - 1].relative_residual) << k;
+    }
+  }
+}
+
+TEST(Jacobi, IterationKAddsBounceK) {
+  const Room room = made_up(80, 0.7);
+  Field bounce = room.problem.exitance;
+  Field sum = bounce;
+  for (int k = 1; k <= 4; ++k) {
+    bounce = room.problem.reflectance * room.transport->apply(bounce);
+    sum += bounce;
+    // Iterate k - 1 is measured in iteration k - 1 and handed out one bounce on.
+    const Solution solution = solve(*room.transport, room.problem,
+                                    {.solver = Solver::jacobi, .relative_error = 1e-15, .max_iterations = k - 1});
+    EXPECT_LT((solution.radiosity - sum).abs().maxCoeff(), 1e-14 * sum.maxCoeff());
+  }
+}
+
+TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
+  // For rho near 1 the slowest mode of both is nearly constant; Gauss-Seidel reduces it about twice per sweep (Young
+  // 1971 has exactly twice for consistently ordered matrices, which this is not).
+  const Room room = made_up(200, 0.9);
+  const auto iterations = [&](Solver solver) {
+    return static_cast<double>(
+        solve(*room.transport, room.problem, {.solver = solver, .max_iterations = 5000}).history.size());
+  };
+  const double ratio = iterations(Solver::gauss_seidel) / iterations(Solver::jacobi);
+  EXPECT_GT(ratio, 0.3);
+  EXPECT_LT(ratio, 0.7);
+}
+
+TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
+  // Early on, the display with the ambient term is closer to the answer than without.
+  const Room room = made_up(100, 0.8);
+  const Field exact = direct_solution(*room.transport, room.problem);
+  const Solution early = solve(*room.transport, room.problem,
+                               {.solver = Solver::progressive, .relative_error = 1e-15, .max_iterations = 0});
+  const Field shown = early.radiosity + room.problem.reflectance * early.ambient;
+  const double without = area_norm(exact - early.radiosity, room.problem.area)[0];
+  const double with = area_norm(exact - shown, room.problem.area)[0];
+  EXPECT_LT(with, 0.5 * without);
+}
+
+TEST(ProgressiveRefinement, StopsAfterSoManyRows) {
+  // Of 100 rows two are those of the lamps, which always shoot.
+  const Room room = made_up(100, 0.8);
+  for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
+    const auto stopped = [&](double max_rows, int max_iterations) {
+      const SolverOptions options{.solver = solver,
+                                  .relative_error = 1e-15,
+                                  .max_iterations = max_iterations,
+                                  .max_rows = max_rows,
+                                  .largest_row_sum = std::numeric_limits<double>::infinity()};
+      return solve(*room.transport, room.problem, options);
+    };
+    EXPECT_EQ(stopped(0.001, 5).history.back().number, 0);
+    EXPECT_EQ(stopped(0.255, 5).history.back().number, 23);
+    EXPECT_NEAR(stopped(0.255, 5).history.back().work, 0.25, 1e-12);
+    EXPECT_EQ(stopped(1.5, 5).history.back().number, 148);
+    EXPECT_EQ(stopped(1e9, 2).history.back().number, 200);
+    EXPECT_FALSE(stopped(1.5, 5).converged);
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
