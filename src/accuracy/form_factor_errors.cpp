@@ -3,13 +3,14 @@
 #include "patchlight/transport/random_errors.h"
 
 #include <cmath>
-#include <utility>
+#include <cstdint>
 
 namespace patchlight {
 namespace {
 
 // Draws of the errors: a root mean square over eight is right to 25 %.
 constexpr int draws = 8;
+constexpr std::uint64_t seed = 1;
 
 // A closed matrix has had its rows corrected by S_ij (lambda_i + lambda_j): the same for the draws. Solves
 // (S + diag(S 1)) lambda = -D 1 for every draw, by conjugate gradients with the diagonal as preconditioner.
@@ -56,22 +57,16 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
 
 }  // namespace
 
-Field ErrorBars::total() const { return (mesh.square() + form_factor.square() + solver.square()).sqrt(); }
-
-double relative_error(const FieldView& bar, const RadiosityProblem& problem, const FieldView& radiosity) {
-  const Eigen::ArrayXd error = area_norm(bar, problem.area);
-  const Eigen::ArrayXd reflected = area_norm(radiosity - problem.exitance, problem.area);
-  return (reflected > 0).select(error / reflected, 0.0).maxCoeff();
-}
-
-Field form_factor_errors(const RowTransport& transport, const RadiosityProblem& problem, const FieldView& radiosity,
-                         const EntryErrors& errors, bool closed, std::uint64_t seed) {
+Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
+                         const SolvedProblem& solved) {
+  const auto& [problem, solution, closed] = solved;
+  const Field& radiosity = solution.radiosity;
   const Eigen::Index bands = radiosity.cols();
   const Eigen::ArrayXd A = problem.area.array();
   // 1. D B and D 1.
   Field x(radiosity.rows(), bands + 1);
   x << radiosity, Field::Ones(radiosity.rows(), 1);
-  const Field drawn = random_errors(errors, x, draws, seed);
+  const Field drawn = random_errors(mesh, raw.entry_errors, raw.error, x, draws, seed);
   const Field lambda = closed ? row_corrections(transport, problem.area, column_of_draws(drawn, bands + 1, bands))
                               : Field::Zero(radiosity.rows(), draws);
 
@@ -81,13 +76,12 @@ Field form_factor_errors(const RowTransport& transport, const RadiosityProblem& 
     const Field B = radiosity.col(band);
     Field irradiance = column_of_draws(drawn, bands + 1, band).colwise() / A;
     if (closed) {
-      const Field H = transport.apply(B);
-      irradiance += lambda.colwise() * H.col(0) + transport.apply(lambda.colwise() * B.col(0));
+      irradiance += lambda.colwise() * solution.irradiance.col(band) + transport.apply(lambda.colwise() * B.col(0));
     }
-    // 3. Through all reflections.
+    // 3. Through all reflections: e = irradiance + F R e.
     const Field reflectance = problem.reflectance.col(band).replicate(1, draws);
     const RadiosityProblem of_errors{reflectance, reflectance * irradiance, problem.area};
-    const Field e = solve(transport, of_errors, {.relative_error = 0.05}).radiosity;
+    const Field e = irradiance + solve(transport, of_errors, {.relative_error = 0.05}).irradiance;
     bar.col(band) = (e.square().rowwise().sum() / draws).sqrt();
   }
   return bar;

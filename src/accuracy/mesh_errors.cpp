@@ -7,20 +7,21 @@
 namespace patchlight {
 namespace {
 
-// Means over the patches of the same polygon side that share a vertex, the patch itself among them.
+// Root mean squares over the patches of the same polygon side that share a vertex, the patch itself among them.
 Field means_around(const PatchMesh& mesh, const Field& values) {
   std::vector<std::vector<PatchIndex>> at_vertex(mesh.vertices.size());
+  const auto corners_of = [&](PatchIndex i) {
+    return std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
+  };
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    for (int k = 0; k < mesh.corner_points(i).count; ++k) {
-      at_vertex[mesh.corners[i][static_cast<std::size_t>(k)]].push_back(i);
-    }
+    for (const std::uint32_t vertex : corners_of(i)) at_vertex[vertex].push_back(i);
   }
   Field means(values.rows(), values.cols());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     Field sum = Field::Zero(1, values.cols());
     double count = 0;
-    for (int k = 0; k < mesh.corner_points(i).count; ++k) {
-      for (const PatchIndex j : at_vertex[mesh.corners[i][static_cast<std::size_t>(k)]]) {
+    for (const std::uint32_t vertex : corners_of(i)) {
+      for (const PatchIndex j : at_vertex[vertex]) {
         if (mesh.polygon[j] != mesh.polygon[i]) continue;
         sum += values.row(j).square();
         ++count;
@@ -33,19 +34,19 @@ Field means_around(const PatchMesh& mesh, const Field& values) {
 
 }  // namespace
 
-Field mesh_errors(const PatchMesh& coarse, const Field& coarse_radiosity, const SolvedMesh& fine, double order) {
-  assert(fine.mesh.size() == 4 * coarse.size());
-  const double scale = 1 / (std::pow(2.0, order) - 1);
-  Field error(coarse_radiosity.rows(), coarse_radiosity.cols());
-  for (Eigen::Index i = 0; i < error.rows(); ++i) {
-    const auto area = fine.area.segment(4 * i, 4).array();
-    const Field mean = (fine.radiosity.middleRows(4 * i, 4).colwise() * area).colwise().sum() / area.sum();
-    error.row(i) = scale * (mean - coarse_radiosity.row(i)).abs();
-  }
-  const Field around = means_around(coarse, error);
-  Field bars(fine.radiosity.rows(), fine.radiosity.cols());
-  for (Eigen::Index i = 0; i < bars.rows(); ++i) bars.row(i) = error.row(i / 4).max(around.row(i / 4));
-  return bars;
+Field mesh_errors(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& irradiance_of_parents) {
+  const double scale = 1 / (std::pow(2.0, mesh_order) - 1);
+  const Field means = means_by_parent(mesh, solved.solution.irradiance, solved.problem.area);
+  const Field error = scale * (means - irradiance_of_parents).abs();
+  return of_parents(mesh, error.max(means_around(mesh.parents, error)));
+}
+
+Field display_errors(const NestedMesh& mesh, const SolvedProblem& solved) {
+  const Field& H = solved.solution.irradiance;
+  const Eigen::VectorXd& area = solved.problem.area;
+  const Field differences = H - of_parents(mesh, means_by_parent(mesh, H, area));
+  const Field of_parts = means_by_parent(mesh, differences.square(), area).sqrt() / std::sqrt(3.0);
+  return of_parents(mesh, means_around(mesh.parents, of_parts));
 }
 
 }  // namespace patchlight
