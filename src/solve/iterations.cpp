@@ -74,15 +74,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     iteration.relative_residual = worse(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
-  if (options_.reference) {
-    const Field& B = *options_.reference;
-    const Eigen::ArrayXd error = area_norm(B - iterate.radiosity, problem_.area);
-    const Eigen::ArrayXd size = area_norm(B - problem_.exitance, problem_.area);
-    iteration.true_error = 0;
-    for (Eigen::Index band = 0; band < error.size(); ++band) {
-      iteration.true_error = worse(iteration.true_error, ratio(error[band], size[band]));
-    }
-  }
+  if (options_.reference) iteration.true_error = relative_error(*options_.reference, iterate.radiosity, problem_);
   return iteration;
 }
 
