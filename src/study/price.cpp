@@ -11,6 +11,9 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+// What a bar takes for granted where errors are seen to fall more slowly, or not to fall.
+constexpr double least_order = 0.5;
+
 // The largest number of patches that is looked at beyond the finest mesh, as a multiple of its own.
 constexpr double farthest = 16;
 
@@ -49,24 +52,39 @@ std::vector<StudySetting> time_front(const Study& study) {
   return front;
 }
 
-// Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q as between the finest two, from 1 to 2.
-Price extrapolated(double error, const Study& study) {
+// The setting with about a quarter of the patches of the finest one, or the coarsest: neighbours in a sweep are so near
+// that where patches happen to meet the edges of shadows outweighs their size.
+const StudySetting& much_coarser(const StudySweep& sweep) {
+  return sweep.settings[sweep.settings.size() - std::min<std::size_t>(3, sweep.settings.size())];
+}
+
+// Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q from 1 to 2.
+Price extrapolated(double error, const StudySweep& by_size, const StudyReference& reference) {
   Price price{error};
-  const auto by_size = std::find_if(study.sweeps.begin(), study.sweeps.end(), [](const StudySweep& sweep) {
-    return sweep.competes && sweep.swept == Swept::patch_size && sweep.settings.size() > 1;
-  });
-  if (by_size == study.sweeps.end()) return price;
-  const StudySetting& fine = by_size->settings.back();
-  const StudySetting& coarse = by_size->settings[by_size->settings.size() - 2];
-  price.order = fine.order;
+  const StudySetting& fine = by_size.settings.back();
+  const StudySetting& coarse = much_coarser(by_size);
+  price.order = std::min(2.0, order_in_edge(coarse, fine, patches_of(reference)));
   if (!(price.order > 0)) return price;
-  const double more = std::pow((fine.error + study.reference.bar) / error, 2 / price.order);
+  const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
   if (!(more <= farthest)) return price;
   const double growth = slope(cpu_seconds_of(fine), cpu_seconds_of(coarse),
                               static_cast<double>(fine.patches) / static_cast<double>(coarse.patches));
   price.finding = Finding::extrapolated;
   price.cpu_seconds = cpu_seconds_of(fine) * std::pow(more, std::isnan(growth) ? 2 : std::clamp(growth, 1.0, 2.0));
   return price;
+}
+
+// By the sweep of patches with which it is cheapest.
+Price extrapolated(double error, const Study& study) {
+  Price cheapest{error};
+  for (const StudySweep& sweep : study.sweeps) {
+    if (!sweep.competes || sweep.swept != Swept::patch_size || sweep.settings.size() < 2) continue;
+    const Price price = extrapolated(error, sweep, study.reference);
+    if (price.finding == Finding::not_reached) continue;
+    const bool first = cheapest.finding == Finding::not_reached;
+    if (first || price.cpu_seconds < cheapest.cpu_seconds) cheapest = price;
+  }
+  return cheapest;
 }
 
 std::string rounded(double value, int digits) {
@@ -122,6 +140,10 @@ double order_in_edge(const StudySetting& coarse, const StudySetting& fine, doubl
   return 0.5 * (low + high);
 }
 
+double patches_of(const StudyReference& reference) {
+  return reference.closed_form ? std::numeric_limits<double>::infinity() : static_cast<double>(reference.patches);
+}
+
 StudySweep with_orders(StudySweep sweep, double reference_patches) {
   for (std::size_t k = 1; k < sweep.settings.size(); ++k) {
     sweep.settings[k].order = order_between(sweep.swept, sweep.settings[k - 1], sweep.settings[k], reference_patches);
@@ -129,9 +151,10 @@ StudySweep with_orders(StudySweep sweep, double reference_patches) {
   return sweep;
 }
 
-double richardson_bar(const StudySetting& coarse, const StudySetting& fine, double reference_patches) {
-  const double observed = order_in_edge(coarse, fine, reference_patches);
-  const double order = std::isnan(observed) ? 0.5 : std::clamp(observed, 0.5, 2.0);
+double richardson_bar(const StudySweep& by_size, double reference_patches) {
+  const StudySetting& fine = by_size.settings.back();
+  const double observed = order_in_edge(much_coarser(by_size), fine, reference_patches);
+  const double order = std::isnan(observed) ? least_order : std::clamp(observed, least_order, 2.0);
   // e = C (h^p - h_ref^p), and C h_ref^p is what the reference is off.
   return fine.error / std::expm1(0.5 * order * std::log(reference_patches / fine.patches));
 }

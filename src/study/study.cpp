@@ -186,12 +186,17 @@ Judge judge_for(const Bench& bench, const Simulation& finest) {
   return judge;
 }
 
-StudySweep sweep_sizes(const Bench& bench, const Reference& reference, const StudySetting& finest, int sizes) {
-  StudySweep sweep{"patch size", Swept::patch_size, {}};
-  std::vector<double> edges = edges_for(bench, sizes);
-  edges.pop_back();
-  for (const double edge : edges) sweep.settings.push_back(judged(bench.run(bench.with_edge(edge)), reference));
-  sweep.settings.push_back(finest);
+// Sizes of patches with so many samples, up to the finest one, which is known already.
+StudySweep sweep_sizes(const Bench& bench, const Reference& reference, const std::vector<double>& edges,
+                       StudySetting finest) {
+  StudySweep sweep{"patch size, " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    Request asked = bench.with_edge(edges[k]);
+    asked.samples = finest.samples;
+    sweep.settings.push_back(judged(bench.run(asked), reference));
+  }
+  finest.own_error = finest.error;
+  sweep.settings.push_back(std::move(finest));
   return sweep;
 }
 
@@ -239,11 +244,16 @@ std::vector<StudySweep> sweep_estimators(const Bench& bench, const Reference& re
   return sweeps;
 }
 
-// The bar follows from the finest setting and the one with about a quarter of its patches, if there is one.
-double bar_of(const StudyReference& reference, const StudySweep& by_size) {
-  const std::vector<StudySetting>& settings = by_size.settings;
-  const StudySetting& coarse = settings[settings.size() - std::min<std::size_t>(3, settings.size())];
-  return reference.closed_form ? 0 : richardson_bar(coarse, settings.back(), reference.patches);
+// Those that compete. Sizes are swept with the usual samples, and with as many as the reference has: there the error of
+// the mesh is seen to fall.
+std::vector<StudySweep> sweep_each(const Bench& bench, const Reference& reference, const Tolerances& tolerances,
+                                   int sizes) {
+  const Simulation& finest = tolerances.runs.back();
+  const std::vector<double> edges = edges_for(bench, sizes);
+  StudySweep by_samples = sweep_samples(bench, reference, finest);
+  StudySweep coarse = sweep_sizes(bench, reference, edges, judged(finest, reference));
+  StudySweep fine = sweep_sizes(bench, reference, edges, by_samples.settings.back());
+  return {std::move(coarse), std::move(fine), std::move(by_samples), sweep_tolerances(tolerances, reference)};
 }
 
 }  // namespace
@@ -276,17 +286,16 @@ Study study(const Scene& scene, const Request& request, const StudyOptions& opti
   result.reference = judge.facts;
 
   // 2. One quantity at a time.
-  const StudySetting base = judged(finest, reference);
-  result.sweeps = {sweep_sizes(bench, reference, base, options.sizes), sweep_samples(bench, reference, finest),
-                   sweep_tolerances(tolerances, reference)};
+  result.sweeps = sweep_each(bench, reference, tolerances, options.sizes);
   if (options.estimators) {
     for (StudySweep& sweep : sweep_estimators(bench, reference)) result.sweeps.push_back(std::move(sweep));
   }
 
   // 3. Orders, the reference's own error, the Pareto front, and what limits the finest setting.
-  const double patches = judge.facts.closed_form ? std::numeric_limits<double>::infinity() : judge.facts.patches;
+  const double patches = patches_of(judge.facts);
   for (StudySweep& sweep : result.sweeps) sweep = with_orders(std::move(sweep), patches);
-  result.reference.bar = bar_of(result.reference, result.sweeps.front());
+  const StudySweep& by_size = result.sweeps[1];
+  result.reference.bar = judge.facts.closed_form ? 0 : richardson_bar(by_size, patches);
   result.parts = error_parts(scene, finest, discrepancy(finest, reference), result.sweeps);
   return with_fronts(std::move(result));
 }

@@ -16,9 +16,12 @@ double order_in_edge(const StudySetting& coarse, const StudySetting& fine, doubl
 /// The sweep with its orders filled in.
 StudySweep with_orders(StudySweep sweep, double reference_patches);
 
-/// The error of the reference that differs by `fine.error` from a coarser setting: by the order observed from `coarse`
-/// to `fine` (Richardson), taken as no less than 1/2 and no more than 2.
-double richardson_bar(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
+/// The error of a reference: Richardson's extrapolation from its difference to the finest setting of a sweep of
+/// patches, by the order observed from a quarter of these patches on, taken as no less than 1/2 and no more than 2.
+double richardson_bar(const StudySweep& by_size, double reference_patches);
+
+/// The number of its patches; infinite for the closed form.
+double patches_of(const StudyReference& reference);
 
 /// Which of some points (cost, error) are on the Pareto front: no other one is at least as good in both and better in
 /// one.

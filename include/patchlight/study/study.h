@@ -70,10 +70,11 @@ struct StudyOptions {
 };
 
 /// Solves a scene in many ways, one quantity changed at a time from the setting that `request` asks for: patches from
-/// coarser ones up to its number, samples around its number, tolerances down to its own; and the estimators of form
-/// factors on a small mesh, on which they do not compete. The reference is the closed form where there is one (a closed
-/// room with E = 1 - rho), else a solution with half the edges, about four times the patches, and four times the
-/// samples. \throws InputError, MemoryError when the reference does not fit, Cancelled.
+/// coarser ones up to its number, with its samples and with four times as many, samples around its number, tolerances
+/// down to its own; and the estimators of form factors on a small mesh, on which they do not compete. The reference is
+/// the closed form where there is one (a closed room with E = 1 - rho), else a solution with half the edges, about four
+/// times the patches, and four times the samples. \throws InputError, MemoryError when the reference does not fit,
+/// Cancelled.
 Study study(const Scene& scene, const Request& request, const StudyOptions& options = {},
             const Observer& observer = {});
 
