@@ -14,6 +14,8 @@ const char* name_of(Stage stage) {
       return "closure";
     case Stage::solve:
       return "solve";
+    case Stage::error_bars:
+      return "error bars";
     case Stage::gather:
       return "gather";
     case Stage::trace_paths:

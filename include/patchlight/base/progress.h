@@ -8,7 +8,7 @@
 namespace patchlight {
 
 /// The stages of a run, in order.
-enum class Stage { read, mesh, form_factors, closure, solve, gather, trace_paths, render, write };
+enum class Stage { read, mesh, form_factors, closure, solve, error_bars, gather, trace_paths, render, write };
 
 /// The stage's name as users see it.
 const char* name_of(Stage stage);

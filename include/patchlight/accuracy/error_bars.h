@@ -1,0 +1,64 @@
+#pragma once
+
+#include "patchlight/mesh/nested_mesh.h"
+#include "patchlight/solve/problem.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/transport_operator.h"
+
+#include <cstdint>
+
+namespace patchlight {
+
+/// How far the irradiances of a solution may be off, by where it comes from: per patch and band, W/m^2. Those of mesh
+/// and form factors are estimates of one standard deviation of the patch's mean, that of the solver is a bound.
+/// Radiosities are off by the reflectance times as much.
+struct ErrorBars {
+  Field mesh;         ///< from the size of all patches
+  Field form_factor;  ///< from the sampling of form factors
+  Field solver;
+  Field display;  ///< how far the irradiance at a point of a patch is from the patch's mean, root mean square
+
+  /// sqrt(mesh^2 + form_factor^2 + solver^2)
+  Field total() const;
+};
+
+/// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band. Patches of weight 0 do not count.
+double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
+                      const Eigen::VectorXd& weight);
+
+/// A problem and what solves it.
+struct SolvedProblem {
+  const RadiosityProblem& problem;
+  const Solution& solution;
+  bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
+};
+
+/// What the sampling of form factors does to the irradiance: the root mean square over random draws of the entries'
+/// errors (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In a closed scene the draws
+/// are closed as the matrix was, so that rows keep their sums. docs/theory.md section 10. Costs some tens of
+/// applications. `raw` has the entries' errors.
+Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
+                         const SolvedProblem& solved);
+
+/// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from the solution on their
+/// parents, with the same exchange areas summed up: |H_h - H_2h| / (2^order - 1), with H_h averaged over each parent.
+/// Of that and its root mean square over the parents around, the larger: where the difference changes sign, it is not
+/// the error that is 0.
+Field mesh_errors(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& irradiance_of_parents);
+
+/// The order of the mean irradiance in the size of the patches that mesh_errors() takes; docs/accuracy.md has measured
+/// ones.
+inline constexpr double mesh_order = 1.5;
+
+/// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
+/// sqrt(3) of those inside a patch where the irradiance is linear.
+Field display_errors(const NestedMesh& mesh, const SolvedProblem& solved);
+
+/// The solver's bound |dB_i| / rho_i; for patches that reflect nothing the largest of the others. 0 where none is
+/// known.
+Field solver_errors(const SolvedProblem& solved);
+
+/// The problem for the parents of a mesh.
+RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem);
+
+}  // namespace patchlight

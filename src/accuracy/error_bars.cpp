@@ -1,0 +1,33 @@
+#include "patchlight/accuracy/error_bars.h"
+
+#include <cmath>
+
+namespace patchlight {
+
+Field ErrorBars::total() const { return (mesh.square() + form_factor.square() + solver.square()).sqrt(); }
+
+double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
+                      const Eigen::VectorXd& weight) {
+  const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
+  const Eigen::ArrayXd error = area_norm(problem.reflectance * bar, area);
+  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
+  return (reflected > 0).select(error / reflected, 0.0).maxCoeff();
+}
+
+Field solver_errors(const SolvedProblem& solved) {
+  const Field& rho = solved.problem.reflectance;
+  const Field& error = solved.solution.error;
+  if (error.size() == 0) return Field::Zero(rho.rows(), rho.cols());
+  const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
+  return (rho > 0).select(of_reflecting, of_reflecting.colwise().maxCoeff().replicate(rho.rows(), 1));
+}
+
+RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
+  RadiosityProblem of_parents;
+  of_parents.reflectance = means_by_parent(mesh, problem.reflectance, problem.area);
+  of_parents.exitance = means_by_parent(mesh, problem.exitance, problem.area);
+  of_parents.area = summed_by_parent(mesh, problem.area.array()).col(0).matrix();
+  return of_parents;
+}
+
+}  // namespace patchlight
