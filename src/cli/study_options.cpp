@@ -23,8 +23,8 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
   add(command, "-o,--output", "FOLDER", "folder for the table, the facts and the plots",
       [&options](const std::string& text) { options.output = text; });
   add(command, "--sizes", "N",
-      "how many sizes of patches, up to --patches or down to --max-edge,\neach with about twice the patches of the one "
-      "before; default 5",
+      "how many sizes of patches at most, up to --patches or down to\n--max-edge; longest edges fall by the root of 2; "
+      "default 5",
       [&options](const std::string& text) {
         options.study.sizes = static_cast<int>(whole_number("--sizes", text, 2, 12));
       });
@@ -33,6 +33,10 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
         const auto inside = [](double x) { return x >= 1e-10 && x < 1; };
         options.mesh.request.tolerance = number("--tolerance", text, "a number from 1e-10 to below 1", inside);
       });
+  command.add_flag_callback(
+      "--no-adaptive", [&options] { options.study.adaptive = false; },
+      "no solving to accuracies, with patches refined where it pays;\ndefault: 10, 3, 1 and 0.3 %, as far as twice "
+      "--patches");
   command.add_flag_callback(
       "--no-estimators", [&options] { options.study.estimators = false; },
       "the estimators of form factors are not compared; default: they\nare, with an eighth of the patches");

@@ -65,7 +65,8 @@ struct Study {
 };
 
 struct StudyOptions {
-  int sizes = 5;           ///< of patches: each has about twice the patches of the one before
+  int sizes = 5;           ///< of patches at most: longest edges fall by the root of 2, as patches double
+  bool adaptive = true;    ///< solve to accuracies as well, with patches that are refined where it pays
   bool estimators = true;  ///< compare them, on a small mesh
 };
 
