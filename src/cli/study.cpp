@@ -16,7 +16,7 @@
 namespace patchlight::cli {
 namespace {
 
-std::string percent(double share) { return rounded(100 * share, 2); }
+std::string percent(double share) { return rounded(100 * share); }
 
 std::string table(const Study& study) {
   std::vector<TextRow> rows{{"sweep", "patches", "samples", "tolerance", "seconds", "CPU", "MB", "error %", "display %",
@@ -24,10 +24,9 @@ std::string table(const Study& study) {
   for (const StudySweep& sweep : study.sweeps) {
     for (const StudySetting& setting : sweep.settings) {
       rows.push_back({sweep.name, std::to_string(setting.patches), std::to_string(setting.samples),
-                      rounded(setting.tolerance, 1), rounded(seconds_of(setting), 2),
-                      rounded(cpu_seconds_of(setting), 2), rounded(setting.matrix_bytes / 1e6, 2),
-                      percent(setting.error), percent(setting.display_error), percent(setting.own_error),
-                      rounded(setting.order, 2), setting.on_time_front ? "*" : ""});
+                      rounded(setting.tolerance, 1), rounded(seconds_of(setting)), rounded(cpu_seconds_of(setting)),
+                      rounded(setting.matrix_bytes / 1e6, 2), percent(setting.error), percent(setting.display_error),
+                      percent(setting.own_error), rounded(setting.order, 2), setting.on_time_front ? "*" : ""});
     }
   }
   return text_table(rows);

@@ -23,10 +23,10 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
   add(command, "-o,--output", "FOLDER", "folder for the table, the facts and the plots",
       [&options](const std::string& text) { options.output = text; });
   add(command, "--sizes", "N",
-      "how many sizes of patches at most, up to --patches or down to\n--max-edge; longest edges fall by the root of 2; "
-      "default 5",
+      "how many sizes of patches at most, up to --patches or down to\n--max-edge; each has edges half as long as the "
+      "one before, so about\nfour times the patches; default 4",
       [&options](const std::string& text) {
-        options.study.sizes = static_cast<int>(whole_number("--sizes", text, 2, 12));
+        options.study.sizes = static_cast<int>(whole_number("--sizes", text, 2, 8));
       });
   add(command, "--tolerance", "NUMBER", "the smallest relative error of the solver; default 1e-6",
       [&options](const std::string& text) {
@@ -39,7 +39,7 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
       "--patches");
   command.add_flag_callback(
       "--no-estimators", [&options] { options.study.estimators = false; },
-      "the estimators of form factors are not compared; default: they\nare, with an eighth of the patches");
+      "the estimators of form factors are not compared; default: they\nare, with a sixteenth of the patches");
 }
 
 }  // namespace

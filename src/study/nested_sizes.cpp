@@ -17,7 +17,7 @@ namespace patchlight {
 namespace {
 
 // A size with nearly as many patches as the next finer one tells nothing.
-constexpr double too_many = 0.9;
+constexpr double too_many = 0.5;
 
 double longest_edge(const PatchCorners& corners) {
   double longest = 0;
@@ -36,11 +36,11 @@ PatchMesh cut_to(const PatchMesh& mesh, double max_edge) {
   return refine(mesh, marked).mesh;
 }
 
-// From 2^((count - 1) / 2) times the finest edge down to it.
+// From 2^(count - 1) times the finest edge down to it.
 std::vector<SizedMesh> all_sizes(const Scene& scene, const KeptSides& sides, double finest, int count) {
   std::vector<SizedMesh> all;
   for (int k = count - 1; k >= 0; --k) {
-    const double edge = finest * std::pow(2, 0.5 * k);
+    const double edge = std::ldexp(finest, k);
     all.push_back({edge, all.empty() ? tessellate(scene, sides, edge) : cut_to(all.back().mesh, edge)});
   }
   return all;
@@ -75,10 +75,10 @@ void require_memory_for_reference(std::size_t patches, const Request& request) {
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
   const Plan plan = make_plan(scene, request);
   const double finest = request.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
-  std::vector<SizedMesh> all = all_sizes(scene, plan.sides, finest / 2, sizes + 2);
+  std::vector<SizedMesh> all = all_sizes(scene, plan.sides, finest / 2, sizes + 1);
   NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
   require_memory_for_reference(result.finer.mesh.size(), request);
-  all.resize(static_cast<std::size_t>(sizes));
+  all.pop_back();
   for (std::size_t k = 0; k < all.size(); ++k) {
     const bool last = k + 1 == all.size();
     if (!last && all[k].mesh.size() > too_many * all[k + 1].mesh.size()) continue;

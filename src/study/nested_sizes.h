@@ -14,8 +14,9 @@ struct SizedMesh {
 };
 
 /// Meshes each of which is cut from the one before, so that means over the patches of all can be taken from the last
-/// without an error of their own. Longest edges fall by the root of 2, patches about double; what would have nearly as
-/// many patches as the next one is left out.
+/// without an error of their own: where a reference's patches reach over the edge of another patch, it would be off by
+/// as much as they are large. Longest edges are halved each time, so that there are about four times the patches; what
+/// would have more than half the patches of the next one is left out.
 struct NestedSizes {
   std::vector<SizedMesh> sizes;  ///< from coarse to fine; the last one is about what the request asks for
   SizedMesh finer;               ///< with half the edges

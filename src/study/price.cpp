@@ -14,6 +14,9 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // What a bar takes for granted where errors are seen to fall more slowly, or not to fall.
 constexpr double least_order = 0.5;
 
+// Below this share of the light nothing is worth a word.
+constexpr double least_error = 1e-6;
+
 // The largest number of patches that is looked at beyond the finest mesh, as a multiple of its own.
 constexpr double farthest = 16;
 
@@ -52,17 +55,11 @@ std::vector<StudySetting> time_front(const Study& study) {
   return front;
 }
 
-// The setting with about a quarter of the patches of the finest one, or the coarsest: neighbours in a sweep are so near
-// that where patches happen to meet the edges of shadows outweighs their size.
-const StudySetting& much_coarser(const StudySweep& sweep) {
-  return sweep.settings[sweep.settings.size() - std::min<std::size_t>(3, sweep.settings.size())];
-}
-
 // Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q from 1 to 2.
 Price extrapolated(double error, const StudySweep& by_size, const StudyReference& reference) {
   Price price{error};
   const StudySetting& fine = by_size.settings.back();
-  const StudySetting& coarse = much_coarser(by_size);
+  const StudySetting& coarse = by_size.settings[by_size.settings.size() - 2];
   price.order = std::min(2.0, order_in_edge(coarse, fine, patches_of(reference)));
   if (!(price.order > 0)) return price;
   const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
@@ -87,9 +84,11 @@ Price extrapolated(double error, const Study& study) {
   return cheapest;
 }
 
+// With so many digits, and never fewer than stand before the point.
 std::string rounded(double value, int digits) {
+  const int before_point = value >= 1 ? static_cast<int>(std::log10(value)) + 1 : 1;
   std::ostringstream text;
-  text << std::setprecision(digits) << value;
+  text << std::setprecision(std::max(digits, before_point)) << value;
   return text.str();
 }
 
@@ -113,7 +112,7 @@ std::string text_of(const Price& price, PatchIndex patches) {
 
 std::string limit_of(const ErrorParts& parts) {
   const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
-  if (!(largest > 0)) return "nothing limits you";
+  if (!(largest > least_error)) return "nothing limits you";
   const std::string size = " (" + percent(largest, 2) + " of the light at the finest setting)";
   if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
   if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;
@@ -153,7 +152,8 @@ StudySweep with_orders(StudySweep sweep, double reference_patches) {
 
 double richardson_bar(const StudySweep& by_size, double reference_patches) {
   const StudySetting& fine = by_size.settings.back();
-  const double observed = order_in_edge(much_coarser(by_size), fine, reference_patches);
+  const std::size_t sizes = by_size.settings.size();
+  const double observed = sizes > 1 ? order_in_edge(by_size.settings[sizes - 2], fine, reference_patches) : unknown;
   const double order = std::isnan(observed) ? least_order : std::clamp(observed, least_order, 2.0);
   // e = C (h^p - h_ref^p), and C h_ref^p is what the reference is off.
   return fine.error / std::expm1(0.5 * order * std::log(reference_patches / fine.patches));

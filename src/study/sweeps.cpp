@@ -12,9 +12,9 @@
 namespace patchlight {
 namespace {
 
-// Estimators are compared so many sizes below the finest, with about an eighth of the patches; on so few pairs they
+// Estimators are compared so many sizes below the finest, with about a sixteenth of the patches; on so few pairs they
 // differ as on many.
-constexpr std::size_t coarser_sizes = 3;
+constexpr std::size_t coarser_sizes = 2;
 // The hemisphere's samples are rays of a patch, not of a pair.
 constexpr int hemisphere_factor = 64;
 // What all of a sweep's samples are compared with has so many times more than the largest number of them.
@@ -29,7 +29,7 @@ std::vector<double> tolerances_for(double finest) {
 
 // Sizes of patches with as many samples as the finest one has, which is known already.
 StudySweep sweep_sizes(const Bench& bench, const Reference& reference, StudySetting finest) {
-  StudySweep sweep{"patch size, " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
+  StudySweep sweep{"patch size at " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
   Request asked = bench.request;
   asked.samples = finest.samples;
   const std::vector<SizedMesh>& sizes = bench.meshes.sizes;

@@ -65,7 +65,7 @@ struct Study {
 };
 
 struct StudyOptions {
-  int sizes = 5;           ///< of patches at most: longest edges fall by the root of 2, as patches double
+  int sizes = 4;           ///< of patches at most: longest edges are halved, so patches times four
   bool adaptive = true;    ///< solve to accuracies as well, with patches that are refined where it pays
   bool estimators = true;  ///< compare them, on a small mesh
 };
