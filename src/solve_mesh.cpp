@@ -1,6 +1,7 @@
 #include "solve_mesh.h"
 
 #include "patchlight/accuracy/refinement.h"
+#include "patchlight/base/sampling.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/solve/energy.h"
 #include "patchlight/transport/dense.h"
@@ -20,13 +21,13 @@ namespace patchlight {
 namespace {
 
 // The same light on the parents, with the exchange areas of their patches summed up.
-Field irradiance_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
-                            const RadiosityProblem& problem) {
+Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
+                           const RadiosityProblem& problem) {
   const RadiosityProblem coarse = problem_of_parents(mesh, problem);
   SolverOptions options = plan.solver;
   options.solver = Solver::cg;
   options.max_rows.reset();
-  return solve(*dense_transport(std::move(of_parents), coarse.area), coarse, options).irradiance;
+  return solve(*dense_transport(std::move(of_parents), coarse.area), coarse, options).radiosity;
 }
 
 // Exchange areas before closure, of which known ones are taken over.
@@ -43,6 +44,24 @@ Exchange exchange_on(const Setting& setting, const Plan& plan, const PatchMesh& 
   if (setting.with.exchange) return setting.with.exchange(mesh);
   const auto find = plan.on_demand ? exchange_on_demand : trace_exchange;
   return find(mesh, setting.occluder, assembly_options(plan), plan.lost_share_rays, setting.observer);
+}
+
+// Lamps with so large a share of the patches are not traced a second time.
+constexpr double most_lamps = 0.125;
+
+// How far two independent values of the irradiance straight from the lamps are apart; nothing where these are too many.
+Field direct_difference(const Setting& setting, const Plan& plan, const Assembly& raw, const Simulation& simulation) {
+  const auto& [reflectance, exitance, area] = simulation.problem;
+  const auto emits = (exitance > 0).rowwise().any();
+  if (static_cast<double>(emits.count()) > most_lamps * static_cast<double>(exitance.rows())) return {};
+  AssemblyOptions again = assembly_options(plan);
+  again.seed = hash({plan.seed, 1});
+  const auto transport = on_demand_transport(simulation.mesh, setting.occluder, again, area);
+  Field second = Field::Zero(exitance.rows(), exitance.cols());
+  for (PatchIndex lamp = 0; lamp < simulation.mesh.size(); ++lamp) {
+    if (emits(lamp)) second += transport->shoot({lamp, lamp + 1}, exitance.row(lamp));
+  }
+  return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 
 TransportFacts facts_of(const Exchange& exchange) {
@@ -112,9 +131,13 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   if (plan.error_bars) {
     const SolvedProblem solved{simulation.problem, simulation.solution, facts.lost.closed() && plan.close};
     simulation.error_bars = {
-        .mesh = mesh_errors(result.mesh, solved,
-                            irradiance_of_parents(std::move(*of_parents), result.mesh, plan, solved.problem)),
-        .form_factor = form_factor_errors(mesh, *result.raw, *transport, solved),
+        .mesh = mesh_errors(result.mesh, *transport, solved,
+                            radiosity_of_parents(std::move(*of_parents), result.mesh, plan, solved.problem)),
+        .form_factor = (form_factor_errors(mesh, *result.raw, *transport, solved,
+                                           direct_difference(setting, plan, *result.raw, simulation))
+                            .square() +
+                        (simulation.solution.irradiance.colwise() * exposure_errors(facts.lost)).square())
+                           .sqrt(),
         .solver = solver_errors(solved),
         .display = display_errors(result.mesh, solved)};
     result.interest = interest_of(scene, mesh, plan.interest);

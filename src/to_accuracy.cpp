@@ -87,8 +87,8 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
   const double reachable = step.total * std::min(1.0, std::pow(step.patches / most, mesh_order / 2));
   throw MemoryError("--accuracy " + percent(*request.accuracy) + ": found that it takes about " +
                     std::to_string(static_cast<long>(patches)) + " patches and " +
-                    gigabytes(memory_needed(static_cast<std::size_t>(patches), request)) + ", and " + gigabytes(usable_memory(request)) +
-                    " may be taken; expected about " + percent(reachable) +
+                    gigabytes(memory_needed(static_cast<std::size_t>(patches), request)) + ", and " +
+                    gigabytes(usable_memory(request)) + " may be taken; expected about " + percent(reachable) +
                     " or more: ask for that, or for an --interest");
 }
 

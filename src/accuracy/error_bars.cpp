@@ -7,7 +7,7 @@ namespace patchlight {
 Field ErrorBars::total() const { return (mesh.square() + form_factor.square() + solver.square()).sqrt(); }
 
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
-                      const Eigen::VectorXd& weight) {
+                    const Eigen::VectorXd& weight) {
   const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
   const Eigen::ArrayXd error = area_norm(problem.reflectance * bar, area);
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
@@ -20,6 +20,12 @@ Field solver_errors(const SolvedProblem& solved) {
   if (error.size() == 0) return Field::Zero(rho.rows(), rho.cols());
   const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
   return (rho > 0).select(of_reflecting, of_reflecting.colwise().maxCoeff().replicate(rho.rows(), 1));
+}
+
+Eigen::ArrayXd exposure_errors(const LostShare& lost) {
+  const Eigen::ArrayXd covered = lost.covered.array();
+  const double variance = std::pow(static_cast<double>(lost.rays_per_patch), -1.5);
+  return (covered < 1).select((variance * covered / (1 - covered)).sqrt(), 0.0);
 }
 
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {

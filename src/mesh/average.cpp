@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <vector>
@@ -47,9 +48,9 @@ Row row_of(const PatchMesh& mesh, PatchRange range) {
   return row;
 }
 
-// Area in which two convex patches of one plane overlap: the one is cut by the planes that stand on the edges of the
+// What two convex patches of one plane have in common: the one is cut by the planes that stand on the edges of the
 // other (Sutherland and Hodgman 1974).
-double overlap(const PatchCorners& patch, const Vector& normal, const PatchCorners& other) {
+std::vector<Point> overlap(const PatchCorners& patch, const Vector& normal, const PatchCorners& other) {
   const std::span<const Point> cut_by = patch;
   const std::span<const Point> whole = other;
   std::vector<Point> left(whole.begin(), whole.end());
@@ -57,10 +58,10 @@ double overlap(const PatchCorners& patch, const Vector& normal, const PatchCorne
     const Vector along = cut_by[(k + 1) % cut_by.size()] - cut_by[k];
     left = clip_to_half_space(left, cut_by[k], normal.cross(along));
   }
-  return area_vector(left).norm();
+  return left;
 }
 
-// Calls visit(k, overlap) for the patches of `row` that may overlap a patch.
+// Calls visit(k, common outline) for the patches of `row` that may overlap a patch.
 template <typename Visit>
 void for_overlaps(const PatchMesh& mesh, PatchIndex patch, const PatchMesh& other, const Row& row, Visit visit) {
   const Box box = box_of(mesh, patch);
@@ -73,27 +74,86 @@ void for_overlaps(const PatchMesh& mesh, PatchIndex patch, const PatchMesh& othe
   }
 }
 
-}  // namespace
-
-Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
-  assert(values.rows() == other.size() && mesh.first_patch.size() == other.first_patch.size());
+std::vector<Row> rows_of(const PatchMesh& mesh) {
   std::vector<Row> rows;
-  for (std::size_t slot = 0; slot + 1 < other.first_patch.size(); ++slot) {
-    rows.push_back(row_of(other, {other.first_patch[slot], other.first_patch[slot + 1]}));
+  for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
+    rows.push_back(row_of(mesh, {mesh.first_patch[slot], mesh.first_patch[slot + 1]}));
   }
-  Field means = Field::Zero(mesh.size(), values.cols());
+  return rows;
+}
+
+// Means over the patches of value(k, point) in the middle of what each has in common with a patch k of `other`.
+template <typename Value>
+Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns, Value value) {
+  assert(mesh.first_patch.size() == other.first_patch.size());
+  const std::vector<Row> rows = rows_of(other);
+  Field means = Field::Zero(mesh.size(), columns);
   parallel_for(mesh.size(), [&](std::size_t i) {
     const auto patch = static_cast<PatchIndex>(i);
     const Row& row = rows[2 * static_cast<std::size_t>(mesh.polygon[i]) + static_cast<std::size_t>(mesh.side[i])];
     double area = 0;
-    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, double common) {
-      means.row(patch) += common * values.row(k);
-      area += common;
+    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
+      const double share = area_vector(common).norm();
+      if (share == 0) return;
+      means.row(patch) += share * value(k, area_centroid(common));
+      area += share;
     });
     assert(area > 0);
     means.row(patch) /= area;
   });
   return means;
+}
+
+// The patches of the same polygon side at each vertex.
+std::vector<std::vector<PatchIndex>> patches_at_vertices(const PatchMesh& mesh) {
+  std::vector<std::vector<PatchIndex>> at(mesh.vertices.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const auto count = static_cast<std::size_t>(mesh.corner_points(i).count);
+    for (std::size_t k = 0; k < count; ++k) at[mesh.corners[i][k]].push_back(i);
+  }
+  return at;
+}
+
+}  // namespace
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
+  assert(values.rows() == other.size());
+  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
+}
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
+  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
+  const Eigen::Index columns = field.values.cols();
+  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
+    const Vector offset = point - other.centroid[k];
+    Field value = field.values.row(k);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
+    }
+    return value;
+  });
+}
+
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
+  const auto at_vertex = patches_at_vertices(mesh);
+  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
+  parallel_for(mesh.size(), [&](std::size_t row) {
+    const auto i = static_cast<PatchIndex>(row);
+    // Least squares over the patches around; without a slope across the patch.
+    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
+    for (const std::uint32_t vertex : mesh.corners[i]) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.polygon[j] != mesh.polygon[i]) continue;
+        const Vector way = mesh.centroid[j] - mesh.centroid[i];
+        moments += way * way.transpose();
+        right += way * (values.row(j) - values.row(i)).matrix();
+      }
+    }
+    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) field.slopes.row(i).segment(3 * c, 3) = slope.col(c).transpose();
+  });
+  return field;
 }
 
 }  // namespace patchlight

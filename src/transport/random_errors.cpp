@@ -15,17 +15,17 @@ namespace {
 constexpr PatchIndex stripes = 8;
 
 // S_ij without occluders, from centroid to centroid.
-double unoccluded(const PatchMesh& mesh, PatchIndex i, PatchIndex j) {
+double unoccluded(const PatchMesh& mesh, const Eigen::VectorXd& area, PatchIndex i, PatchIndex j) {
   const Vector way = mesh.centroid[j] - mesh.centroid[i];
   const double square = way.squaredNorm();
   const double cosines = std::max(0.0, mesh.normal[i].dot(way)) * std::max(0.0, -mesh.normal[j].dot(way));
-  const double least = std::min(mesh.area[i], mesh.area[j]);
   if (cosines == 0) return 0;
-  return std::min(least, mesh.area[i] * mesh.area[j] * cosines / (std::numbers::pi * square * square));
+  return std::min(std::min(area[i], area[j]), area[i] * area[j] * cosines / (std::numbers::pi * square * square));
 }
 
 struct Drawer {
   const PatchMesh& mesh;
+  const Eigen::VectorXd& area;
   const EntryErrors& errors;
   double of_visible;  // relative
   double of_hidden;
@@ -40,9 +40,9 @@ double Drawer::standard_error(PatchIndex i, PatchIndex j) const {
     case EntryKind::exact:
       return 0;
     case EntryKind::all_visible:
-      return of_visible > 0 ? of_visible * unoccluded(mesh, i, j) : 0;
+      return of_visible > 0 ? of_visible * unoccluded(mesh, area, i, j) : 0;
     case EntryKind::all_hidden:
-      return of_hidden > 0 ? of_hidden * unoccluded(mesh, i, j) : 0;
+      return of_hidden > 0 ? of_hidden * unoccluded(mesh, area, i, j) : 0;
     case EntryKind::estimated:
       return errors.standard_error(i, j);
   }
@@ -69,10 +69,14 @@ void Drawer::add_row(PatchIndex j, const FieldView& x, Field& sum) const {
 
 }  // namespace
 
-Field random_errors(const PatchMesh& mesh, const EntryErrors& errors, const SamplingError& sampling, const FieldView& x,
-                    int draws, std::uint64_t seed) {
+Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed) {
+  const auto& [mesh, area, errors, sampling] = of;
   assert(x.rows() == static_cast<Eigen::Index>(errors.size()) && draws >= 1 && draws <= 32);
-  const Drawer drawer{mesh, errors, standard_error(sampling.visible), standard_error(sampling.occluded),
+  const Drawer drawer{mesh,
+                      area,
+                      errors,
+                      standard_error(sampling.visible),
+                      standard_error(sampling.occluded),
                       hash({seed, 0x64726177})};
   std::vector<Field> partial(stripes, Field::Zero(x.rows(), x.cols() * draws));
   parallel_for(stripes, [&](std::size_t stripe) {

@@ -49,7 +49,7 @@ double standard_error(const SamplingError::Unanimous& unanimous) {
   constexpr double steps = SamplingError::Unanimous::steps;
   // Most pairs of the first step have nothing wrong at all.
   auto counts = unanimous.by_share;
-  counts[0] -= unanimous.pairs - unanimous.missed;
+  counts[0] -= std::min(counts[0], unanimous.pairs - unanimous.missed);
   double squares = 0;
   for (std::size_t step = 0; step < counts.size(); ++step) {
     const double share = (static_cast<double>(step) + 0.5) / steps;

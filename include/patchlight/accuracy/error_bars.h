@@ -3,6 +3,7 @@
 #include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/assemble.h"
+#include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct ErrorBars {
 
 /// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band. Patches of weight 0 do not count.
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
-                      const Eigen::VectorXd& weight);
+                    const Eigen::VectorXd& weight);
 
 /// A problem and what solves it.
 struct SolvedProblem {
@@ -36,19 +37,29 @@ struct SolvedProblem {
 /// What the sampling of form factors does to the irradiance: the root mean square over random draws of the entries'
 /// errors (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In a closed scene the draws
 /// are closed as the matrix was, so that rows keep their sums. docs/theory.md section 10. Costs some tens of
-/// applications. `raw` has the entries' errors.
+/// applications. `raw` has the entries' errors. Where the irradiance straight from the lamps was found a second time, with
+/// other samples, `direct_difference` is how far both are apart, and the draws are of the rest of the light only.
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                         const SolvedProblem& solved);
+                         const SolvedProblem& solved, const FieldView& direct_difference);
 
-/// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from the solution on their
-/// parents, with the same exchange areas summed up: |H_h - H_2h| / (2^order - 1), with H_h averaged over each parent.
-/// Of that and its root mean square over the parents around, the larger: where the difference changes sign, it is not
-/// the error that is 0.
-Field mesh_errors(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& irradiance_of_parents);
+/// What the share of a patch that is exposed, when it is not all of it, may be off, as a relative error of its
+/// irradiance; stratified points find a straight edge with a variance of their number to the power of -3/2.
+Eigen::ArrayXd exposure_errors(const LostShare& lost);
 
-/// The order of the mean irradiance in the size of the patches that mesh_errors() takes; docs/accuracy.md has measured
-/// ones.
-inline constexpr double mesh_order = 1.5;
+/// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from sources twice as
+/// large: |F (B_h - B_2h)| / (2^order - 1), where B_2h is the solution on the parents, with the same exchange areas
+/// summed up. Of that and its root mean square over the patches around, the larger: where the difference changes sign,
+/// it is not the error that is 0.
+Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
+                  const FieldView& radiosity_of_parents);
+
+/// The order of the mean irradiance in the size of the patches that mesh_errors() takes. Measured ones are 1.5 to 2 where
+/// there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
+inline constexpr double mesh_order = 1.2;
+
+/// What drawn errors of form factors, which leave out how those of neighbouring patches hang together, are multiplied
+/// with, so that bars cover what they should.
+inline constexpr double form_factor_scale = 1.5;
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
 /// sqrt(3) of those inside a patch where the irradiance is linear.

@@ -12,4 +12,18 @@ namespace patchlight {
 /// n' log n' + n sqrt(n') per side of a polygon.
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values);
 
+/// A field that is linear on every patch.
+struct SlopedField {
+  Field values;  ///< the means of the patches
+  Field slopes;  ///< three columns for each of `values`: the gradient, per metre
+};
+
+/// A field with the slopes that the means of the patches around show, by least squares; patches around are those of the
+/// same polygon side that share a corner.
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values);
+
+/// The same means of a field that is linear on every patch of `other`. So they do not depend on how the patches of both
+/// meshes lie to each other, but by the field's curvature.
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field);
+
 }  // namespace patchlight
