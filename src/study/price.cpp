@@ -55,11 +55,17 @@ std::vector<StudySetting> time_front(const Study& study) {
   return front;
 }
 
+// Two sizes before the finest one, where there are so many: over a wider range it weighs less where patches happen to
+// meet the edges of shadows.
+const StudySetting& coarser_of(const StudySweep& sweep) {
+  return sweep.settings[sweep.settings.size() - std::min<std::size_t>(3, sweep.settings.size())];
+}
+
 // Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q from 1 to 2.
 Price extrapolated(double error, const StudySweep& by_size, const StudyReference& reference) {
   Price price{error};
   const StudySetting& fine = by_size.settings.back();
-  const StudySetting& coarse = by_size.settings[by_size.settings.size() - 2];
+  const StudySetting& coarse = coarser_of(by_size);
   price.order = std::min(2.0, order_in_edge(coarse, fine, patches_of(reference)));
   if (!(price.order > 0)) return price;
   const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
@@ -152,8 +158,7 @@ StudySweep with_orders(StudySweep sweep, double reference_patches) {
 
 double richardson_bar(const StudySweep& by_size, double reference_patches) {
   const StudySetting& fine = by_size.settings.back();
-  const std::size_t sizes = by_size.settings.size();
-  const double observed = sizes > 1 ? order_in_edge(by_size.settings[sizes - 2], fine, reference_patches) : unknown;
+  const double observed = order_in_edge(coarser_of(by_size), fine, reference_patches);
   const double order = std::isnan(observed) ? least_order : std::clamp(observed, least_order, 2.0);
   // e = C (h^p - h_ref^p), and C h_ref^p is what the reference is off.
   return fine.error / std::expm1(0.5 * order * std::log(reference_patches / fine.patches));

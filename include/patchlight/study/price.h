@@ -17,7 +17,7 @@ double order_in_edge(const StudySetting& coarse, const StudySetting& fine, doubl
 StudySweep with_orders(StudySweep sweep, double reference_patches);
 
 /// The error of a reference: Richardson's extrapolation from its difference to the finest setting of a sweep of
-/// patches, by the order observed from the size before, taken as no less than 1/2 and no more than 2.
+/// patches, by the order observed from two sizes before on, taken as no less than 1/2 and no more than 2.
 double richardson_bar(const StudySweep& by_size, double reference_patches);
 
 /// The number of its patches; infinite for the closed form.
