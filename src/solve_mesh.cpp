@@ -13,6 +13,7 @@
 #include "memory.h"
 #include "problem_of.h"
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -78,6 +79,35 @@ ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& 
                     : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
 }
 
+// Error bars, and where finer patches would pay.
+SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowTransport& transport,
+                           ClosedExchangeAreas of_parents) {
+  Simulation& simulation = result.simulation;
+  const Plan& plan = simulation.plan;
+  const PatchMesh& mesh = simulation.mesh;
+  const ExchangeAreas& S = result.raw->exchange_areas;
+  const SolvedProblem solved{simulation.problem, simulation.solution, simulation.transport.lost.closed() && plan.close};
+  const Field coarse = radiosity_of_parents(std::move(of_parents), result.mesh, plan, solved.problem);
+  const Field from_larger = mesh_errors(result.mesh, transport, solved, coarse);
+  const Field in_gaps = gap_errors(mesh, S, solved);
+  const Field sampled = form_factor_errors(mesh, *result.raw, transport, solved,
+                                           direct_difference(setting, plan, *result.raw, simulation));
+  const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(simulation.transport.lost);
+  simulation.error_bars = {.mesh = (from_larger.square() + in_gaps.square()).sqrt(),
+                           .form_factor = (sampled.square() + exposure.square()).sqrt(),
+                           .solver = solver_errors(solved),
+                           .display = display_errors(result.mesh, solved)};
+
+  result.interest = interest_of(setting.scene, mesh, plan.interest);
+  const bool all = result.interest.minCoeff() == 1;
+  const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
+  const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, weight);
+  const double scale = squares_of_parents(result.mesh, solved, from_larger, result.interest).sum() / effects.sum();
+  result.effects =
+      (std::isfinite(scale) ? scale : 0) * effects + squares_of_parents(result.mesh, solved, in_gaps, weight);
+  return result;
+}
+
 }  // namespace
 
 SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_solve, StageClock& clock) {
@@ -128,25 +158,8 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   clock.finish(Stage::solve);
 
   // 4. How far that may be off.
-  if (plan.error_bars) {
-    const SolvedProblem solved{simulation.problem, simulation.solution, facts.lost.closed() && plan.close};
-    simulation.error_bars = {
-        .mesh = mesh_errors(result.mesh, *transport, solved,
-                            radiosity_of_parents(std::move(*of_parents), result.mesh, plan, solved.problem)),
-        .form_factor = (form_factor_errors(mesh, *result.raw, *transport, solved,
-                                           direct_difference(setting, plan, *result.raw, simulation))
-                            .square() +
-                        (simulation.solution.irradiance.colwise() * exposure_errors(facts.lost)).square())
-                           .sqrt(),
-        .solver = solver_errors(solved),
-        .display = display_errors(result.mesh, solved)};
-    result.interest = interest_of(scene, mesh, plan.interest);
-    const bool all = result.interest.minCoeff() == 1;
-    result.effects =
-        effects_of_parents(result.raw->exchange_areas, result.mesh, solved,
-                           all ? result.interest : importance(*transport, solved.problem, result.interest));
-    clock.finish(Stage::error_bars);
-  }
+  if (plan.error_bars) result = with_error_bars(setting, std::move(result), *transport, std::move(*of_parents));
+  clock.finish(Stage::error_bars);
   return result;
 }
 

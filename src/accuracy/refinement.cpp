@@ -16,6 +16,14 @@ const double left_by_a_cut = std::pow(2.0, -2 * mesh_order);
 // Where one cut of everything does not do, those with this share of the effect are cut.
 constexpr double bulk = 0.9;
 
+// rho_i^2 / ||B - E||_A^2
+Field squared_reflectance(const SolvedProblem& solved) {
+  const RadiosityProblem& problem = solved.problem;
+  const Eigen::ArrayXd reflected = area_norm(solved.solution.radiosity - problem.exitance, problem.area).square();
+  const Eigen::ArrayXd inverse = (reflected > 0).select(reflected.inverse(), 0.0);
+  return problem.reflectance.square().rowwise() * inverse.transpose();
+}
+
 }  // namespace
 
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
@@ -24,12 +32,15 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
   const Field& B = solved.solution.radiosity;
   const Field difference = B - of_parents(mesh, means_by_parent(mesh, B, problem.area));
   // A_i (rho_i / A_i sum_c S_ic difference_c)^2 / ||B - E||_A^2
-  const Eigen::ArrayXd reflected = area_norm(B - problem.exitance, problem.area).square();
-  const Eigen::ArrayXd inverse = (reflected > 0).select(reflected.inverse(), 0.0);
-  const Field of_patch =
-      (problem.reflectance.square().colwise() * (weight.array().square() / problem.area.array())).rowwise() *
-      inverse.transpose();
+  const Field of_patch = squared_reflectance(solved).colwise() * (weight.array().square() / problem.area.array());
   return effects_of_parts(raw, mesh, difference, of_patch);
+}
+
+Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
+                                   const Eigen::VectorXd& weight) {
+  const Eigen::ArrayXd area = solved.problem.area.array() * weight.array().square();
+  const Field squares = (squared_reflectance(solved) * bar.square()).colwise() * area;
+  return summed_by_parent(mesh, squares.rowwise().maxCoeff()).col(0).matrix();
 }
 
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most) {

@@ -37,8 +37,8 @@ struct SolvedProblem {
 /// What the sampling of form factors does to the irradiance: the root mean square over random draws of the entries'
 /// errors (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In a closed scene the draws
 /// are closed as the matrix was, so that rows keep their sums. docs/theory.md section 10. Costs some tens of
-/// applications. `raw` has the entries' errors. Where the irradiance straight from the lamps was found a second time, with
-/// other samples, `direct_difference` is how far both are apart, and the draws are of the rest of the light only.
+/// applications. `raw` has the entries' errors. Where the irradiance straight from the lamps was found a second time,
+/// with other samples, `direct_difference` is how far both are apart, and the draws are of the rest of the light only.
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                          const SolvedProblem& solved, const FieldView& direct_difference);
 
@@ -53,13 +53,19 @@ Eigen::ArrayXd exposure_errors(const LostShare& lost);
 Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
                   const FieldView& radiosity_of_parents);
 
-/// The order of the mean irradiance in the size of the patches that mesh_errors() takes. Measured ones are 1.5 to 2 where
-/// there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
+/// The order of the mean irradiance in the size of the patches that mesh_errors() takes. Measured ones are 1.5 to 2
+/// where there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
 inline constexpr double mesh_order = 1.2;
 
 /// What drawn errors of form factors, which leave out how those of neighbouring patches hang together, are multiplied
 /// with, so that bars cover what they should.
 inline constexpr double form_factor_scale = 1.5;
+
+/// What no comparison with larger patches shows: in a gap that is narrower than its patches are wide, light that gets
+/// in at the rim is spread over all of a patch, however large. There H_i times how much of the hemisphere above 0.35,
+/// the view of a face 0.6 edges away, is taken by faces that are so near and look back. `S` as the transport has it,
+/// m^2. O(size^2).
+Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
 /// sqrt(3) of those inside a patch where the irradiance is linear.

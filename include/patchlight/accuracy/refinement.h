@@ -17,6 +17,10 @@ namespace patchlight {
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
                                    const Eigen::VectorXd& weight);
 
+/// The squares of bars on the irradiance as relative_bar() adds them up, per parent, worst band.
+Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
+                                   const Eigen::VectorXd& weight);
+
 /// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
 /// per parent. Where cutting all would not suffice, those with nine tenths of the effect. At most `most` are cut.
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most);
