@@ -174,7 +174,8 @@ SolvedMesh solve_mesh(const Setting& setting, const Request& request, const Plan
   if (plan.error_bars) {
     to_solve.mesh = nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge));
   } else {
-    to_solve.mesh.patches = tessellate(setting.scene, plan.sides, plan.max_edge);
+    const MeshOf& mesh = setting.with.mesh;
+    to_solve.mesh.patches = mesh ? mesh() : tessellate(setting.scene, plan.sides, plan.max_edge);
   }
   require_memory(to_solve.mesh.patches.size(), request);
   clock.finish(Stage::mesh);
