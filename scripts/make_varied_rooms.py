@@ -32,12 +32,11 @@ def hang_lamp(model, centre, size, height):
 
 
 def stand(model, name, low, size, material="wall", turn=0.0):
-    """A block turned about its middle, without its bottom, which stands on the floor."""
+    """A block turned about its middle."""
     model.group(name)
     middle = (low[0] + size[0] / 2, low[1] + size[1] / 2)
     block = Model("block", [], model.materials)
-    box(block, material, (-size[0] / 2, -size[1] / 2, low[2]), (size[0] / 2, size[1] / 2, low[2] + size[2]),
-        "+x-x+y-y+z" if low[2] == 0 else "+x-x+y-y+z-z")
+    box(block, material, (-size[0] / 2, -size[1] / 2, low[2]), (size[0] / 2, size[1] / 2, low[2] + size[2]))
     c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
     points = [tuple(map(float, key)) for key in block.vertices]
     for line in block.lines:
@@ -84,9 +83,9 @@ def door_ajar():
     model = room_with("door_ajar", "Two rooms with a wall between them and a door ajar; the lamp is in one of them.",
                       (6, 3, 2.5))
     model.group("dividing_wall")
-    box(model, "wall", (2.95, 0, 0), (3.05, 1, 2.5), "+x-x+y")
-    box(model, "wall", (2.95, 1.9, 0), (3.05, 3, 2.5), "+x-x-y")
-    box(model, "wall", (2.95, 1, 2.05), (3.05, 1.9, 2.5), "+x-x-z")
+    box(model, "wall", (2.95, 0, 0), (3.05, 1, 2.5))
+    box(model, "wall", (2.95, 1.9, 0), (3.05, 3, 2.5))
+    box(model, "wall", (2.95, 1, 2.05), (3.05, 1.9, 2.5))
     angle = math.radians(25)
     model.group("door")
     door = 0.88

@@ -25,6 +25,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   require_names(scene, request.interest);
   Plan plan = make_plan(scene, request);
   assert(!with.exchange || (!plan.on_demand && !plan.error_bars));
+  assert(!with.mesh || !plan.error_bars);
 
   // 2. What stands between patches, and what lies on them.
   const Coverings coverings = find_coverings(scene, plan.sides);

@@ -13,7 +13,6 @@
 #include "memory.h"
 #include "problem_of.h"
 
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -90,10 +89,12 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   const Field coarse = radiosity_of_parents(std::move(of_parents), result.mesh, plan, solved.problem);
   const Field from_larger = mesh_errors(result.mesh, transport, solved, coarse);
   const Field in_gaps = gap_errors(mesh, S, solved);
+  const Field dark = dark_differences(simulation.transport.lost, solved);
+  const Field by_dark_parts = transport.apply(dark);
   const Field sampled = form_factor_errors(mesh, *result.raw, transport, solved,
                                            direct_difference(setting, plan, *result.raw, simulation));
   const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(simulation.transport.lost);
-  simulation.error_bars = {.mesh = (from_larger.square() + in_gaps.square()).sqrt(),
+  simulation.error_bars = {.mesh = (from_larger.square() + in_gaps.square() + by_dark_parts.square()).sqrt(),
                            .form_factor = (sampled.square() + exposure.square()).sqrt(),
                            .solver = solver_errors(solved),
                            .display = display_errors(result.mesh, solved)};
@@ -101,10 +102,15 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   result.interest = interest_of(setting.scene, mesh, plan.interest);
   const bool all = result.interest.minCoeff() == 1;
   const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
-  const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, weight);
-  const double scale = squares_of_parents(result.mesh, solved, from_larger, result.interest).sum() / effects.sum();
-  result.effects =
-      (std::isfinite(scale) ? scale : 0) * effects + squares_of_parents(result.mesh, solved, in_gaps, weight);
+  // The sources' effects as shares of the errors that they explain, and the errors of gaps, which are their own.
+  const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
+  const auto shared_out = [&](const Field& bar, const Field& difference) -> Eigen::VectorXd {
+    const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, {difference, weight});
+    const double sum = effects.sum();
+    return sum > 0 ? Eigen::VectorXd(squares(bar).sum() / sum * effects) : effects;
+  };
+  result.effects = shared_out(from_larger, differences_from_parents(result.mesh, solved)) +
+                   shared_out(by_dark_parts, dark) + squares(in_gaps);
   return result;
 }
 
@@ -168,7 +174,8 @@ SolvedMesh solve_mesh(const Setting& setting, const Request& request, const Plan
   if (plan.error_bars) {
     to_solve.mesh = nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge));
   } else {
-    to_solve.mesh.patches = tessellate(setting.scene, plan.sides, plan.max_edge);
+    const MeshOf& mesh = setting.with.mesh;
+    to_solve.mesh.patches = mesh ? mesh() : tessellate(setting.scene, plan.sides, plan.max_edge);
   }
   require_memory(to_solve.mesh.patches.size(), request);
   clock.finish(Stage::mesh);

@@ -54,7 +54,7 @@ double allowed(double accuracy, double share, double others) {
 }
 
 // Errors are brought this much lower than they have to be, as they are estimates.
-constexpr double margin = 1.1;
+constexpr double margin = 1.25;
 
 // By what factor the mesh error has to fall.
 double mesh_factor(const AccuracyStep& step, double accuracy) {
@@ -62,7 +62,10 @@ double mesh_factor(const AccuracyStep& step, double accuracy) {
 }
 
 // The form factors' error falls as one over the root of samples and patches: samples for those that the mesh will need.
+// As long as that is far off, the usual number does.
 int samples_for(const AccuracyStep& step, double accuracy) {
+  constexpr double far_off = 1.5;
+  if (mesh_factor(step, accuracy) > far_off) return step.samples;
   const double patches = patches_for(step.patches, mesh_factor(step, accuracy));
   const double expected = step.form_factor * std::sqrt(step.patches / patches);
   const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
@@ -127,7 +130,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const AccuracyStep& step = steps.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
-  if (step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+  if (margin * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
 
   std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
   const double factor = mesh_factor(step, accuracy);

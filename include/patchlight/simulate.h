@@ -63,6 +63,9 @@ struct Simulation {
 /// The exchange between the patches of a mesh where it is known already.
 using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 
+/// The mesh where it is known already.
+using MeshOf = std::function<PatchMesh()>;
+
 /// What finds the solution; solve() is one.
 using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
                                          const SolverOptions& options, const Observer& observer)>;
@@ -75,6 +78,7 @@ struct Steps {
   ExchangeOf exchange = {};  ///< empty: form factors are computed
   SolveWith solve = patchlight::solve;
   LookAt look = {};
+  MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
 };
 
 /// From a scene to converged radiosities: the whole program.

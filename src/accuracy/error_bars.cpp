@@ -28,6 +28,12 @@ Eigen::ArrayXd exposure_errors(const LostShare& lost) {
   return (covered < 1).select((variance * covered / (1 - covered)).sqrt(), 0.0);
 }
 
+Field dark_differences(const LostShare& lost, const SolvedProblem& solved) {
+  const Eigen::ArrayXd dark = lost.dark.array();
+  const Eigen::ArrayXd share = (dark < 1).select(dark.min(0.5) / (1 - dark.min(0.5)), 0.0);
+  return (solved.solution.radiosity - solved.problem.exitance).colwise() * share;
+}
+
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
   RadiosityProblem of_parents;
   of_parents.reflectance = means_by_parent(mesh, problem.reflectance, problem.area);

@@ -26,14 +26,17 @@ Field squared_reflectance(const SolvedProblem& solved) {
 
 }  // namespace
 
-Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
-                                   const Eigen::VectorXd& weight) {
-  const RadiosityProblem& problem = solved.problem;
+Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;
-  const Field difference = B - of_parents(mesh, means_by_parent(mesh, B, problem.area));
+  return B - of_parents(mesh, means_by_parent(mesh, B, solved.problem.area));
+}
+
+Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
+                                   const EffectsOf& of) {
   // A_i (rho_i / A_i sum_c S_ic difference_c)^2 / ||B - E||_A^2
-  const Field of_patch = squared_reflectance(solved).colwise() * (weight.array().square() / problem.area.array());
-  return effects_of_parts(raw, mesh, difference, of_patch);
+  const Field of_patch =
+      squared_reflectance(solved).colwise() * (of.weight.array().square() / solved.problem.area.array());
+  return effects_of_parts(raw, mesh, of.difference, of_patch);
 }
 
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
@@ -53,9 +56,11 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double 
   const double wanted = std::max(all / (factor * factor), all * (1 - bulk * (1 - left_by_a_cut)));
   std::vector<std::uint8_t> marks(order.size(), 0);
   double left = all;
+  // A mesh that hardly differs costs nearly as much as one that does.
+  const std::size_t least = order.size() / 20;
   std::size_t cut = 0;
   for (const std::size_t parent : order) {
-    if (left <= wanted || cut == most) break;
+    if ((left <= wanted && cut >= least) || cut == most) break;
     left -= effects[static_cast<Eigen::Index>(parent)] * (1 - left_by_a_cut);
     marks[parent] = 1;
     ++cut;

@@ -8,6 +8,7 @@
 #include "cli/form_factor_options.h"
 #include "cli/relight_options.h"
 #include "cli/solve_options.h"
+#include "cli/study_options.h"
 #include "cli/validate_options.h"
 #include "cli/verify_options.h"
 
@@ -123,6 +124,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
   const std::shared_ptr<CompareCommandOptions> compare_options = add_compare(tool);
+  const std::shared_ptr<StudyCommandOptions> study_options = add_study(tool);
   const std::shared_ptr<VerifyCommandOptions> verify_options = add_verify(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
@@ -146,6 +148,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     }
     if (command.get_name() == "compare") {
       CompareArguments arguments = finish_compare(*compare_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
+    if (command.get_name() == "study") {
+      StudyArguments arguments = finish_study(*study_options);
       arguments.command_line = joined(count, values);
       return arguments;
     }

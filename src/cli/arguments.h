@@ -5,6 +5,7 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/study/compare.h"
+#include "patchlight/study/study.h"
 #include "patchlight/study/verify.h"
 
 #include "cli/messages.h"
@@ -82,6 +83,17 @@ struct CompareArguments {
   std::string command_line;  ///< for the record
 };
 
+/// What `patchlight study` is asked to do.
+struct StudyArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  StudyOptions options;
+  std::filesystem::path output;  ///< a folder
+  bool quiet = false;
+  std::string command_line;  ///< for the record
+};
+
 /// What `patchlight verify` is asked to do.
 struct VerifyArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
@@ -106,7 +118,7 @@ struct Information {
 };
 
 using Arguments = std::variant<Information, SolveArguments, CheckArguments, FormFactorArguments, CompareArguments,
-                               VerifyArguments, ValidateArguments>;
+                               StudyArguments, VerifyArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

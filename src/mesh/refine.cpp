@@ -81,7 +81,7 @@ class Cutter {
     mesh.material.push_back(from.material[patch]);
     mesh.polygon.push_back(from.polygon[patch]);
     mesh.side.push_back(from.side[patch]);
-    const PatchCorners points = mesh.corner_points(mesh.corners.size() - 1);
+    const PatchCorners points = mesh.corner_points(static_cast<PatchIndex>(mesh.corners.size() - 1));
     mesh.centroid.push_back(area_centroid(points));
     mesh.area.push_back(area_vector(points).norm());
     result_.parent.push_back(patch);

@@ -61,10 +61,15 @@ inline constexpr double mesh_order = 1.2;
 /// with, so that bars cover what they should.
 inline constexpr double form_factor_scale = 1.5;
 
-/// What no comparison with larger patches shows: in a gap that is narrower than its patches are wide, light that gets
-/// in at the rim is spread over all of a patch, however large. There H_i times how much of the hemisphere above 0.35,
-/// the view of a face 0.6 edges away, is taken by faces that are so near and look back. `S` as the transport has it,
-/// m^2. O(size^2).
+/// How far the radiosity of the lit part of a patch that reaches into a solid is above its mean: B_i d_i / (1 - d_i),
+/// d_i the dark share, not above 1/2. As long as the patch is wider than what is dark of it, the light that this takes
+/// away does not depend on the patch's size: comparison with larger patches does not show it.
+Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
+
+/// What no comparison with larger patches shows, either: in a gap that is narrower than its patches are wide, light
+/// that gets in at the rim is spread over all of a patch, however large. There H_i times how much of the hemisphere
+/// above 0.35, the view of a face 0.6 edges away, is taken by faces that are so near and look back. `S` as the
+/// transport has it, m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are

@@ -11,11 +11,20 @@
 
 namespace patchlight {
 
-/// How much the light elsewhere changes when a parent is taken as a whole, not in its parts: per parent the sum over
-/// all patches of A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. What it takes to tell where finer
-/// patches pay. After one reflection. `weight` is that of each patch in the error.
+/// What is to be told apart.
+struct EffectsOf {
+  Field difference;        ///< of radiosity, W/m^2
+  Eigen::VectorXd weight;  ///< of each patch in the error
+};
+
+/// How far each patch is from the mean of its parent, radiosity in W/m^2.
+Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved);
+
+/// How much the light elsewhere changes by differences of radiosity: per parent the sum over all patches of
+/// A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. What it takes to tell where finer patches pay. After
+/// one reflection. `weight` is that of each patch in the error.
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
-                                   const Eigen::VectorXd& weight);
+                                   const EffectsOf& of);
 
 /// The squares of bars on the irradiance as relative_bar() adds them up, per parent, worst band.
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,

@@ -76,7 +76,7 @@ struct Plan {
 inline constexpr std::size_t default_patches = 4000;
 
 /// The number of patches that refining to an accuracy starts from: a tenth of a second's work.
-inline constexpr std::size_t first_patches = 600;
+inline constexpr std::size_t first_patches = 500;
 
 /// True when patches are refined until an accuracy is reached, or time is up.
 bool refines(const Request& request);
