@@ -41,6 +41,11 @@ double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+// The number of patches at first.
+std::size_t patches_asked(const Request& request) {
+  return request.patches.value_or(refines(request) ? first_patches : default_patches);
+}
+
 // The number of patches for which memory_needed() is this.
 double patches_in(double bytes, const Request& request) {
   const double left = std::max(0.0, bytes - bytes_of_program);
@@ -75,8 +80,7 @@ void require_memory(std::size_t patches, const Request& request) {
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_in(usable, request));
   // Small faces take a patch each, however few are asked for.
-  const bool too_many_faces =
-      !request.max_edge && static_cast<long>(request.patches.value_or(default_patches)) <= fitting;
+  const bool too_many_faces = !request.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
   const std::string hint =
       usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
       : too_many_faces
@@ -94,7 +98,7 @@ void require_memory(const Scene& scene, const Request& request) {
     // Too many to count are as good as the largest number.
     require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request);
   } else {
-    require_memory(request.patches.value_or(default_patches), request);
+    require_memory(patches_asked(request), request);
   }
 }
 

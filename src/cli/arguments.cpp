@@ -21,8 +21,9 @@ namespace patchlight::cli {
 namespace {
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 good, 1 usage, 2 input, 3 not converged (results are written), 4 out of memory,\n"
-    "5 a validation or verification failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
+    "Exit codes: 0 good, 1 usage, 2 input, 3 not converged or not as accurate as asked (results are\n"
+    "written), 4 out of memory, 5 a validation or verification failed, 6 output cannot be written,\n"
+    "70 internal error, 130 interrupted.";
 
 // Number of insertions, removals and replacements that turn one word into the other (Levenshtein 1966), row by row.
 std::size_t edit_distance(const std::string& a, const std::string& b) {

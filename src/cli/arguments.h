@@ -94,16 +94,13 @@ struct StudyArguments {
   std::string command_line;  ///< for the record
 };
 
-/// The relative standard error that `patchlight verify` grants an irradiance.
-inline constexpr double default_bar = 0.02;
-
 /// What `patchlight verify` is asked to do.
 struct VerifyArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   Request request;
   VerifyOptions options;
-  double bar = default_bar;
+  std::optional<double> bar;   ///< the relative standard error that every irradiance is granted; none: its error bars
   std::filesystem::path json;  ///< .json; empty when it is not wanted
   std::string command_line;    ///< for the record
 };

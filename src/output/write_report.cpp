@@ -2,6 +2,7 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "output/accuracy_json.h"
 #include "output/write_bytes.h"
 
 #include <limits>
@@ -53,6 +54,10 @@ Json request_part(const Request& request) {
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
+  part["error_bars"] = request.error_bars;
+  part["accuracy"] = json_of(request.accuracy);
+  part["time_s"] = json_of(request.seconds);
+  part["interest"] = request.interest;
   return part;
 }
 
@@ -274,6 +279,8 @@ void write_report(const std::filesystem::path& file, const Scene& scene, const R
   report["transport"] = transport_part(scene, simulation);
   report["energy_balance"] = energy_part(simulation.balance, simulation.transport.row_sum.size() > 0);
   report["solution"] = solution_part(simulation);
+  report["relative_error"] = relative_errors(simulation);
+  report["accuracy"] = accuracy_steps(simulation);
   report["costs"] = costs_part(simulation.costs);
   report["memory_peak_bytes"] = memory_peak_bytes();
   report["exposure"] = provenance.exposure;
