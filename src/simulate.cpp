@@ -33,10 +33,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
   for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge)) plan.notes.push_back(std::move(note));
 
-  // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve B = E + rho o F B;
-  // until
-  //    an accuracy is reached where one is asked for.
-  const Setting setting{scene, occluder, with, observer};
+  // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
+  //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.
+  const Setting setting{scene, coverings, occluder, with, observer};
   Simulation result = refines(request) ? solve_to_accuracy(setting, request, plan, clock).simulation
                                        : solve_mesh(setting, request, plan, clock).simulation;
   result.costs = clock.costs();

@@ -2,6 +2,7 @@
 
 #include "patchlight/accuracy/refinement.h"
 #include "patchlight/base/sampling.h"
+#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/solve/energy.h"
 #include "patchlight/transport/dense.h"
@@ -51,7 +52,8 @@ constexpr double most_lamps = 0.125;
 
 // How far two independent values of the irradiance straight from the lamps are apart; nothing where these are too many.
 Field direct_difference(const Setting& setting, const Plan& plan, const Assembly& raw, const Simulation& simulation) {
-  const auto& [reflectance, exitance, area] = simulation.problem;
+  const Field& exitance = simulation.problem.exitance;
+  const Eigen::VectorXd& area = simulation.problem.area;
   const auto emits = (exitance > 0).rowwise().any();
   if (static_cast<double>(emits.count()) > most_lamps * static_cast<double>(exitance.rows())) return {};
   AssemblyOptions again = assembly_options(plan);
@@ -93,9 +95,11 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   const Field by_dark_parts = transport.apply(dark);
   const Field sampled = form_factor_errors(mesh, *result.raw, transport, solved,
                                            direct_difference(setting, plan, *result.raw, simulation));
+  const Field& of_lights = simulation.direct_standard_error;
+  const Field direct = of_lights.size() > 0 ? of_lights : Field::Zero(sampled.rows(), sampled.cols());
   const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(simulation.transport.lost);
   simulation.error_bars = {.mesh = (from_larger.square() + in_gaps.square() + by_dark_parts.square()).sqrt(),
-                           .form_factor = (sampled.square() + exposure.square()).sqrt(),
+                           .form_factor = (sampled.square() + exposure.square() + direct.square()).sqrt(),
                            .solver = solver_errors(solved),
                            .display = display_errors(result.mesh, solved)};
 
@@ -117,7 +121,7 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
 }  // namespace
 
 SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_solve, StageClock& clock) {
-  const auto& [scene, occluder, with, observer] = setting;
+  const auto& [scene, coverings, occluder, with, observer] = setting;
   SolvedMesh result{{}, to_solve.mesh, {}, {}, {}};
   Simulation& simulation = result.simulation;
   TransportFacts& facts = simulation.transport;
@@ -154,8 +158,16 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   }
   clock.finish(Stage::closure);
 
-  // 3. Solve B = E + rho o F B, and see where the light went.
+  // 3. Light of luminaires, sun and sky where it first arrives.
   simulation.problem = problem_of(scene, mesh, area, plan.sides.emit_from_back);
+  if (has_point_or_daylight(scene)) {
+    DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), mesh, {.seed = plan.seed}, observer);
+    simulation.problem.direct_irradiance = std::move(direct.irradiance);
+    simulation.direct_standard_error = std::move(direct.standard_error);
+    clock.finish(Stage::direct_light);
+  }
+
+  // 4. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
   options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
   simulation.solution = with.solve(*transport, simulation.problem, options, observer);
@@ -163,7 +175,7 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
                                       plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
   clock.finish(Stage::solve);
 
-  // 4. How far that may be off.
+  // 5. How far that may be off.
   if (plan.error_bars) result = with_error_bars(setting, std::move(result), *transport, std::move(*of_parents));
   clock.finish(Stage::error_bars);
   return result;

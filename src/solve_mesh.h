@@ -15,6 +15,7 @@ namespace patchlight {
 /// What a scene is solved with, on one mesh after the other.
 struct Setting {
   const Scene& scene;
+  const Coverings& coverings;
   const Occluder& occluder;
   const Steps& with;
   const Observer& observer;

@@ -58,6 +58,7 @@ struct Simulation {
   std::optional<ErrorBars> error_bars;  ///< when asked for
   std::vector<AccuracyStep> accuracy;   ///< with error bars: every mesh, the last one is this one
   std::vector<StageCost> costs;
+  Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };
 
 /// The exchange between the patches of a mesh where it is known already.

@@ -38,6 +38,8 @@ RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProbl
   RadiosityProblem of_parents;
   of_parents.reflectance = means_by_parent(mesh, problem.reflectance, problem.area);
   of_parents.exitance = means_by_parent(mesh, problem.exitance, problem.area);
+  if (problem.direct_irradiance.size() > 0)
+    of_parents.direct_irradiance = means_by_parent(mesh, problem.direct_irradiance, problem.area);
   of_parents.area = summed_by_parent(mesh, problem.area.array()).col(0).matrix();
   return of_parents;
 }

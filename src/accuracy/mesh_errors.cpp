@@ -9,8 +9,8 @@ namespace patchlight {
 Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
                   const FieldView& radiosity_of_parents) {
   const double scale = 1 / (std::pow(2.0, mesh_order) - 1);
-  const Field coarse = transport.apply(of_parents(mesh, radiosity_of_parents));
-  const Field error = scale * (solved.solution.irradiance - coarse).abs();
+  const Field difference = solved.solution.radiosity - of_parents(mesh, radiosity_of_parents);
+  const Field error = scale * transport.apply(difference).abs();
   return error.max(means_around(mesh.patches, error));
 }
 

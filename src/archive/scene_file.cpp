@@ -58,7 +58,8 @@ Json materials_part(const Scene& scene) {
   for (const Material& material : scene.materials) {
     part.push_back({{"name", json_of(material.name)},
                     {"reflectance", json_of(material.reflectance)},
-                    {"exitance", json_of(material.exitance)}});
+                    {"exitance", json_of(material.exitance)},
+                    {"transmittance", json_of(material.transmittance)}});
   }
   return part;
 }
@@ -153,9 +154,10 @@ std::vector<Material> materials_of(const Json& json) {
   std::vector<Material> materials;
   for (const Json& entry : json) {
     Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
-                      spectrum_of(entry.at("exitance"))};
+                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance"))};
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
-    require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands,
+    require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
+                (material.transmittance.size() == 0 || material.transmittance.size() == bands),
             "the materials do not all have the same bands");
     materials.push_back(std::move(material));
   }
@@ -218,6 +220,13 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
           texts_of(json.at("notes"))};
 }
 
+[[noreturn]] void refuse_lights(const std::filesystem::path& folder) {
+  throw InputError(folder.string(),
+                   "its scene has luminaires, sun or sky, which are not kept with form factors; give the scene file "
+                   "again: patchlight solve SCENE.toml --form-factors " +
+                       folder.string());
+}
+
 StoredScene stored_scene_of(const Json& json) {
   require(json.at("kind") == kind, "its kind is " + json.at("kind").dump());
   Scene scene;
@@ -255,6 +264,7 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["notes"] = json_of(scene.notes);
   json["materials"] = materials_part(scene);
   json["lamp_hints"] = lamp_hints_part(scene);
+  json["has_point_or_daylight"] = has_point_or_daylight(scene);
   json["groups"] = json_of(scene.groups);
   json["vertices"] = vertices_part(scene);
   json["polygons"] = polygons_part(scene);
@@ -270,12 +280,18 @@ StoredScene read_stored_scene(const std::filesystem::path& folder) {
                                           " in it, as form factors of earlier versions have none; make them anew: "
                                           "patchlight form-factors MODEL -o FOLDER");
   }
+  StoredScene stored;
+  bool lights_left_out = false;
   try {
-    return stored_scene_of(Json::parse(stream));
+    const Json json = Json::parse(stream);
+    lights_left_out = json.at("has_point_or_daylight").get<bool>();
+    stored = stored_scene_of(json);
   } catch (const std::exception& error) {
     throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
                                         "); make the form factors anew");
   }
+  if (lights_left_out) refuse_lights(folder);
+  return stored;
 }
 
 }  // namespace patchlight

@@ -12,6 +12,8 @@ const char* name_of(Stage stage) {
       return "form factors";
     case Stage::closure:
       return "closure";
+    case Stage::direct_light:
+      return "direct light";
     case Stage::solve:
       return "solve";
     case Stage::error_bars:

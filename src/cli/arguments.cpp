@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
 
+#include "base/near_match.h"
 #include "cli/check_options.h"
 #include "cli/compare_options.h"
 #include "cli/form_factor_options.h"
@@ -15,7 +16,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <numeric>
 
 namespace patchlight::cli {
 namespace {
@@ -25,35 +25,14 @@ constexpr const char* exit_codes =
     "written), 4 out of memory, 5 a validation or verification failed, 6 output cannot be written,\n"
     "70 internal error, 130 interrupted.";
 
-// Number of insertions, removals and replacements that turn one word into the other (Levenshtein 1966), row by row.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 // ": did you mean --max-edge?" when an option is at most two letters away, nothing otherwise.
-std::string suggestion(const CLI::App& command, const std::string& unknown) {
-  std::string nearest;
-  std::size_t least = 3;
+std::string near_option(const CLI::App& command, const std::string& unknown) {
+  std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      const std::size_t distance = edit_distance("--" + name, unknown.substr(0, unknown.find('=')));
-      if (distance >= least) continue;
-      least = distance;
-      nearest = name;
-    }
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  return nearest.empty() ? "" : ": did you mean --" + nearest + "?";
+  const std::string nearest = near_match(unknown.substr(0, unknown.find('=')), names);
+  return nearest.empty() ? "" : ": did you mean " + nearest + "?";
 }
 
 // Refuses what no option or positional argument took; an unknown option is named before its value.
@@ -62,7 +41,7 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
   const auto unknown = std::find_if(left.begin(), left.end(), is_option);
   if (unknown != left.end()) {
-    const std::string hint = suggestion(command, *unknown);
+    const std::string hint = near_option(command, *unknown);
     throw UsageError(name + ": unknown option " + *unknown +
                      (hint.empty() ? "; patchlight " + name + (name.empty() ? "" : " ") + "--help lists them" : hint));
   }

@@ -41,11 +41,13 @@ struct SolveArguments {
   std::filesystem::path picture;               ///< .png
   PictureColors colors = PictureColors::natural;
   std::optional<Camera> camera;  ///< model units
+  std::string view;              ///< or the name of a camera of the scene; if empty, its first one
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
 
-  std::filesystem::path points;         ///< input: where irradiance is wanted
-  std::filesystem::path points_output;  ///< .csv
+  std::filesystem::path points;  ///< input: where irradiance is wanted, besides the scene's sensors
+  std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; none: default_points_output
+  std::filesystem::path default_points_output;        ///< .csv, where sensors are but no output for them is named
 
   Verbosity verbosity = Verbosity::normal;
   std::string command_line;  ///< for the record

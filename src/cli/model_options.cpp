@@ -44,11 +44,12 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option("--set", settings,
-                  "changes a material: reflectance (0 to 1), exitance (W/m^2)\nor radiance (W/(m^2 sr)); may be "
-                  "repeated; default: as in\nthe model")
+      .add_option(
+          "--set", settings,
+          "changes a material (* and ? in its name stand for any\nletters): reflectance or transmittance (0 to 1), "
+          "exitance\n(W/m^2) or radiance (W/(m^2 sr)); may be repeated; default:\nas in the model")
       ->allow_extra_args(false)
-      ->option_text("MATERIAL.reflectance|exitance|radiance=R,G,B");
+      ->option_text("MATERIAL.QUANTITY=R,G,B");
 }
 
 std::vector<std::filesystem::path> model_files(const ModelOptions& options) {

@@ -1,5 +1,6 @@
 #include "cli/picture.h"
 
+#include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
 #include "patchlight/output/write_image.h"
 #include "patchlight/render/render.h"
@@ -45,6 +46,18 @@ Camera in_metres(const Camera& camera, double metres_per_unit) {
 
 }  // namespace
 
+std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& scene) {
+  if (arguments.camera) return in_metres(*arguments.camera, scene.metres_per_unit);
+  std::string names;
+  for (const Camera& camera : scene.cameras) {
+    if (arguments.view.empty() || camera.name == arguments.view) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  if (arguments.view.empty()) return std::nullopt;
+  throw InputError("--view", "found '" + arguments.view + "'; expected a camera of the scene file: " +
+                                 (names.empty() ? "it has none" : "one of " + names));
+}
+
 Field display_radiance(const Simulation& simulation) {
   const Solution& solution = simulation.solution;
   Field radiosity = solution.radiosity;
@@ -57,8 +70,8 @@ Field display_radiance(const Simulation& simulation) {
 
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
                           const Occluder& occluder, const Observer& observer) {
-  const Camera camera = arguments.camera ? in_metres(*arguments.camera, scene.metres_per_unit)
-                                         : default_camera(scene, simulation.plan.sides, occluder);
+  const std::optional<Camera> asked = camera_for(arguments, scene);
+  const Camera camera = asked ? *asked : default_camera(scene, simulation.plan.sides, occluder);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
   if (arguments.colors == PictureColors::natural) {

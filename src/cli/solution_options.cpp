@@ -1,11 +1,13 @@
 #include "cli/solution_options.h"
 
+#include "patchlight/output/write_points.h"
 #include "patchlight/output/write_result.h"
 
 #include "cli/add_option.h"
 #include "cli/mesh_options.h"
 #include "cli/parse_value.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace patchlight::cli {
@@ -31,18 +33,31 @@ void require_extension(const std::string& option, const std::string& file, const
   throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + words);
 }
 
+// Sensors may be asked for by --points, or by a scene file among the models.
+bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& options) {
+  const auto is_scene_file = [](const path& model) { return model.extension() == ".toml"; };
+  return !options.points.empty() || arguments.read.format == "toml" ||
+         std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
+}
+
+void require_picture(const SolutionOptions& options) {
+  const char* const needs = options.camera          ? "--camera"
+                            : !options.view.empty() ? "--view"
+                            : options.colors        ? "--false-color"
+                                                    : nullptr;
+  if (options.picture.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs --picture FILE");
+  if (options.camera && !options.view.empty()) {
+    throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
+  }
+}
+
 void require_consistent(const std::string& command, const SolutionOptions& options) {
   if (options.results.empty() && options.series.empty() && options.picture.empty() && options.report.empty() &&
-      options.points.empty()) {
+      options.points.empty() && options.points_outputs.empty()) {
     throw UsageError(command +
                      ": nothing would be written; give at least one of -o, --series, --picture, --report, --points");
   }
-  if (options.picture.empty() && (options.camera || options.colors)) {
-    throw UsageError(std::string(options.camera ? "--camera" : "--false-color") + " needs --picture FILE");
-  }
-  if (options.points.empty() && !options.points_output.empty()) {
-    throw UsageError("--points-output needs --points FILE");
-  }
+  require_picture(options);
   if (options.camera && options.camera->eye == options.camera->target) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
   }
@@ -51,6 +66,8 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
+  for (const std::string& file : options.points_outputs)
+    require_extension("--points-output", file, points_extensions());
   if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
   if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
 }
@@ -59,11 +76,10 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
 using NamedFile = std::pair<const char*, const path*>;
 
 std::vector<NamedFile> outputs_of(const SolveArguments& arguments) {
-  std::vector<NamedFile> files = {{"--series", &arguments.series},
-                                  {"--report", &arguments.report},
-                                  {"--picture", &arguments.picture},
-                                  {"--points-output", &arguments.points_output}};
+  std::vector<NamedFile> files = {
+      {"--series", &arguments.series}, {"--report", &arguments.report}, {"--picture", &arguments.picture}};
   for (const path& result : arguments.results) files.emplace_back("-o", &result);
+  for (const path& file : arguments.points_outputs) files.emplace_back("--points-output", &file);
   std::erase_if(files, [](const NamedFile& file) { return file.second->empty(); });
   return files;
 }
@@ -95,10 +111,26 @@ void require_untouched_folder(const SolveArguments& arguments) {
   }
 }
 
-path points_output(const SolutionOptions& options) {
-  if (options.points.empty() || !options.points_output.empty()) return options.points_output;
-  const path beside = options.results.empty() ? path() : path(options.results.front());
-  return beside.parent_path() / (path(options.points).stem().string() + ".irradiance.csv");
+// Named after the file of points, else after the first model.
+path default_points_output(const SolveArguments& arguments) {
+  const path beside = arguments.results.empty() ? path() : arguments.results.front();
+  const path name = !arguments.points.empty()   ? arguments.points
+                    : !arguments.models.empty() ? arguments.models.front()
+                                                : path("sensors");
+  return beside.parent_path() / (name.stem().string() + ".irradiance.csv");
+}
+
+void add_points_options(CLI::App& command, SolutionOptions& options) {
+  add_file(command, "--points", options.points,
+           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
+           "receiving side");
+  command
+      .add_option("--points-output", options.points_outputs,
+                  "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), or for "
+                  "ParaView (.vtp); may be repeated;\ndefault: the points file's or scene's name with "
+                  ".irradiance.csv, in\nthe folder of -o, else in the current one")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
 }
 
 }  // namespace
@@ -141,12 +173,12 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
           "default: a view\nfrom within the scene's bounds that shows most of it")
       ->expected(3)
       ->option_text("EYE TARGET FOV");
-  add_file(command, "--points", options.points,
-           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
-           "receiving side");
-  add_file(command, "--points-output", options.points_output,
-           "irradiance at these points in W/m^2 per band (CSV);\ndefault: the points file's name with "
-           ".irradiance.csv, in\nthe folder of -o, else in the current one");
+  add(command, "--view", "NAME", "view of the picture: a camera of the scene file; default: its first",
+      [&options](const std::string& text) {
+        if (text.empty()) throw refusal("--view", text, "the name of a camera");
+        options.view = text;
+      });
+  add_points_options(command, options);
 }
 
 void add_solver_options(CLI::App& command, SolutionOptions& options) {
@@ -195,8 +227,16 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   arguments.picture = options.picture;
   arguments.colors = options.colors.value_or(PictureColors::natural);
   arguments.camera = options.camera;
+  arguments.view = options.view;
   arguments.points = options.points;
-  arguments.points_output = points_output(options);
+  arguments.points_outputs.assign(options.points_outputs.begin(), options.points_outputs.end());
+  if (!options.points.empty() && arguments.points_outputs.empty()) {
+    arguments.points_outputs = {default_points_output(arguments)};
+  }
+  arguments.default_points_output = default_points_output(arguments);
+  if (!arguments.points_outputs.empty() && !may_have_sensors(arguments, options)) {
+    throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
+  }
   if (options.quiet) arguments.verbosity = Verbosity::quiet;
   if (options.verbose) arguments.verbosity = Verbosity::verbose;
   require_distinct_files(arguments);

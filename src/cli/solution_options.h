@@ -14,7 +14,8 @@ struct SolutionOptions {
   Request request;  ///< solver, tolerance, iterations, closure
   bool solver_given = false;
   std::vector<std::string> results;
-  std::string series, report, picture, points, points_output;
+  std::string series, report, picture, points, view;
+  std::vector<std::string> points_outputs;
   std::optional<Vector> up;
   std::optional<Camera> camera;  ///< model units
   std::optional<PictureColors> colors;
@@ -25,7 +26,7 @@ struct SolutionOptions {
 /// Adds --up. What is parsed lands in `options`, which must outlive the command; so below.
 void add_up_option(CLI::App& command, SolutionOptions& options);
 
-/// Adds -o, --series, --report, --picture, --false-color, --camera, --points and --points-output.
+/// Adds -o, --series, --report, --picture, --false-color, --camera, --view, --points and --points-output.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
 /// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows.

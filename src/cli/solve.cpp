@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
+#include "patchlight/gather/doubtful_sensors.h"
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_image.h"
 #include "patchlight/output/write_points.h"
@@ -13,8 +14,8 @@
 
 #include "cli/interrupt.h"
 #include "cli/picture.h"
-#include "cli/points_file.h"
 #include "cli/progress.h"
+#include "cli/sensors.h"
 #include "cli/solve_input.h"
 #include "cli/summary.h"
 #include "stage_clock.h"
@@ -33,8 +34,9 @@ namespace {
 struct Results {
   Scene scene;
   Simulation simulation;
-  SensorList points;
-  Field irradiance;  // at the points, W/m^2
+  std::vector<std::filesystem::path> points_outputs;
+  Readings readings;
+  std::vector<std::string> warnings;  // about sensors
   DisplayImage picture;
   std::vector<IterateIrradiance> iterates;
   Provenance provenance;
@@ -43,9 +45,41 @@ struct Results {
 void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.results) check_writable(file);
   if (!arguments.series.empty()) check_series_writable(arguments.series);
-  for (const auto* file : {&arguments.report, &arguments.picture, &arguments.points_output}) {
+  for (const auto* file : {&arguments.report, &arguments.picture}) {
     if (!file->empty()) check_writable(*file);
   }
+  for (const std::filesystem::path& file : arguments.points_outputs) check_writable(file);
+}
+
+// Reads what is solved, and checks what could be refused only after hours.
+SolveInput read(const SolveArguments& arguments, const Observer& observer) {
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  SolveInput input = read_input(arguments);
+  input.scene = with_points(std::move(input.scene), arguments);
+  for (const std::filesystem::path& file : points_outputs(arguments, input.scene)) check_writable(file);
+  camera_for(arguments, input.scene);
+  return input;
+}
+
+// Looks at the solution: irradiance at sensors, picture.
+Results with_views(Results results, const SolveArguments& arguments, const Observer& observer) {
+  const Scene& scene = results.scene;
+  Simulation& simulation = results.simulation;
+  if (scene.sensors.empty() && arguments.picture.empty()) return results;
+  StageClock looking;
+  const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));
+  if (!scene.sensors.empty()) {
+    results.points_outputs = points_outputs(arguments, scene);
+    results.readings = read_sensors(scene, simulation, observer);
+    results.warnings = doubtful_sensors(scene, simulation.plan.sides, occluder);
+    looking.finish(Stage::gather);
+  }
+  if (!arguments.picture.empty()) {
+    results.picture = make_picture(arguments, scene, simulation, occluder, observer);
+    looking.finish(Stage::render);
+  }
+  simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
+  return results;
 }
 
 Results compute(const SolveArguments& arguments, const Observer& observer) {
@@ -53,11 +87,9 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   Simulation& simulation = results.simulation;
 
   // 1. Read the scene and the points
-  if (!observer({.stage = Stage::read})) throw Cancelled();
   StageClock reading;
-  SolveInput input = read_input(arguments);
+  SolveInput input = read(arguments, observer);
   results.scene = std::move(input.scene);
-  if (!arguments.points.empty()) results.points = read_points(arguments.points, results.scene.metres_per_unit);
   reading.finish(Stage::read);
 
   // 2. Solve
@@ -74,23 +106,13 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area);
   results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
-  if (arguments.points.empty() && arguments.picture.empty()) return results;
 
-  // 3. Look at the solution: irradiance at points, picture
-  StageClock looking;
-  const Occluder occluder(results.scene, Occluder::Blockers::all, find_coverings(results.scene, simulation.plan.sides));
-  if (!arguments.points.empty()) {
-    results.irradiance =
-        gather_irradiance(simulation.mesh, simulation.solution.radiosity, simulation.problem.exitance, occluder,
-                          results.points.sensors, {.seed = arguments.request.seed}, observer);
-    looking.finish(Stage::gather);
-  }
-  if (!arguments.picture.empty()) {
-    results.picture = make_picture(arguments, results.scene, simulation, occluder, observer);
-    looking.finish(Stage::render);
-  }
-  simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
-  return results;
+  // 3. Look at the solution
+  return with_views(std::move(results), arguments, observer);
+}
+
+SensorReport sensor_report(const Results& results) {
+  return {by_group(results.scene.sensors, results.readings), sensor_unit(results.readings), results.warnings};
 }
 
 // Writes one file after the other; the run can be stopped between two. Returns the files written.
@@ -111,10 +133,12 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
                  [](const Progress&) { return !interrupted(); });
   });
   write_to(arguments.picture, [&] { write_png(arguments.picture, results.picture); });
-  write_to(arguments.points_output,
-           [&] { write_points(arguments.points_output, results.points.lines, results.irradiance); });
+  for (const std::filesystem::path& file : results.points_outputs) {
+    write_to(file, [&] { write_points(file, results.scene.sensors, results.readings); });
+  }
   write_to(arguments.report, [&] {
-    write_report(arguments.report, results.scene, arguments.request, results.simulation, results.provenance);
+    write_report(arguments.report,
+                 {results.scene, arguments.request, results.simulation, results.provenance, sensor_report(results)});
   });
   return written;
 }
@@ -137,7 +161,9 @@ ExitCode solve(const SolveArguments& arguments) {
 
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
+    for (const std::string& warning : results.warnings) print_message("warning", warning);
     std::cout << summary(results.scene, results.simulation, arguments.verbosity == Verbosity::verbose);
+    std::cout << sensor_summary(results.scene, results.readings);
     std::cout << files_line(written) << std::flush;
   }
   if (!results.simulation.solution.converged) {

@@ -61,8 +61,10 @@ std::string energy(const Simulation& simulation) {
   const EnergyBalance& balance = simulation.balance;
   const bool row_sums_known = simulation.transport.row_sum.size() > 0;
   std::ostringstream text;
-  text << "flux in W per band: emitted " << bands(balance.emitted) << "; absorbed " << bands(balance.absorbed)
-       << "; escaped " << bands(balance.escaped) << "; lost at backs " << bands(balance.lost_at_backs)
+  text << "flux in W per band: emitted " << bands(balance.emitted)
+       << ((balance.arriving > 0).any() ? "; arriving from luminaires, sun and sky " + bands(balance.arriving) : "")
+       << "; absorbed " << bands(balance.absorbed) << "; escaped " << bands(balance.escaped) << "; lost at backs "
+       << bands(balance.lost_at_backs)
        << (row_sums_known ? "; form factor defect " + bands(balance.defect) + "; imbalance "
                           : "; imbalance with the form factor defect ")
        << rounded(balance.imbalance, 2);

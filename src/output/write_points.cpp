@@ -1,5 +1,6 @@
 #include "patchlight/output/write_points.h"
 
+#include "output/vtk_points.h"
 #include "output/write_bytes.h"
 
 #include <cassert>
@@ -9,45 +10,72 @@
 namespace patchlight {
 namespace {
 
-constexpr std::size_t input_columns = 6;  // x y z nx ny nz
-
-std::string header(Eigen::Index bands) {
-  std::string names = "x,y,z,nx,ny,nz";
-  if (bands == 3) return names + ",E_r,E_g,E_b\n";
-  for (Eigen::Index band = 1; band <= bands; ++band) names += ",E_" + std::to_string(band);
-  return names + "\n";
+// ",E_r,E_g,E_b", or ",E_1,E_2" for other bands than three.
+std::string band_columns(const std::string& quantity, Eigen::Index bands) {
+  if (bands == 3) return "," + quantity + "_r," + quantity + "_g," + quantity + "_b";
+  std::string names;
+  for (Eigen::Index band = 1; band <= bands; ++band) names += "," + quantity + "_" + std::to_string(band);
+  return names;
 }
 
-// The first six words of a line, whether separated by blanks or commas, each followed by a comma.
-std::string input_cells(std::string line) {
-  for (char& c : line) {
-    if (c == ',' || c == ';') c = ' ';
+std::string header(const Readings& readings) {
+  const Eigen::Index bands = readings.irradiance.cols();
+  std::string names = "x,y,z,nx,ny,nz" + band_columns("E", bands) + band_columns("SE", bands);
+  if (readings.photometric) names += ",E_v_lx,SE_v_lx";
+  if (readings.outside_by_sky) names += ",daylight_factor_percent";
+  return names + ",group\n";
+}
+
+// In quotes where a comma, a quote or a line break would end it early (RFC 4180).
+std::string cell(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string quoted = "\"";
+  for (const char letter : name) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + "\"";
+}
+
+void add_position(std::ostream& text, const SensorGroup& group, std::size_t k) {
+  if (!group.columns.empty()) {
+    text << group.columns[k];
+    return;
   }
-  std::istringstream words(line);
-  std::string cells, word;
-  for (std::size_t column = 0; column < input_columns; ++column) {
-    word.clear();
-    words >> word;
-    cells += word + ",";
+  const auto [point, normal] = group.sensors[k];
+  text << point.x() << ',' << point.y() << ',' << point.z();
+  for (const double component : normal) text << ',' << component + 0.0;  // no minus before a zero
+}
+
+void add_values(std::ostream& text, const Readings& readings, std::size_t sensor) {
+  const auto row = static_cast<Eigen::Index>(sensor);
+  for (const Field* const field : {&readings.irradiance, &readings.standard_error}) {
+    for (const double value : field->row(row)) text << ',' << value;
   }
-  return cells;
+  const SensorValue value = sensor_value(readings, sensor);
+  if (readings.photometric) text << ',' << value.value << ',' << value.standard_error;
+  if (readings.outside_by_sky) text << ',' << daylight_factor(readings, sensor);
+}
+
+std::string table(std::span<const SensorGroup> groups, const Readings& readings) {
+  std::ostringstream text;
+  text << header(readings) << std::setprecision(9);
+  std::size_t sensor = 0;
+  for (const SensorGroup& group : groups) {
+    for (std::size_t k = 0; k < group.sensors.size(); ++k, ++sensor) {
+      add_position(text, group, k);
+      add_values(text, readings, sensor);
+      text << ',' << cell(group.name) << '\n';
+    }
+  }
+  assert(static_cast<Eigen::Index>(sensor) == readings.irradiance.rows());
+  return text.str();
 }
 
 }  // namespace
 
-void write_points(const std::filesystem::path& file, const std::vector<std::string>& lines,
-                  const FieldView& irradiance) {
-  assert(static_cast<Eigen::Index>(lines.size()) == irradiance.rows());
-  std::ostringstream text;
-  text << header(irradiance.cols()) << std::setprecision(9);
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    text << input_cells(lines[k]);
-    for (Eigen::Index band = 0; band < irradiance.cols(); ++band) {
-      text << (band > 0 ? "," : "") << irradiance(static_cast<Eigen::Index>(k), band);
-    }
-    text << "\n";
-  }
-  write_bytes(file, text.str());
+std::vector<std::string> points_extensions() { return {".csv", ".vtp"}; }
+
+void write_points(const std::filesystem::path& file, std::span<const SensorGroup> groups, const Readings& readings) {
+  if (file.extension() == ".vtp") return write_points_for_paraview(file, groups, readings);
+  write_bytes(file, table(groups, readings));
 }
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "patchlight/transport/worst_rows.h"
 
 #include "output/accuracy_json.h"
+#include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
 #include <limits>
@@ -225,6 +226,7 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
 Json energy_part(const EnergyBalance& balance, bool row_sums_known) {
   Json part;
   part["emitted_W"] = array_of(balance.emitted);
+  part["arriving_W"] = array_of(balance.arriving);
   part["absorbed_W"] = array_of(balance.absorbed);
   part["escaped_W"] = array_of(balance.escaped);
   part["lost_at_backs_W"] = array_of(balance.lost_at_backs);
@@ -266,24 +268,25 @@ std::uint64_t memory_peak_bytes() {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const Scene& scene, const Request& request,
-                  const Simulation& simulation, const Provenance& provenance) {
+void write_report(const std::filesystem::path& file, const Run& run) {
+  const Simulation& simulation = run.simulation;
   Json report;
   report["version"] = version();
-  report["command_line"] = provenance.command_line;
-  report["input"] = input_part(scene);
-  report["request"] = request_part(request);
+  report["command_line"] = run.provenance.command_line;
+  report["input"] = input_part(run.scene);
+  report["request"] = request_part(run.request);
   report["plan"] = plan_part(simulation.plan);
   report["mesh"] = mesh_part(simulation);
-  report["materials"] = materials_part(scene, simulation);
-  report["transport"] = transport_part(scene, simulation);
+  report["materials"] = materials_part(run.scene, simulation);
+  if (!run.sensors.groups.empty()) report["sensors"] = sensors_part(run.sensors);
+  report["transport"] = transport_part(run.scene, simulation);
   report["energy_balance"] = energy_part(simulation.balance, simulation.transport.row_sum.size() > 0);
   report["solution"] = solution_part(simulation);
   report["relative_error"] = relative_errors(simulation);
   report["accuracy"] = accuracy_steps(simulation);
   report["costs"] = costs_part(simulation.costs);
   report["memory_peak_bytes"] = memory_peak_bytes();
-  report["exposure"] = provenance.exposure;
+  report["exposure"] = run.provenance.exposure;
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   write_bytes(file, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

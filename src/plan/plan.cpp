@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
+#include <sstream>
 #include <utility>
 
 namespace patchlight {
@@ -35,6 +38,16 @@ Decision decide_interreflection(const Scene& scene) {
   return {"interreflection", true, "the highest reflectance is " + std::to_string(highest)};
 }
 
+// A sun below the horizon gives no light.
+std::vector<std::string> notes_on_sun(const Scene& scene) {
+  if (!scene.sun || scene.sun->direction.dot(scene.up) > 0) return {};
+  const double altitude = std::asin(std::max(-1.0, scene.sun->direction.dot(scene.up))) * 180 / std::numbers::pi;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the sun is " << -altitude << " degrees below the horizon: it gives no light";
+  return {text.str()};
+}
+
 // Every kept side takes a patch at least. Of a model with many small faces the large ones have to be cut as well, as
 // the light varies over them: a quarter more patches than the least goes to these.
 std::size_t enough_patches(std::size_t asked, std::size_t least) {
@@ -54,6 +67,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
   require_lamp(scene);
   Plan plan = plan_form_factors(scene, request);
   plan.decisions = {decide_occlusion(scene), decide_interreflection(scene)};
+  for (std::string& note : notes_on_sun(scene)) plan.notes.push_back(std::move(note));
   if (request.kept_sides) {
     for (std::string& note : notes_on_left_out_sides(scene, *request.kept_sides, request.sides))
       plan.notes.push_back(std::move(note));

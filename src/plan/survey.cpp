@@ -176,7 +176,7 @@ SceneReport survey(const Scene& scene) {
 
   const double size = report.bounds.sizes().maxCoeff();
   report.unit_guess = guess_unit(scene, size);
-  report.usable = report.lamps > 0;
+  report.usable = has_lamp(scene);
   report.problems = scene.problems;
   const auto add = [&report](const std::vector<Problem>& problems) {
     report.problems.insert(report.problems.end(), problems.begin(), problems.end());

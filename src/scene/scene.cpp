@@ -30,6 +30,15 @@ void check_material(const Scene& scene, const Material& material) {
       throw InputError(scene.file, message.str());
     }
   }
+  for (Eigen::Index band = 0; band < material.transmittance.size(); ++band) {
+    const double tau = material.transmittance[band];
+    if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
+    std::ostringstream message;
+    message << name << " has transmittance " << tau << " and reflectance " << material.reflectance[band]
+            << "; expected numbers not below 0 whose sum is at most 1. Use --set " << material.name
+            << ".reflectance=R,G,B";
+    throw InputError(scene.file, message.str());
+  }
   for (const double exitance : material.exitance) {
     if (!(exitance >= 0 && std::isfinite(exitance))) {
       std::ostringstream message;
@@ -93,7 +102,17 @@ bool is_lamp(const Scene& scene, PolygonIndex polygon) {
   return emits(scene, polygon, Side::front) || emits(scene, polygon, Side::back);
 }
 
+bool has_point_or_daylight(const Scene& scene) { return !scene.luminaires.empty() || scene.sun || scene.sky; }
+
+bool is_opening(const Scene& scene, PolygonIndex polygon) {
+  const auto is_clear = [&](Side side) {
+    return (scene.materials[material_on(scene.polygons[polygon], side)].transmittance > 0).any();
+  };
+  return is_clear(Side::front) || is_clear(Side::back);
+}
+
 bool has_lamp(const Scene& scene) {
+  if (has_point_or_daylight(scene)) return true;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_lamp(scene, p)) return true;
   }

@@ -22,6 +22,7 @@ constexpr double volume_tolerance = 1e-9;
 struct Solid {
   std::vector<PolygonIndex> polygons;
   bool fronts_face_inside = false;  // those of the polygons that are not turned
+  bool has_opening = false;
   Box box;
   std::vector<std::array<Point, 3>> triangles;  // oriented as the polygons
 };
@@ -31,6 +32,7 @@ Solid make_solid(const Scene& scene, std::vector<PolygonIndex> polygons, const s
   Solid solid;
   for (const PolygonIndex p : polygons) {
     std::vector<Point> corners = corner_points(scene, p);
+    solid.has_opening = solid.has_opening || is_opening(scene, p);
     for (const Point& corner : corners) solid.box.extend(corner);
     if (turned[p]) std::reverse(corners.begin(), corners.end());
     for (const auto& [a, b, c] : triangulate(corners)) solid.triangles.push_back({corners[a], corners[b], corners[c]});
@@ -77,8 +79,8 @@ Point inner_point(const std::vector<Point>& corners) {
   return middle;
 }
 
-// A point just before every side that emits.
-std::vector<Point> points_before_lamps(const Scene& scene) {
+// A point just before every side that emits, and that of every luminaire.
+std::vector<Point> points_of_lamps(const Scene& scene) {
   const double offset = lamp_offset * bounds(scene).diagonal().norm();
   std::vector<Point> points;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -88,6 +90,7 @@ std::vector<Point> points_before_lamps(const Scene& scene) {
     if (emits(scene, p, Side::front)) points.push_back(middle + step);
     if (emits(scene, p, Side::back)) points.push_back(middle - step);
   }
+  for (const Luminaire& luminaire : scene.luminaires) points.push_back(luminaire.position);
   return points;
 }
 
@@ -127,14 +130,16 @@ KeptSides automatic_sides(const Scene& scene) {
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 1);
   kept.back.assign(scene.polygons.size(), 1);
-  const std::vector<Point> lamps = points_before_lamps(scene);
+  const std::vector<Point> lamps = points_of_lamps(scene);
+  const bool daylight = scene.sun || scene.sky;
   const Shells shells = shells_of(scene);
   Count count;
   for (const Solid& solid : closed_solids(scene, shells)) {
     const auto held = static_cast<std::size_t>(
         std::count_if(lamps.begin(), lamps.end(), [&](const Point& lamp) { return holds(solid, lamp); }));
-    const bool keep_inside = held > 0;
-    const bool keep_outside = held == 0 || held < lamps.size();
+    const bool lit_from_outside = daylight || held < lamps.size();
+    const bool keep_inside = held > 0 || (lit_from_outside && solid.has_opening);
+    const bool keep_outside = held == 0 || lit_from_outside;
     for (const PolygonIndex p : solid.polygons) {
       const bool front_faces_inside = solid.fronts_face_inside != (shells.turned[p] != 0);
       kept.front[p] = front_faces_inside ? keep_inside : keep_outside;

@@ -13,14 +13,16 @@ EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& so
 
   EnergyBalance balance;
   balance.emitted = flux(problem.exitance);
+  balance.arriving = Eigen::ArrayXd::Zero(balance.emitted.size());
+  if (problem.direct_irradiance.size() > 0) balance.arriving = flux(problem.direct_irradiance);
   balance.absorbed = flux((1 - problem.reflectance) * H);
   balance.escaped = flux(B.colwise() * lost.escaped.array());
   balance.lost_at_backs = flux(B.colwise() * lost.at_backs.array());
   // What leaves a patch and arrives at no other, beyond the measured lost share.
   balance.defect = flux(B.colwise() * (1 - row_sum.array() - lost.escaped.array() - lost.at_backs.array()));
-  const Eigen::ArrayXd left =
-      balance.emitted - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
-  balance.imbalance = (balance.emitted > 0).select(left.abs() / balance.emitted, 0.0).maxCoeff();
+  const Eigen::ArrayXd all = balance.emitted + balance.arriving;
+  const Eigen::ArrayXd left = all - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
+  balance.imbalance = (all > 0).select(left.abs() / all, 0.0).maxCoeff();
   return balance;
 }
 

@@ -36,6 +36,8 @@ Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irrad
 Iterations::Iterations(const TransportOperator& transport, const RadiosityProblem& problem,
                        const SolverOptions& options, const Observer& observer)
     : transport_(transport), problem_(problem), options_(options), observer_(observer), start_(wall_seconds()) {
+  emitted_ = problem.exitance;
+  if (problem.direct_irradiance.size() > 0) emitted_ -= problem.reflectance * problem.direct_irradiance;
   bounds_.contraction = contraction_of(transport, problem, options);
   if (!options.largest_row_sum) count(1);
   if (!bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport, problem);
@@ -60,7 +62,7 @@ Eigen::ArrayXd Iterations::spectral_radius(int steps) {
 
 Iteration Iterations::measured(const Iterate& iterate, int number) const {
   const Eigen::ArrayXd norm = area_norm(iterate.residual, problem_.area);
-  const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - problem_.exitance, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - emitted_, problem_.area);
   Iteration iteration{number, 0, 0, wall_seconds() - start_, work_};
   for (Eigen::Index band = 0; band < norm.size(); ++band) {
     double bound = unknown;
@@ -74,7 +76,10 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     iteration.relative_residual = worse(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
-  if (options_.reference) iteration.true_error = relative_error(*options_.reference, iterate.radiosity, problem_);
+  if (options_.reference) {
+    const RadiosityProblem of_emitted{problem_.reflectance, emitted_, problem_.area};
+    iteration.true_error = relative_error(*options_.reference, iterate.radiosity, of_emitted);
+  }
   return iteration;
 }
 
@@ -154,7 +159,7 @@ Solution Iterations::finish() {
   if (!bounds_.weights) return solution;
   solution.error = patch_errors(*bounds_.weights, last_.residual);
   const Eigen::ArrayXd error = area_norm(solution.error, problem_.area);
-  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem_.exitance, problem_.area);
+  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - emitted_, problem_.area);
   solution.patch_bound = 0;
   for (Eigen::Index band = 0; band < error.size(); ++band) {
     solution.patch_bound = std::max(solution.patch_bound, ratio(error[band], reflected[band]));

@@ -22,8 +22,9 @@ Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irrad
 /// Whether residuals are computed anew from an application, or are carried along by recurrences, which drift.
 enum class Residual { applied, recurred };
 
-/// What the iterations of one run have in common: applies the transport and counts, measures iterates, keeps the
-/// history, tells when to stop.
+/// What the iterations of one run have in common. The problem's exitance is the source, E + rho o H_direct; its
+/// direct_irradiance tells how much of that is no patch's own light. Applies the transport and counts, measures
+/// iterates, keeps the history, tells when to stop.
 class Iterations {
  public:
   Iterations(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
@@ -70,6 +71,7 @@ class Iterations {
   const RadiosityProblem& problem_;
   const SolverOptions& options_;
   const Observer& observer_;
+  Field emitted_;  // E
   Bounds bounds_;
   double start_;
   double work_ = 0;

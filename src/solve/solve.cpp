@@ -44,13 +44,30 @@ Solution solution_by(Solver solver, Iterations iterations, const RowTransport& t
   return {};
 }
 
+// The field, and the light that comes from no patch.
+Field with_direct(Field irradiance, const RadiosityProblem& problem) {
+  if (problem.direct_irradiance.size() > 0) irradiance += problem.direct_irradiance;
+  return irradiance;
+}
+
+// F E, from the rows of the lamps alone.
+Field from_lamps(const RowTransport& transport, const Field& exitance) {
+  Field irradiance = Field::Zero(exitance.rows(), exitance.cols());
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
+    if (!(exitance.row(i) > 0).any()) continue;
+    const auto index = static_cast<PatchIndex>(i);
+    irradiance += transport.shoot({index, index + 1}, exitance.row(i));
+  }
+  return irradiance;
+}
+
 // An observer of the solved bands that tells the one of all bands.
-Observer for_all_bands(const Observer& observer, const SolvedBands& bands) {
+Observer for_all_bands(const Observer& observer, const SolvedBands& bands, const RadiosityProblem& problem) {
   if (!observer) return {};
-  return [&observer, &bands](const Progress& progress) {
+  return [&observer, &bands, &problem](const Progress& progress) {
     if (progress.irradiance == nullptr) return observer(progress);
     Progress all = progress;
-    const Field irradiance = expanded(*progress.irradiance, bands);
+    const Field irradiance = with_direct(expanded(*progress.irradiance, bands), problem);
     const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
     all.irradiance = &irradiance;
     all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
@@ -108,6 +125,11 @@ const char* name_of(Solver solver) {
 
 bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
+Field source_radiosity(const RadiosityProblem& problem) {
+  if (problem.direct_irradiance.size() == 0) return problem.exitance;
+  return problem.exitance + problem.reflectance * problem.direct_irradiance;
+}
+
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) {
   return (x.square().colwise() * area.array()).colwise().sum().sqrt().transpose();
 }
@@ -130,12 +152,16 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
   assert(problem.reflectance.rows() == problem.exitance.rows() &&
          problem.reflectance.cols() == problem.exitance.cols());
 
-  // 1. Only the bands that need it.
-  const SolvedBands bands = solved_bands(problem);
-  const RadiosityProblem needed{reduced(problem.reflectance, bands), reduced(problem.exitance, bands), problem.area};
+  // 1. Light that comes from no patch is a source where it is first reflected: B = S + rho o F B. Only the bands that
+  //    need it.
+  const RadiosityProblem with_source{problem.reflectance, source_radiosity(problem), problem.area,
+                                     problem.direct_irradiance};
+  const SolvedBands bands = solved_bands(with_source);
+  const RadiosityProblem needed{reduced(with_source.reflectance, bands), reduced(with_source.exitance, bands),
+                                problem.area, reduced(problem.direct_irradiance, bands)};
   SolverOptions used = options;
   if (options.reference) used.reference = reduced(*options.reference, bands);
-  const Observer of_needed = for_all_bands(observer, bands);
+  const Observer of_needed = for_all_bands(observer, bands, problem);
 
   // 2. A singular system is said before any iteration. What shoots does not look at the whole transport.
   const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
@@ -144,11 +170,14 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
                           ? solution_by(options.solver, Iterations(transport, needed, used, of_needed), transport)
                           : lamps_alone(transport, needed, std::move(trapped));
 
-  // 3. All bands again.
+  // 3. All bands again, and all of the irradiance.
   for (Field* field :
        {&solution.radiosity, &solution.irradiance, &solution.direct_irradiance, &solution.ambient, &solution.error}) {
     *field = expanded(*field, bands);
   }
+  if (problem.direct_irradiance.size() == 0) return solution;
+  solution.irradiance += problem.direct_irradiance;
+  solution.direct_irradiance = with_direct(from_lamps(transport, problem.exitance), problem);
   return solution;
 }
 

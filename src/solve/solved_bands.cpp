@@ -40,6 +40,7 @@ SolvedBands solved_bands(const RadiosityProblem& problem) {
 }
 
 Field reduced(const FieldView& field, const SolvedBands& bands) {
+  if (field.size() == 0) return field;
   Field columns(field.rows(), static_cast<Eigen::Index>(bands.solved.size()));
   for (Eigen::Index k = 0; k < columns.cols(); ++k)
     columns.col(k) = field.col(bands.solved[static_cast<std::size_t>(k)]);

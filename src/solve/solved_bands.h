@@ -20,7 +20,7 @@ struct SolvedBands {
 
 SolvedBands solved_bands(const RadiosityProblem& problem);
 
-/// The columns of the solved bands.
+/// The columns of the solved bands; nothing of nothing.
 Field reduced(const FieldView& field, const SolvedBands& bands);
 
 /// All bands from the solved ones.

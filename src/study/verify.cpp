@@ -1,5 +1,6 @@
 #include "patchlight/study/verify.h"
 
+#include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
@@ -79,6 +80,11 @@ Field deviations_by_noise(const Verification& verification) {
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options, const Observer& observer) {
   assert(bar.rows() == simulation.mesh.size());
+  if (has_point_or_daylight(scene)) {
+    throw InputError(scene.file,
+                     "the scene has luminaires, sun or sky, which path tracing does not know; expected lamps that are "
+                     "faces of the model. Verify the scene with these alone");
+  }
   Verification result;
   result.patches = choose_by_area(simulation.problem.area, options.checked, options.seed);
   result.irradiance = rows_of(simulation.solution.irradiance, result.patches);

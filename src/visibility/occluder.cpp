@@ -46,6 +46,16 @@ RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
 
 std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
 
+// The polygons that cannot block a segment.
+std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
+  if (which == Occluder::Blockers::all) return none_of(scene);
+  if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
+  std::vector<std::uint8_t> left_out;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    left_out.push_back(is_opening(scene, p) == (which == Occluder::Blockers::opaque));
+  return left_out;
+}
+
 // The triangles of some polygons, ready to be traced.
 struct TriangleScene {
   RTCScene scene = nullptr;
@@ -83,14 +93,12 @@ struct Occluder::Tracer {
 };
 
 Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings)
-    : device(rtcNewDevice(nullptr)),
-      left_out(which == Blockers::all ? none_of(scene) : on_convex_hull(scene)),
-      shafts(scene, left_out) {
+    : device(rtcNewDevice(nullptr)), left_out(left_out_by(which, scene)), shafts(scene, left_out) {
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  build(everything, scene, none_of(scene));
+  build(everything, scene, which == Blockers::inside_hull ? none_of(scene) : left_out);
   build(blockers, scene, left_out);
   covered_places.coverings = std::move(coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {

@@ -8,14 +8,27 @@
 namespace patchlight {
 
 /// The stages of a run, in order.
-enum class Stage { read, mesh, form_factors, closure, solve, error_bars, gather, trace_paths, render, write };
+enum class Stage {
+  read,
+  mesh,
+  form_factors,
+  closure,
+  direct_light,
+  solve,
+  error_bars,
+  gather,
+  trace_paths,
+  render,
+  write
+};
 
 /// The stage's name as users see it.
 const char* name_of(Stage stage);
 
 /// One row of a solver's history.
 struct Iteration {
-  int number = 0;                ///< 0 is the starting value B = E; of what shoots, the number of its shots
+  int number = 0;                ///< 0 is the starting value, the source E + rho o H_direct; of what
+                                 ///< shoots, the number of its shots
   double relative_residual = 0;  ///< ||r||_A / ||K E||_A, worst band
   double error_bound = 0;        ///< bound on ||B - B_k||_A / ||B_k - E||_A, worst band; infinite when none is known
   double seconds = 0;            ///< wall time since the solver started

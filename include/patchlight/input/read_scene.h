@@ -10,15 +10,16 @@
 
 namespace patchlight {
 
-/// A change to one material, applied after reading: "light.radiance=17,12,4".
+/// A change to materials, applied after reading: "light.radiance=17,12,4".
 struct MaterialSetting {
-  enum class Quantity { reflectance, exitance, radiance };
-  std::string material;
+  enum class Quantity { reflectance, exitance, radiance, transmittance };
+  std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
-  Spectrum value;  ///< one value stands for all bands
+  Spectrum value;               ///< one value stands for all bands
+  std::string where = "--set";  ///< where it is asked for, for messages
 };
 
-/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance= or .radiance=.
+/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance= or .transmittance=.
 /// \throws InputError naming the option --set.
 MaterialSetting parse_material_setting(const std::string& text);
 
@@ -32,9 +33,10 @@ struct ReadOptions {
 /// The extensions of the formats that can be read, without dots.
 std::vector<std::string> readable_formats();
 
-/// Reads a model; the format follows from the extension, and "-" stands for the standard input, which is OBJ unless
-/// options.format says otherwise. Lengths are converted to metres, emitted radiance L to exitance = pi L. What is read
-/// but not simulated is named in Scene::notes. docs/formats.md has the details.
+/// Reads a model or a scene file (.toml, which names models, sensors and more); the format follows from the extension,
+/// and "-" stands for the standard input, which is OBJ unless options.format says otherwise. Lengths are converted to
+/// metres, emitted radiance L to exitance = pi L. What is read but not simulated is named in Scene::notes.
+/// docs/formats.md has the details.
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 

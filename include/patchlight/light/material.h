@@ -12,8 +12,10 @@ using MaterialIndex = std::uint32_t;
 /// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.
 struct Material {
   std::string name;
-  Spectrum reflectance;  ///< rho, in [0, 1]
-  Spectrum exitance;     ///< self-emitted, W/m^2; pi times the emitted radiance
+  Spectrum reflectance;      ///< rho, in [0, 1]
+  Spectrum exitance;         ///< self-emitted, W/m^2; pi times the emitted radiance
+  Spectrum transmittance{};  ///< tau, in [0, 1]: the share of light that goes straight through, as through the glass of
+                             ///< a window; empty or 0: opaque
 };
 
 }  // namespace patchlight

@@ -2,7 +2,10 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
+#include "patchlight/scene/daylight.h"
+#include "patchlight/scene/luminaire.h"
 #include "patchlight/scene/problem.h"
+#include "patchlight/scene/sensor.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +39,7 @@ struct Camera {
   Point eye;
   Point target;
   double vertical_field_of_view = 50;  ///< degrees
+  std::string name = {};               ///< in a scene file
 };
 
 /// A material that may be meant as a lamp.
@@ -45,7 +49,8 @@ struct LampHint {
   std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
-/// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance.
+/// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance; besides them there
+/// may be luminaires, sun and sky.
 struct Scene {
   std::vector<Point> vertices;  ///< metres
   std::vector<Polygon> polygons;
@@ -56,10 +61,17 @@ struct Scene {
   std::string sha256;               ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;       ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
-  bool up_stated = false;            ///< the model file says which way is up
+  bool up_stated = false;          ///< the model file says which way is up
+  Vector north = Vector::UnitY();  ///< unit, at right angles to up
+  std::vector<Luminaire> luminaires;
+  std::optional<Sun> sun;
+  std::optional<Sky> sky;
   std::vector<std::string> notes;    ///< what the file holds that is not simulated, and other remarks
   std::vector<Problem> problems;     ///< what is wrong with the model, worst first
   std::vector<LampHint> lamp_hints;  ///< materials that do not emit, but may be meant to
+  bool photometric = false;          ///< lights are stated in lumens or lux: illuminance has a meaning
+  std::vector<SensorGroup> sensors;  ///< where irradiance is wanted
+  std::vector<Camera> cameras;       ///< where pictures are taken from
 };
 
 /// The corner points of a polygon.
@@ -78,8 +90,14 @@ bool emits(const Scene& scene, PolygonIndex polygon, Side side);
 /// True when one of the polygon's sides emits.
 bool is_lamp(const Scene& scene, PolygonIndex polygon);
 
-/// True when some polygon is a lamp.
+/// True when something gives light: a polygon that is a lamp, a luminaire, sun or sky.
 bool has_lamp(const Scene& scene);
+
+/// True when there is light from elsewhere than polygons: luminaires, sun or sky.
+bool has_point_or_daylight(const Scene& scene);
+
+/// True when the polygon is a clear opening: one of its sides has a transmittance above 0 in some band.
+bool is_opening(const Scene& scene, PolygonIndex polygon);
 
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
 /// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
@@ -100,7 +118,8 @@ Box bounds(const Scene& scene);
 void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, reflectance in [0, 1], exitance finite and not negative. \throws InputError naming the file and line, or
+/// with area, reflectance in [0, 1], transmittance not negative and with the reflectance at most 1, exitance finite and
+/// not negative. \throws InputError naming the file and line, or
 /// the material.
 void check(const Scene& scene);
 

@@ -29,10 +29,11 @@ struct KeptSides {
 
 /// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; polygons of it that are turned against
 /// the others are seen as if turned back. A solid holds a lamp when a point just before an emitting side of a polygon
-/// has winding number +-1 in it.
+/// has winding number +-1 in it, or a luminaire's position has. Sun and sky shine from outside, and light gets in
+/// through clear openings.
 ///
 /// Sides::automatic keeps a side unless
-/// - it faces the inside of a closed solid that holds no lamp, or
+/// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, or
 /// - it faces the outside of a closed solid that holds every lamp of the scene: no light gets there.
 /// So the inner sides of a closed room are used even when its normals point outward; a note says so.
 KeptSides kept_sides(const Scene& scene, Sides sides);

@@ -10,17 +10,21 @@
 
 namespace patchlight {
 
-/// B = E + rho o H, H = F B: one row per patch, one column per band.
+/// B = E + rho o H, H = F B + H_direct: one row per patch, one column per band.
 struct RadiosityProblem {
-  Field reflectance;     ///< rho, in [0, 1]
-  Field exitance;        ///< E, W/m^2
-  Eigen::VectorXd area;  ///< m^2, the exposed part of each patch
+  Field reflectance;          ///< rho, in [0, 1]
+  Field exitance;             ///< E, W/m^2
+  Eigen::VectorXd area;       ///< m^2, the exposed part of each patch
+  Field direct_irradiance{};  ///< H_direct, W/m^2: by light that comes from no patch; empty: none
 };
+
+/// What patches send out before any of it has come from another patch: E + rho o H_direct, W/m^2.
+Field source_radiosity(const RadiosityProblem& problem);
 
 struct Solution {
   Field radiosity;          ///< B, W/m^2; B = E + rho o H
   Field irradiance;         ///< H, W/m^2
-  Field direct_irradiance;  ///< F E, W/m^2: the part of H that comes straight from the lamps
+  Field direct_irradiance;  ///< F E + H_direct, W/m^2: the part of H that comes straight from the lamps
   Field ambient;  ///< progressive refinement's estimate of the irradiance still under way, for display; else empty
   std::vector<Iteration> history;  ///< from iteration 0
   bool converged = false;
@@ -30,14 +34,15 @@ struct Solution {
   double patch_bound = std::numeric_limits<double>::infinity();  ///< ||error||_A / ||B - E||_A, worst band
 };
 
-/// Where the light goes, in W per band. emitted = absorbed + escaped + lost_at_backs + defect + imbalance.
+/// Where the light goes, in W per band. emitted + arriving = absorbed + escaped + lost_at_backs + defect + imbalance.
 struct EnergyBalance {
-  Eigen::ArrayXd emitted;
+  Eigen::ArrayXd emitted;   ///< by patches
+  Eigen::ArrayXd arriving;  ///< straight from luminaires, sun and sky
   Eigen::ArrayXd absorbed;
   Eigen::ArrayXd escaped;        ///< into the open
   Eigen::ArrayXd lost_at_backs;  ///< to sides without patches
   Eigen::ArrayXd defect;         ///< row sums that differ from the measured lost share: the form factors' error
-  double imbalance = 0;          ///< relative to emitted, worst band: the solver's error
+  double imbalance = 0;          ///< relative to emitted + arriving, worst band: the solver's error
 };
 
 /// ||x||_A = sqrt(sum_i A_i x_i^2) per band.

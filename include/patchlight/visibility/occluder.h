@@ -51,20 +51,22 @@ struct Hit {
   double distance = 0;  ///< metres from the ray's origin
 };
 
-/// Decides visibility: every polygon of the scene is opaque from both sides. Immutable and safe to use from several
-/// threads. Rays are traced in single precision, in a scene recentred and scaled to unit extent in double; a hit counts
-/// only if the plane of the polygon separates the two ends of the ray in double, by more than 1e-9 of the extent at
-/// each end. So there is no offset to choose: a surface never shades itself or its neighbour at a shared edge, and a
-/// wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision, from its foot. Where
-/// polygons lie one on the other in one plane, the lower one is out of sight: a shadow ray from or to a place of it is
-/// blocked.
+/// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides. Immutable and
+/// safe to use from several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
+/// extent in double; a hit counts only if the plane of the polygon separates the two ends of the ray in double, by more
+/// than 1e-9 of the extent at each end. So there is no offset to choose: a surface never shades itself or its neighbour
+/// at a shared edge, and a wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision,
+/// from its foot. Where polygons lie one on the other in one plane, the lower one is out of sight: a shadow ray from or
+/// to a place of it is blocked.
 class Occluder {
  public:
   /// Which polygons can block a segment.
   enum class Blockers {
     inside_hull,  ///< all but those on the scene's convex hull: enough between points of the scene's surfaces, and
                   ///< faster
-    all           ///< all: for points that may lie outside
+    all,          ///< all: for points that may lie outside
+    opaque,       ///< all but the clear openings
+    clear         ///< the clear openings alone
   };
 
   explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {});
@@ -90,7 +92,7 @@ class Occluder {
   /// middles meets first from either end.
   bool hides(std::span<const Point> first, std::span<const Point> second) const;
 
-  /// The first polygon that each ray meets, if any.
+  /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.

@@ -34,6 +34,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.materials[m].name, b.materials[m].name);
     EXPECT_TRUE(same(a.materials[m].reflectance, b.materials[m].reflectance));
     EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
+    EXPECT_TRUE(same(a.materials[m].transmittance, b.materials[m].transmittance));
   }
   ASSERT_EQ(a.lamp_hints.size(), b.lamp_hints.size());
   for (std::size_t h = 0; h < a.lamp_hints.size(); ++h) {
@@ -81,6 +82,7 @@ Scene odd_scene() {
       "stra\xdf"
       "e";
   scene.materials[1].name = "\xff\x00\"\n";
+  scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";
   scene.files = {scene.file, "b.obj"};

@@ -1,6 +1,9 @@
 #include "patchlight/gather/gather.h"
 
+#include "patchlight/gather/doubtful_sensors.h"
+#include "patchlight/gather/readings.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/scene/sensor_grid.h"
 #include "patchlight/scene/sides.h"
 
 #include "support/scenes.h"
@@ -26,7 +29,7 @@ TEST(GatherIrradiance, InAClosedRoomOfUnitRadiosityIsOneAnywhereInAnyDirection) 
   const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()},
                                     {Point(0.1, 0.9, 0.3), Vector(1, -2, 0.5).normalized()},
                                     {Point(0.4, 0.3, 0), Vector::UnitZ()}};
-  const Field irradiance = gather_irradiance(mesh, ones, ones, Occluder(scene), sensors);
+  const Field irradiance = gather_irradiance(mesh, ones, ones, Occluder(scene), sensors).irradiance;
   EXPECT_LT((irradiance - 1).abs().maxCoeff(), 1e-12);
 }
 
@@ -44,9 +47,65 @@ TEST(GatherIrradiance, BelowALampFollowsLambert) {
   options.emitter_samples = 1024;
   const double root = std::sqrt(1.04);
   const double whole = 7 * 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);
-  const Field irradiance = gather_irradiance(mesh, exitance, exitance, Occluder(scene), sensors, options);
+  const Field irradiance = gather_irradiance(mesh, exitance, exitance, Occluder(scene), sensors, options).irradiance;
   // 1024 Owen-scrambled points resolve a straight edge to about 1 / sqrt(1024) / 10.
   EXPECT_NEAR(irradiance(0, 0), 0.5 * whole, 0.005 * whole);
+}
+
+// The scene of the test before with a plate that is turned by 20 degrees, so that no line of the sampling points runs
+// along its edge. Over many seeds the errors should have the size that the standard errors say. These are from two
+// halves of stratified points, each of which has 2^0.5 to 2^0.75 times the error of all (1/sqrt(N) for random points,
+// N^-0.75 for stratified ones at an edge), so that half the difference of two independent ones is 1 to 1.2 times the
+// error of all, and more where the halves complement one another.
+TEST(GatherIrradiance, StandardErrorIsThatOfTheShadowRays) {
+  Scene scene = empty_scene({grey(0), grey(0, 7)});
+  scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);
+  Scene plate =
+      with_quad(empty_scene({grey(0)}), {Point(0, -.5, .5), Point(0, .5, .5), Point(.5, .5, .5), Point(.5, -.5, .5)});
+  plate = moved(std::move(plate), Eigen::Affine3d(Eigen::AngleAxisd(std::numbers::pi / 9, Vector::UnitZ())));
+  for (const Point& corner : plate.vertices) scene.vertices.push_back(corner);
+  scene.polygons.push_back({{4, 5, 6, 7}});
+  const PatchMesh mesh = fronts(scene, 10);
+  Field exitance = Field::Zero(mesh.size(), 1);
+  exitance(0, 0) = 7;
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const std::vector<Sensor> sensors{{Point(0, 0, 0), Vector::UnitZ()}};
+  // By symmetry the plate hides half of the lamp, whatever its turn.
+  const double root = std::sqrt(1.04);
+  const double half = 0.5 * 7 * 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);
+  double squared_errors = 0, variances = 0;
+  constexpr int seeds = 400;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    GatherOptions options;
+    options.seed = static_cast<std::uint64_t>(seed);
+    const GatheredIrradiance found = gather_irradiance(mesh, exitance, exitance, occluder, sensors, options);
+    squared_errors += std::pow(found.irradiance(0, 0) - half, 2);
+    variances += std::pow(found.standard_error(0, 0), 2);
+  }
+  const double ratio = std::sqrt(variances / squared_errors);
+  EXPECT_GT(ratio, 0.9) << "the error bars are too short";  // 400 seeds: 4 % statistical error
+  EXPECT_LT(ratio, 2) << "the error bars are too long";
+}
+
+// A grid of sensors in a room with a box and a lamp, against many more rays to every patch. What the
+// error bars leave out, patches of which a part is hidden that the first four rays miss, must not spoil them.
+TEST(GatherIrradiance, StandardErrorsHoldInAFurnishedRoom) {
+  const Scene scene = furnished_room(0.5, 10);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::automatic), 0.3);
+  Field exitance = Field::Zero(mesh.size(), 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) exitance(i, 0) = mesh.material[i] == 1 ? 10 : 0;
+  const Field radiosity = exitance + 0.5;
+  const SensorGroup grid = rectangle_grid(Point(0, 0, 0.3), {Vector(4, 0, 0), Vector(0, 3, 0)}, 0.25);
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const GatheredIrradiance found = gather_irradiance(mesh, radiosity, exitance, occluder, grid.sensors);
+  const GatherOptions many{.probes = 256, .samples = 256, .emitter_samples = 1024, .seed = 2};
+  const GatheredIrradiance exact = gather_irradiance(mesh, radiosity, exitance, occluder, grid.sensors, many);
+  const Field error = (found.irradiance - exact.irradiance).abs();
+  const double ratio = found.standard_error.matrix().norm() / error.matrix().norm();
+  EXPECT_GT(ratio, 0.6) << "the error bars are too short";
+  EXPECT_LT(ratio, 1.6) << "the error bars are too long";
+  const auto outside = (error > 3 * found.standard_error + 1e-9).count();
+  EXPECT_LE(outside, static_cast<Eigen::Index>(grid.sensors.size() / 20)) << "of " << grid.sensors.size();
 }
 
 TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
@@ -55,9 +114,69 @@ TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
   const Field ones = Field::Ones(mesh.size(), 1);
   const std::vector<Sensor> below{{Point(0.5, 0.5, -0.5), Vector::UnitZ()}, {Point(0.5, 0.5, 0), -Vector::UnitZ()}};
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const Field irradiance = gather_irradiance(mesh, ones, ones, occluder, below);
+  const Field irradiance = gather_irradiance(mesh, ones, ones, occluder, below).irradiance;
   EXPECT_EQ(irradiance(0, 0), 0);
   EXPECT_EQ(irradiance(1, 0), 0);
+}
+
+Readings constant_readings(std::initializer_list<double> values) {
+  Readings readings;
+  readings.irradiance = Eigen::Map<const Field>(values.begin(), static_cast<Eigen::Index>(values.size()), 1);
+  readings.standard_error = 0.1 * readings.irradiance;
+  return readings;
+}
+
+TEST(ByGroup, TellsMinMeanMaxAndUniformity) {
+  const Sensor sensor{Point::Zero(), Vector::UnitZ()};
+  const std::vector<SensorGroup> groups = {{.name = "a", .sensors = {sensor, sensor, sensor}},
+                                           {.name = "b", .sensors = {sensor}}};
+  Readings readings = constant_readings({3, 1, 2, 8});
+  const std::vector<GroupReadings> in_watts = by_group(groups, readings);
+  ASSERT_EQ(in_watts.size(), 2U);
+  EXPECT_NEAR(in_watts[0].min, 1, 1e-15);
+  EXPECT_NEAR(in_watts[0].mean, 2, 1e-15);
+  EXPECT_NEAR(in_watts[0].max, 3, 1e-15);
+  EXPECT_NEAR(in_watts[0].uniformity, 0.5, 1e-15);
+  EXPECT_NEAR(in_watts[0].largest_standard_error, 0.3, 1e-15);
+  EXPECT_NEAR(in_watts[1].mean, 8, 1e-14);
+  EXPECT_FALSE(in_watts[1].mean_daylight_factor.has_value());
+
+  readings.photometric = true;  // 179 lm/W
+  readings.outside_by_sky = Spectrum::Constant(1, 100);
+  const std::vector<GroupReadings> in_lux = by_group(groups, readings);
+  EXPECT_NEAR(in_lux[0].mean, 358, 1e-12);
+  EXPECT_NEAR(in_lux[0].mean_daylight_factor.value(), 2, 1e-14);
+}
+
+TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
+  Scene scene = furnished_room(0.5);
+  SensorGroup group{.name = "desk", .sensors = {}, .file = "room.toml"};
+  const auto add = [&group](const Point& point, const Vector& normal, std::uint32_t line) {
+    group.sensors.push_back({point, normal});
+    group.lines.push_back(line);
+  };
+  add(Point(0.5, 0.5, 0.8), Vector::UnitZ(), 1);    // free
+  add(Point(1.5, 1.4, 0.8), Vector::UnitZ(), 2);    // inside the box
+  add(Point(1, 1.4, 0.8), Vector::UnitZ(), 3);      // in a side of the box
+  add(Point(0.5, 0.5, 0), Vector::UnitZ(), 4);      // on the floor, facing up: as one measures a floor
+  add(Point(0.999, 1.4, 0.8), Vector::UnitZ(), 5);  // a millimetre beside the box
+  add(Point(1, 2.5, 0.8), Vector::UnitZ(), 6);      // in the plane of a side, beside it
+  scene.sensors.push_back(group);
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const std::vector<std::string> found = doubtful_sensors(scene, kept_sides(scene, Sides::automatic), occluder);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
+      << found[0];
+  EXPECT_EQ(found[1].rfind("sensor 3 of 'desk' (room.toml:3) at 1, 1.4, 0.8 m lies in a surface", 0), 0U) << found[1];
+}
+
+TEST(DoubtfulSensors, ManyAreCounted) {
+  Scene scene = furnished_room(0.5);
+  scene.sensors.push_back({.name = "all", .sensors = std::vector<Sensor>(9, {Point(1.5, 1.4, 0.8), Vector::UnitZ()})});
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const std::vector<std::string> found = doubtful_sensors(scene, kept_sides(scene, Sides::automatic), occluder);
+  ASSERT_EQ(found.size(), 6U);
+  EXPECT_EQ(found[5].rfind("4 more sensors", 0), 0U) << found[5];
 }
 
 }  // namespace

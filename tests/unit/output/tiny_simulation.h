@@ -59,7 +59,7 @@ inline Simulation tiny_simulation() {
   transport.lost = {Eigen::Vector3d(0.5, 0.25, 0.5), Eigen::Vector3d(0, 0.25, 0), Eigen::Vector3d(0, 0, 0.5), 64};
   transport.closure = "scaling";
   const Eigen::Array3d flux(1, 2, 3);
-  simulation.balance = {flux, flux, flux, flux, flux, 1e-7};
+  simulation.balance = {flux, 2 * flux, flux, flux, flux, flux, 1e-7};
   simulation.plan.seed = (std::uint64_t{1} << 60) + 1;
   simulation.plan.decisions = {{"occlusion", true, "a reason"}};
   simulation.costs = {{Stage::mesh, 0.5, 1}, {Stage::solve, 0.25, 0.5}};

@@ -13,7 +13,8 @@ nlohmann::json report_of(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   Request request;
   request.max_edge = 0.25;
-  write_report(folder.path() / "report.json", scene, request, simulation, {"patchlight solve tiny.obj", 0.125});
+  const Provenance provenance{"patchlight solve tiny.obj", 0.125};
+  write_report(folder.path() / "report.json", {scene, request, simulation, provenance});
   return nlohmann::json::parse(content_of(folder.path() / "report.json"));
 }
 
@@ -58,6 +59,7 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
   EXPECT_EQ(report["solution"]["iterations"].size(), 2U);
   EXPECT_EQ(report["costs"][1]["stage"], "solve");
   EXPECT_EQ(report["energy_balance"]["emitted_W"], (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(report["energy_balance"]["arriving_W"], (std::vector<double>{2, 4, 6}));
   EXPECT_GT(report["memory_peak_bytes"], 1 << 20);
   EXPECT_EQ(report["exposure"], 0.125);
 }

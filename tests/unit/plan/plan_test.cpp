@@ -5,6 +5,7 @@
 
 #include "support/scenes.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace patchlight {
@@ -27,6 +28,22 @@ TEST(MakePlan, RefusesASceneWithoutLamp) {
     EXPECT_NE(std::string(error.what()).find("no lamp"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("grey"), std::string::npos);
   }
+}
+
+TEST(MakePlan, TakesLuminairesSunAndSkyForLamps) {
+  Scene scene = cube_room(0.5, 0);
+  scene.luminaires.resize(1);
+  EXPECT_NO_THROW(make_plan(scene, {}));
+}
+
+TEST(MakePlan, SaysThatTheSunIsBelowTheHorizon) {
+  Scene scene = cube_room(0.5, 1);
+  scene.sun = Sun{Vector(0, 0.6, 0.8), Spectrum::Ones(1)};
+  EXPECT_TRUE(make_plan(scene, {}).notes.empty());
+  scene.sun->direction = Vector(0, std::sqrt(3) / 2, -0.5);
+  const Plan plan = make_plan(scene, {});
+  ASSERT_EQ(plan.notes.size(), 1U);
+  EXPECT_EQ(plan.notes[0], "the sun is 30 degrees below the horizon: it gives no light");
 }
 
 TEST(MakePlan, OcclusionOnlyWhereSomethingCanStandBetween) {

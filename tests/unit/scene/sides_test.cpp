@@ -105,6 +105,24 @@ TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   expect_all(inward, 0, 6, front_only);
 }
 
+TEST(KeptSides, ALuminaireIsALampWhereItStands) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  scene.luminaires.resize(1);
+  scene.luminaires[0].position = {0, 0, 0.2};
+  expect_all(automatic(scene), 0, 6, front_only);
+  scene.luminaires[0].position = {0, 0, 2};
+  expect_all(automatic(scene), 0, 6, back_only);
+}
+
+TEST(KeptSides, DaylightGetsInThroughOpeningsOnly) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  scene.sky = Sky{};
+  expect_all(automatic(scene), 0, 6, back_only);
+  scene.materials.push_back({"glass", rgb(0, 0, 0), rgb(0, 0, 0), rgb(0.8, 0.8, 0.8)});
+  scene.polygons[3].material = 2;
+  expect_all(automatic(scene), 0, 6, both_sides);
+}
+
 TEST(KeptSides, ASolidAroundOneOfTwoLampsKeepsBothSides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   scene = with_lamp(with_lamp(std::move(scene), {0, 0, 0.2}), {0, 0, 2});

@@ -184,6 +184,46 @@ TEST_P(EverySolver, WorkGrowsFromTheLamps) {
   }
 }
 
+TEST_P(EverySolver, LightFromNoPatchIsASourceWhereItIsReflected) {
+  // B = E + rho o (F B + H_direct) is the problem of lamps E + rho o H_direct without any H_direct; its irradiance
+  // lacks H_direct. Two solutions to 1e-9 of the reflected light.
+  Room room = made_up(60, 0.6);
+  room.problem.direct_irradiance = Field::Zero(60, 3);
+  for (Eigen::Index i = 0; i < 60; ++i) room.problem.direct_irradiance(i, 0) = 1.0 / static_cast<double>(i + 1);
+  room.problem.direct_irradiance(7, 2) = 3;
+  RadiosityProblem lamps = room.problem;
+  lamps.exitance = source_radiosity(room.problem);
+  lamps.direct_irradiance.resize(0, 0);
+  const SolverOptions options{.solver = GetParam(), .relative_error = 1e-9, .max_iterations = 5000};
+  const Solution solution = solve(*room.transport, room.problem, options);
+  const Solution expected = solve(*room.transport, lamps, options);
+  ASSERT_TRUE(solution.converged);
+  const double size = expected.radiosity.maxCoeff();
+  EXPECT_LT((solution.radiosity - expected.radiosity).abs().maxCoeff(), 1e-7 * size);
+  EXPECT_LT((solution.irradiance - expected.irradiance - room.problem.direct_irradiance).abs().maxCoeff(), 1e-7 * size);
+  const Field straight = room.transport->apply(room.problem.exitance) + room.problem.direct_irradiance;
+  EXPECT_LT((solution.direct_irradiance - straight).abs().maxCoeff(), 1e-12 * size);
+  EXPECT_LT(
+      (solution.radiosity - room.problem.exitance - room.problem.reflectance * solution.irradiance).abs().maxCoeff(),
+      1e-12 * size);
+}
+
+TEST_P(EverySolver, TellsTheObserverAllOfTheIrradiance) {
+  Room room = made_up(60, 0.6);
+  room.problem.direct_irradiance = Field::Constant(60, 3, 2.0);
+  Field last;
+  const Solution solution = solve(*room.transport, room.problem, {.solver = GetParam()}, [&](const Progress& progress) {
+    if (progress.irradiance != nullptr) {
+      EXPECT_GE(progress.irradiance->minCoeff(), 2.0);
+      last = *progress.irradiance;
+    }
+    return true;
+  });
+  // B_k = E + rho o H_k: the last one is the solution where something is reflected.
+  const Field off = room.problem.exitance + room.problem.reflectance * last - solution.radiosity;
+  EXPECT_LT(off.abs().maxCoeff(), 1e-4 * solution.radiosity.maxCoeff());
+}
+
 TEST_P(EverySolver, StopsWhenTheObserverSaysSo) {
   const Room room = made_up(100, 0.9);
   const Observer observer = [](const Progress& progress) {

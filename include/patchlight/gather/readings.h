@@ -1,0 +1,53 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/light/spectrum.h"
+#include "patchlight/scene/sensor.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What the sensors of a scene read: a row for each, group after group, a column for each band, W/m^2.
+struct Readings {
+  Field irradiance;
+  Field standard_error;
+  bool photometric = false;                  ///< the lights are stated in lumens or lux: illuminance has a meaning
+  std::optional<Spectrum> outside_by_sky{};  ///< irradiance of an unobstructed horizontal plane; given when a CIE
+                                             ///< overcast sky is the only light: then there are daylight factors
+};
+
+/// The one value that statistics and pictures show for each sensor: illuminance in lx when the lights are photometric,
+/// else irradiance in W/m^2, the bands weighted as for luminance (light/photometry.h).
+struct SensorValue {
+  double value = 0;
+  double standard_error = 0;  ///< that of bands whose errors go together, as those of the same shadow rays do
+};
+
+SensorValue sensor_value(const Readings& readings, std::size_t sensor);
+
+/// "lx" or "W/m^2".
+const char* sensor_unit(const Readings& readings);
+
+/// The share of the unobstructed horizontal illuminance outside that a sensor gets, in percent; readings.outside_by_sky
+/// must be given.
+double daylight_factor(const Readings& readings, std::size_t sensor);
+
+/// What the sensors of one group read, in sensor_unit().
+struct GroupReadings {
+  std::string name;
+  std::size_t sensors = 0;
+  double min = 0;
+  double mean = 0;
+  double max = 0;
+  double uniformity = 0;                         ///< U0 = min / mean; 0 in the dark
+  double largest_standard_error = 0;             ///< of a sensor
+  std::optional<double> mean_daylight_factor{};  ///< percent
+};
+
+std::vector<GroupReadings> by_group(std::span<const SensorGroup> groups, const Readings& readings);
+
+}  // namespace patchlight

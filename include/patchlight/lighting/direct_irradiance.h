@@ -1,0 +1,36 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/lighting/lighting.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <cstdint>
+#include <span>
+
+namespace patchlight {
+
+/// Shadow rays per patch or point. Powers of two that are at least 4 stratify best.
+struct LightingOptions {
+  int lamp_samples = 64;   ///< per luminaire; at a point those without extent take one
+  int sun_samples = 64;    ///< at a point one
+  int sky_samples = 1024;  ///< directions; where there are clear openings half of them towards these
+  std::uint64_t seed = 1;
+};
+
+/// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
+struct DirectIrradiance {
+  Field irradiance;
+  Field standard_error;  ///< from four independent scrambles of the samples; 0 where nothing is sampled
+};
+
+/// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
+/// over patch and source, one shadow ray each. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
+/// \throws Cancelled.
+DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
+                                   const Observer& observer = {});
+
+/// The same at points.
+DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
+                                   const LightingOptions& options = {}, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// A clear opening that a ray crosses.
+struct Crossing {
+  PolygonIndex polygon = no_polygon;
+  double distance = 0;  ///< metres from the ray's origin
+};
+
+/// What a ray meets on its way.
+struct Passage {
+  Spectrum transmittance;           ///< 0 behind something opaque
+  std::vector<Crossing> crossings;  ///< in order; left out behind something opaque
+};
+
+/// How much light gets straight from one point to another: nothing where an opaque polygon stands between them, else
+/// the product of the transmittances of the clear openings on the way, each face of which counts once. Points may lie
+/// outside the scene.
+class LightPaths {
+ public:
+  explicit LightPaths(const Scene& scene, const Coverings& coverings = {});
+
+  /// Per segment (row) and band (column).
+  Field transmittance(std::span<const Segment> segments) const;
+
+  /// The same with the openings on the way.
+  std::vector<Passage> passages(std::span<const Segment> segments) const;
+
+  /// A point so far from another in a unit direction that all of the scene is nearer.
+  Point beyond(const Point& from, const Vector& direction) const;
+
+  /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
+  bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
+
+ private:
+  Passage through_openings(const Segment& segment) const;
+
+  Box bounds_;
+  Occluder opaque_;
+  std::optional<Occluder> clear_;                  // where there are openings
+  std::vector<std::array<Spectrum, 2>> openings_;  // per polygon and side, where there are any
+  Eigen::Index bands_;
+};
+
+}  // namespace patchlight

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "patchlight/lighting/light_paths.h"
+#include "patchlight/lighting/sky.h"
+#include "patchlight/scene/scene.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// A clear opening, towards which rays are sent to find the sky behind it.
+struct Opening {
+  PolygonIndex polygon = no_polygon;
+  Vector normal;  ///< unit
+  Point centre;
+  double area = 0;                              ///< m^2
+  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
+};
+
+/// What gives light in a scene and is no patch, ready for direct_irradiance(). Immutable and safe to use from several
+/// threads.
+struct Lighting {
+  std::vector<Luminaire> luminaires;
+  std::optional<Sun> sun;  ///< nothing while it is below the horizon
+  std::optional<SkyModel> sky;
+  std::vector<Opening> openings;
+  Vector up;
+  Eigen::Index bands = 0;
+  LightPaths paths;
+};
+
+/// Of a scene that check() has passed. With `coverings` places over which another polygon lies get no light.
+Lighting lighting_of(const Scene& scene, const Coverings& coverings = {});
+
+/// Light that arrives at a point from one direction.
+struct Arrival {
+  Point from;                        ///< a point of the source, or one beyond the scene
+  double irradiance = 0;             ///< of the point if nothing is in the way, for a colour of 1; 0: none
+  const Spectrum* colour = nullptr;  ///< of the light; lives as long as the lighting
+};
+
+/// A point that receives light.
+struct SurfacePoint {
+  Point point;
+  Vector normal;  ///< unit, of the receiving side
+  PolygonIndex polygon = no_polygon;
+};
+
+/// From a luminaire. For a sphere one sample of its irradiance at the direction that (u, v) of the unit square stand
+/// for: uniform in the solid angle of the sphere (Shirley, Wang and Zimmerman 1996, section 3.2); its mean over the
+/// square is the irradiance.
+Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at, const Eigen::Vector2d& uv);
+
+/// From the sun, which must be there.
+Arrival from_sun(const Lighting& lighting, const SurfacePoint& at);
+
+}  // namespace patchlight

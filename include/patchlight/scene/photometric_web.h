@@ -1,0 +1,50 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// How a photometric file counts its angles, in the frame of a luminaire with the unit vectors aim, zero plane z and
+/// side s = z x aim. For type C the vertical angle v is counted from the aim, the horizontal one h around it from z:
+/// direction cos v aim + sin v (cos h z + sin h s). For A and B both are 0 along the aim, and the luminaire's top
+/// is z: v goes up, h to the side -s. A turns about the vertical axis first, cos v (cos h aim - sin h s) + sin v z; B
+/// about the horizontal one, cos h (cos v aim + sin v z) - sin h s.
+enum class PhotometricType : std::uint8_t { a, b, c };
+
+/// The intensities of a luminaire as measured by its maker: what an IES LM-63 file holds.
+struct PhotometricWeb {
+  std::string file{};  ///< for messages
+  PhotometricType type = PhotometricType::c;
+  std::vector<double> vertical{};    ///< degrees, ascending
+  std::vector<double> horizontal{};  ///< degrees, ascending; what symmetry tells is left out, as in the file
+  std::vector<double> candela{};     ///< at horizontal h and vertical v: [h * vertical.size() + v], all factors applied
+  Vector opening = Vector::Zero();   ///< luminous width, length and height in metres; 0 for a point
+  double lamp_lumens = 0;            ///< of all lamps together, lm; 0 with absolute photometry, which does not say
+  double watts = 0;                  ///< electrical input
+  std::vector<double> tilt{};        ///< degrees between the aim and straight down, ascending; empty: does not matter
+  std::vector<double> tilt_factor{};  ///< what the candela are multiplied with when tilted so
+};
+
+/// The frame of a luminaire: two unit vectors at right angles.
+struct LuminaireFrame {
+  Vector aim;
+  Vector zero_plane;
+};
+
+/// Candela in a direction, bilinear in the angles; 0 at vertical angles beyond the table. Symmetry as the last
+/// horizontal angle tells, IES LM-63-02 section 5.13: type C 0 degrees, the same all around; 90, every quadrant alike;
+/// 180 (or 90 to 270), both halves alike; types A and B from 0: left and right alike. O(log n) for n angles.
+double candela(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
+
+/// What a tilted luminaire's candela are multiplied with; linear between the table's angles. 1 without a table.
+double tilt_factor(const PhotometricWeb& web, double tilt_degrees);
+
+/// Flux of the luminaire in lumens, not tilted: the integral of candela() over the sphere, by the midpoint rule on half
+/// a degree.
+double luminous_flux(const PhotometricWeb& web);
+
+}  // namespace patchlight

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "patchlight/gather/readings.h"
+#include "patchlight/simulate.h"
+
+#include "cli/arguments.h"
+
+#include <string>
+
+namespace patchlight::cli {
+
+/// Adds the points of --points to the sensors of the scene. \throws InputError.
+Scene with_points(Scene scene, const SolveArguments& arguments);
+
+/// Where readings are written: what the arguments name, else their default where the scene has sensors. \throws
+/// InputError when an output is named but nothing is to be read.
+std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene);
+
+/// What the sensors of a solved scene read: light gathered from its patches, and straight from luminaires, sun and sky.
+/// \throws Cancelled.
+Readings read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer);
+
+/// A line for each group of sensors: least, mean and greatest value, uniformity, daylight factor; empty without
+/// sensors.
+std::string sensor_summary(const Scene& scene, const Readings& readings);
+
+}  // namespace patchlight::cli

@@ -1,0 +1,47 @@
+#include "patchlight/gather/readings.h"
+
+#include "patchlight/light/photometry.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace patchlight {
+
+SensorValue sensor_value(const Readings& readings, std::size_t sensor) {
+  const auto row = static_cast<Eigen::Index>(sensor);
+  const double per_lux = readings.photometric ? 1 : 1 / luminous_efficacy;
+  return {per_lux * luminance(readings.irradiance.row(row)), per_lux * luminance(readings.standard_error.row(row))};
+}
+
+const char* sensor_unit(const Readings& readings) { return readings.photometric ? "lx" : "W/m^2"; }
+
+double daylight_factor(const Readings& readings, std::size_t sensor) {
+  assert(readings.outside_by_sky);
+  const auto row = static_cast<Eigen::Index>(sensor);
+  return 100 * luminance(readings.irradiance.row(row)) / luminance(*readings.outside_by_sky);
+}
+
+std::vector<GroupReadings> by_group(std::span<const SensorGroup> groups, const Readings& readings) {
+  std::vector<GroupReadings> all;
+  std::size_t first = 0;
+  for (const SensorGroup& group : groups) {
+    GroupReadings found{.name = group.name, .sensors = group.sensors.size()};
+    if (found.sensors > 0) found.min = sensor_value(readings, first).value;
+    double daylight = 0;
+    for (std::size_t k = first; k < first + found.sensors; ++k) {
+      const SensorValue value = sensor_value(readings, k);
+      found.min = std::min(found.min, value.value);
+      found.max = std::max(found.max, value.value);
+      found.mean += value.value / static_cast<double>(found.sensors);
+      found.largest_standard_error = std::max(found.largest_standard_error, value.standard_error);
+      if (readings.outside_by_sky) daylight += daylight_factor(readings, k) / static_cast<double>(found.sensors);
+    }
+    if (found.mean > 0) found.uniformity = found.min / found.mean;
+    if (readings.outside_by_sky) found.mean_daylight_factor = daylight;
+    first += found.sensors;
+    all.push_back(std::move(found));
+  }
+  return all;
+}
+
+}  // namespace patchlight

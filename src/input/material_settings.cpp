@@ -1,0 +1,138 @@
+#include "input/material_settings.h"
+
+#include "patchlight/base/error.h"
+
+#include "base/near_match.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+using Quantity = MaterialSetting::Quantity;
+
+[[noreturn]] void refuse_setting(const std::string& text, const std::string& message) {
+  throw InputError("--set", "found '" + text + "': " + message);
+}
+
+Quantity quantity_named(const std::string& name, const std::string& text) {
+  if (name == "reflectance") return Quantity::reflectance;
+  if (name == "exitance") return Quantity::exitance;
+  if (name == "radiance") return Quantity::radiance;
+  if (name == "transmittance") return Quantity::transmittance;
+  refuse_setting(text, "'" + name + "' cannot be set; expected reflectance, exitance, radiance or transmittance");
+}
+
+Spectrum comma_separated(const std::string& list, const std::string& text) {
+  std::vector<double> values;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string word(trimmed(std::string_view(list).substr(begin, end - begin)));
+    const std::optional<double> value = finite_number(word);
+    if (!value) refuse_setting(text, "'" + word + "' is not a finite number");
+    values.push_back(*value);
+    begin = end + 1;
+  }
+  if (values.size() != 1 && values.size() != 3) {
+    refuse_setting(text, std::to_string(values.size()) + " values; expected one for all bands, or three: R,G,B");
+  }
+  return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// One value stands for all bands.
+Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
+  if (setting.value.size() == 1) return Spectrum::Constant(bands, setting.value[0]);
+  if (setting.value.size() == bands) return setting.value;
+  throw InputError(setting.where, "found " + std::to_string(setting.value.size()) + " values for material '" +
+                                      setting.material + "'; expected one, or one for each of " +
+                                      std::to_string(bands) + " bands");
+}
+
+Material changed(Material material, const MaterialSetting& setting) {
+  const Spectrum value = spread(setting, material.reflectance.size());
+  switch (setting.quantity) {
+    case Quantity::reflectance:
+      material.reflectance = value;
+      break;
+    case Quantity::exitance:
+      material.exitance = value;
+      break;
+    case Quantity::radiance:
+      material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
+      break;
+    case Quantity::transmittance:
+      material.transmittance = value;
+      break;
+  }
+  return material;
+}
+
+// The materials that a setting is for.
+std::vector<std::size_t> chosen(const std::vector<Material>& materials, const MaterialSetting& setting) {
+  std::vector<std::size_t> by_pattern;
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (materials[m].name == setting.material) return {m};
+    if (matches(materials[m].name, setting.material)) by_pattern.push_back(m);
+    names.push_back(materials[m].name);
+  }
+  if (!by_pattern.empty()) return by_pattern;
+  const std::string hint = suggestion(setting.material, names);
+  throw InputError(setting.where, "no face has a material '" + setting.material + "'" + hint +
+                                      (hint.empty() ? "; expected one of " : " Expected one of ") + listed(names));
+}
+
+}  // namespace
+
+bool matches(std::string_view name, std::string_view pattern) {
+  // Where the pattern's last star stands, and how much of the name it has taken: tried again with one letter more.
+  std::size_t n = 0, p = 0, taken = 0, star = std::string_view::npos;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      taken = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++n, ++p;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
+  for (const MaterialSetting& setting : settings) {
+    for (const std::size_t m : chosen(scene.materials, setting)) {
+      scene.materials[m] = changed(scene.materials[m], setting);
+    }
+  }
+  return scene;
+}
+
+MaterialSetting parse_material_setting(const std::string& text) {
+  // Names may hold dots and equal signs; the value holds no equal sign and the quantity no dot.
+  const std::size_t equals = text.rfind('=');
+  const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
+  if (dot == std::string::npos || dot == 0) {
+    refuse_setting(
+        text, "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, exitance, radiance, transmittance");
+  }
+  MaterialSetting setting;
+  setting.material = text.substr(0, dot);
+  setting.quantity = quantity_named(text.substr(dot + 1, equals - dot - 1), text);
+  setting.value = comma_separated(text.substr(equals + 1), text);
+  if ((setting.value < 0).any()) refuse_setting(text, "a value is negative; expected 0 or more");
+  const bool is_share = setting.quantity == Quantity::reflectance || setting.quantity == Quantity::transmittance;
+  if (is_share && (setting.value > 1).any()) {
+    refuse_setting(text, "a reflectance or transmittance is above 1; expected 0 to 1");
+  }
+  return setting;
+}
+
+}  // namespace patchlight

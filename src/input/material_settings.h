@@ -1,0 +1,17 @@
+#pragma once
+
+#include "patchlight/input/read_scene.h"
+
+#include <vector>
+
+namespace patchlight {
+
+/// The scene with changed materials, one setting after the other. A setting is for the material of that name; without
+/// one, for all whose names match it as a pattern, in which * stands for any letters and ? for one. \throws InputError
+/// at MaterialSetting::where when no material matches.
+Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings);
+
+/// True when the whole name matches the pattern.
+bool matches(std::string_view name, std::string_view pattern);
+
+}  // namespace patchlight

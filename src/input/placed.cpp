@@ -1,0 +1,14 @@
+#include "input/placed.h"
+
+#include <algorithm>
+
+namespace patchlight {
+
+Scene placed(Scene scene, const Eigen::Affine3d& placement) {
+  for (Point& vertex : scene.vertices) vertex = placement * vertex;
+  if (placement.linear().determinant() >= 0) return scene;
+  for (Polygon& polygon : scene.polygons) std::reverse(polygon.corners.begin(), polygon.corners.end());
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <filesystem>
+#include <string>
+
+namespace patchlight {
+
+/// The format of a file: its extension in lower case, without the dot; the standard input is OBJ.
+std::string format_of(const std::filesystem::path& file);
+
+/// \throws InputError at `where` unless the file is there and no folder. "-" always is.
+void require_file(const std::filesystem::path& file, const std::string& where);
+
+/// One model file as it stands, in metres, before any setting or check. `format` is one of readable_formats() without
+/// toml. \throws InputError.
+Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit);
+
+}  // namespace patchlight

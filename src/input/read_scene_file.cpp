@@ -1,0 +1,36 @@
+#include "base/sha256.h"
+#include "input/scene_file.h"
+#include "input/text.h"
+#include "input/toml_lights.h"
+#include "input/toml_models.h"
+#include "input/toml_sensors.h"
+#include "input/toml_value.h"
+
+namespace patchlight {
+
+SceneFile read_scene_file(const std::filesystem::path& file) {
+  const std::string text = read_text(file, file.string(), "the scene file");
+  const TomlValue root = parse_toml(text, file.string());
+  allow_keys(root, {"unit", "up", "model", "material", "sensors", "camera", "luminaire", "north", "site", "sun", "sky",
+                    "weather", "ground"});
+
+  SceneFile scene;
+  scene.file = file.string();
+  TomlFrame frame{.file = file};
+  if (const TomlValue* const unit = find(root, "unit")) frame.metres_per_unit = unit_length(*unit);
+  if (const TomlValue* const up = find(root, "up")) scene.up = upright(*up);
+  frame.up = scene.up.value_or(frame.up);
+  scene.models = models_of(root, frame);
+  scene.settings = settings_of(root);
+  scene.sensors = sensors_of(root, frame);
+  scene.cameras = cameras_of(root, frame);
+  scene.lights = lights_of(root, frame);
+  std::vector<std::string> texts = {text};
+  for (const std::filesystem::path& other : light_files(root, frame)) {
+    texts.push_back(read_text(other, other.string(), "the file"));
+  }
+  scene.sha256 = sha256(texts);
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "patchlight/input/read_scene.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sensor.h"
+
+#include "input/scene_lights.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace patchlight {
+
+/// A model that a scene file names.
+struct ModelEntry {
+  std::filesystem::path file;
+  std::string where;                         ///< "room.toml:3", for messages
+  double metres_per_unit = 1;                ///< of the model file
+  std::optional<Eigen::Affine3d> placement;  ///< metres to metres
+};
+
+/// A grid of sensors over a floor, which is known once the models are read.
+struct FloorGrid {
+  std::string name;
+  std::string group;  ///< a name of polygon groups, or a pattern with * and ?
+  double height = 0;  ///< metres above the floor
+  double spacing = 0;
+  std::string file;  ///< that asks for it
+  std::uint32_t line = 0;
+};
+
+/// What a scene file says, in metres, before the models are read.
+struct SceneFile {
+  std::string file;
+  std::string sha256;  ///< of it and of the files of lamps and weather that it names
+  std::vector<ModelEntry> models;
+  std::optional<Vector> up;
+  std::vector<MaterialSetting> settings;
+  std::vector<std::variant<SensorGroup, FloorGrid>> sensors;
+  std::vector<Camera> cameras;
+  LightEntries lights;
+};
+
+/// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError
+/// naming file, line and key, what was found and what was expected.
+SceneFile read_scene_file(const std::filesystem::path& file);
+
+}  // namespace patchlight

@@ -1,0 +1,106 @@
+#include "input/scene_lights.h"
+
+#include "patchlight/base/error.h"
+
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+namespace patchlight {
+namespace {
+
+// One value stands for all bands.
+Spectrum spread(const Spectrum& spectrum, Eigen::Index bands) {
+  return spectrum.size() == 1 ? Spectrum::Constant(bands, spectrum[0]) : spectrum;
+}
+
+// The part of a direction at right angles to a unit vector, made unit; zero where it points along it.
+Vector across(const Vector& direction, const Vector& axis) {
+  const Vector part = direction - direction.dot(axis) * axis;
+  constexpr double along = 1e-6;
+  return part.norm() > along ? part.normalized() : Vector(Vector::Zero());
+}
+
+// The default: y where z is up, -z where y is.
+Vector north_of(const Scene& scene, const LightEntries& lights) {
+  const Vector given = lights.north.value_or(std::abs(scene.up.y()) > 0.5 ? Vector(0, 0, -1) : Vector(0, 1, 0));
+  const Vector north = across(given, scene.up);
+  if (north.isZero()) throw InputError(lights.where, "north points up or down; expected a level direction [x, y, z]");
+  return north;
+}
+
+struct Spread {
+  Eigen::Index bands;
+  void operator()(PointLight& light) const { light.intensity = spread(light.intensity, bands); }
+  void operator()(SpotLight& light) const { light.intensity = spread(light.intensity, bands); }
+  void operator()(WebLight& light) const { light.watts_per_lumen = spread(light.watts_per_lumen, bands); }
+  void operator()(SphericalLamp& light) const { light.exitance = spread(light.exitance, bands); }
+};
+
+Luminaire luminaire_of(const LuminaireEntry& entry, const Scene& scene, Eigen::Index bands) {
+  Luminaire luminaire = entry.luminaire;
+  luminaire.aim = entry.aim.value_or(-scene.up);
+  // By default the horizontal angle 0 lies to the east, or to the north for a luminaire that looks east or west.
+  const Vector east = scene.north.cross(scene.up);
+  Vector zero = across(entry.zero_plane.value_or(east), luminaire.aim);
+  if (zero.isZero() && entry.zero_plane) {
+    throw InputError(entry.where, "luminaire.zero_plane points along the aim; expected a direction across it");
+  }
+  luminaire.zero_plane = zero.isZero() ? across(scene.north, luminaire.aim) : zero;
+  std::visit(Spread{bands}, luminaire.light);
+  return luminaire;
+}
+
+Vector direction_of(const SunEntry& sun, const Scene& scene) {
+  if (sun.direction) return *sun.direction;
+  return direction_to(solar_position(sun.place, sun.instant), scene.up, scene.north);
+}
+
+Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Index bands) {
+  if (lights.weather) return daylight_of(*lights.weather, scene.up, scene.north, bands);
+  Daylight daylight;
+  const Vector direction = lights.sun ? direction_of(*lights.sun, scene) : scene.up;
+  if (lights.sky && lights.sky->measured) return measured_daylight(*lights.sky->measured, direction, scene.up, bands);
+  if (lights.sun && lights.sun->normal_irradiance.size() > 0) {
+    daylight.sun = Sun{direction, spread(lights.sun->normal_irradiance, bands)};
+  }
+  if (!lights.sky) return daylight;
+  const bool needs_sun = lights.sky->kind == SkyKind::cie_clear;
+  if (needs_sun && direction.dot(scene.up) < 0) {
+    throw InputError(lights.where, "sky.kind: found 'clear' while the sun is below the horizon; expected it above");
+  }
+  daylight.sky = Sky{.kind = lights.sky->kind,
+                     .horizontal_irradiance = spread(lights.sky->horizontal_irradiance, bands),
+                     .sun_direction = direction};
+  return daylight;
+}
+
+// What falls on open level ground.
+Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
+  Spectrum irradiance = Spectrum::Zero(bands);
+  if (daylight.sky) irradiance += daylight.sky->horizontal_irradiance;
+  if (daylight.sun) irradiance += std::max(0.0, daylight.sun->direction.dot(up)) * daylight.sun->normal_irradiance;
+  return irradiance;
+}
+
+}  // namespace
+
+Scene with_lights(Scene scene, const LightEntries& lights) {
+  const Eigen::Index bands = scene.materials.front().reflectance.size();
+  scene.photometric = scene.photometric || lights.photometric;
+  scene.north = north_of(scene, lights);
+  for (const LuminaireEntry& entry : lights.luminaires) scene.luminaires.push_back(luminaire_of(entry, scene, bands));
+  if (!lights.sun && !lights.sky && !lights.weather) return scene;
+  if (scene.sun || scene.sky)
+    throw InputError(lights.where, "an earlier scene file has sun or sky; expected them once");
+  Daylight daylight = daylight_of(lights, scene, bands);
+  if (daylight.sky) {
+    // L = rho E / pi
+    daylight.sky->ground_radiance = lights.ground_reflectance / std::numbers::pi * on_ground(daylight, scene.up, bands);
+  }
+  scene.sun = daylight.sun;
+  scene.sky = daylight.sky;
+  return scene;
+}
+
+}  // namespace patchlight

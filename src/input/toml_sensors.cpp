@@ -1,0 +1,166 @@
+#include "input/toml_sensors.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/input/read_points.h"
+#include "patchlight/scene/sensor_grid.h"
+
+#include "base/near_match.h"
+#include "input/material_settings.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+namespace patchlight {
+namespace {
+
+std::uint32_t line_of(const std::string& where) {
+  const std::size_t colon = where.rfind(':');
+  std::uint32_t line = 0;
+  std::from_chars(where.data() + colon + 1, where.data() + where.size(), line);
+  return line;
+}
+
+[[noreturn]] void refuse_spacing(const std::string& where, double cells) {
+  throw InputError(where, "sensors.spacing: found a grid of " + std::to_string(static_cast<std::uint64_t>(cells)) +
+                              " cells; expected at most " + std::to_string(static_cast<std::uint64_t>(most_sensors)) +
+                              ". Give a larger spacing");
+}
+
+// The two edges from a corner, in metres, and the spacing: a grid that is not too fine.
+void require_sensible(const std::string& where, const std::array<Vector, 2>& edges, double spacing) {
+  const double cells = cells_along(edges[0].norm(), spacing) * cells_along(edges[1].norm(), spacing);
+  if (!(cells <= most_sensors)) refuse_spacing(where, std::min(cells, 1e18));
+}
+
+SensorGroup points_of(const TomlValue& list, const TomlFrame& frame) {
+  const std::string expected = "points [x, y, z, nx, ny, nz]";
+  if (list.kind != TomlValue::Kind::list || list.items.empty()) refuse(list, "a list of " + expected);
+  SensorGroup group;
+  for (const TomlValue& item : list.items) {
+    const std::vector<double> values = numbers(item, 6, expected);
+    const Vector direction(&values[3]);
+    if (!(direction.stableNorm() > 0)) refuse(item, expected + " with a direction that is not 0, 0, 0");
+    group.sensors.push_back({frame.metres_per_unit * Point(values.data()), direction.stableNormalized()});
+    group.lines.push_back(line_of(item.where));
+  }
+  return group;
+}
+
+SensorGroup rectangle_of(const TomlValue& table, const TomlFrame& frame) {
+  const Point corner = frame.metres_per_unit * vector(*find(table, "corner"));
+  const TomlValue& list = required(table, "edges", "two edges [[x, y, z], [x, y, z]] from the corner");
+  if (list.kind != TomlValue::Kind::list || list.items.size() != 2) refuse(list, "two edges [[x, y, z], [x, y, z]]");
+  const std::array<Vector, 2> edges = {frame.metres_per_unit * vector(list.items[0]),
+                                       frame.metres_per_unit * vector(list.items[1])};
+  const double area = edges[0].cross(edges[1]).norm();
+  if (!(area > 1e-9 * edges[0].norm() * edges[1].norm())) refuse(list, "two edges that span an area");
+  const TomlValue& spacing = required(table, "spacing", "the length of a cell");
+  const double length = frame.metres_per_unit * positive(spacing);
+  require_sensible(spacing.where, edges, length);
+  return rectangle_grid(corner, edges, length);
+}
+
+// Keys that go with another one only.
+void require_absent(const TomlValue& table, const std::vector<std::string>& keys, const std::string& kind) {
+  for (const std::string& key : keys) {
+    const TomlValue* const value = find(table, key);
+    if (value == nullptr) continue;
+    throw InputError(value->where, value->name + " says nothing about sensors given by '" + kind + "'; leave it out");
+  }
+}
+
+std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, const TomlFrame& frame,
+                                                      const std::string& name) {
+  allow_keys(table, {"name", "points", "file", "corner", "edges", "floor", "height", "spacing"});
+  const std::string kind = one_of(table, {"points", "file", "corner", "floor"});
+  if (kind == "floor") {
+    require_absent(table, {"edges"}, kind);
+    const TomlValue& floor = *find(table, kind);
+    const double height = not_negative(required(table, "height", "the height above the floor"));
+    const double spacing = positive(required(table, "spacing", "the length of a cell"));
+    return FloorGrid{name,
+                     text(floor, "the name of polygon groups, or a pattern with * and ?"),
+                     frame.metres_per_unit * height,
+                     frame.metres_per_unit * spacing,
+                     frame.file.string(),
+                     line_of(floor.where)};
+  }
+  require_absent(table, {"height"}, kind);
+  if (kind != "corner") require_absent(table, {"edges", "spacing"}, kind);
+  SensorGroup group;
+  if (kind == "points") group = points_of(*find(table, kind), frame);
+  if (kind == "corner") group = rectangle_of(table, frame);
+  if (kind == "file") group = read_points(path(*find(table, kind), frame.file), frame.metres_per_unit);
+  group.name = name;
+  if (group.file.empty()) group.file = frame.file.string();
+  if (group.lines.empty()) group.lines = {line_of(table.where)};
+  return group;
+}
+
+}  // namespace
+
+std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& root, const TomlFrame& frame) {
+  std::vector<std::variant<SensorGroup, FloorGrid>> all;
+  std::set<std::string> names;
+  for (const TomlValue& table : tables(find(root, "sensors"))) {
+    const TomlValue* const given = find(table, "name");
+    const std::string name = given ? text(*given) : "sensors " + std::to_string(all.size() + 1);
+    all.push_back(sensors_of_table(table, frame, name));
+    if (!names.insert(name).second) refuse(given ? *given : table, "a name that no other sensors have");
+  }
+  return all;
+}
+
+std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame) {
+  std::vector<Camera> cameras;
+  for (const TomlValue& table : tables(find(root, "camera"))) {
+    allow_keys(table, {"name", "eye", "target", "field_of_view"});
+    const TomlValue* const name = find(table, "name");
+    const TomlValue& target = required(table, "target", "the point [x, y, z] that is looked at");
+    Camera camera;
+    camera.name = name ? text(*name) : "camera " + std::to_string(cameras.size() + 1);
+    camera.eye = frame.metres_per_unit * vector(required(table, "eye", "the point [x, y, z] that is looked from"));
+    camera.target = frame.metres_per_unit * vector(target);
+    if (camera.eye == camera.target) refuse(target, "a point other than the eye");
+    if (const TomlValue* const angle = find(table, "field_of_view")) {
+      camera.vertical_field_of_view = number(*angle);
+      const bool sensible = camera.vertical_field_of_view > 0 && camera.vertical_field_of_view < 180;
+      if (!sensible) refuse(*angle, "an angle above 0 and below 180 degrees");
+    }
+    for (const Camera& other : cameras) {
+      if (other.name == camera.name) refuse(name ? *name : table, "a name that no other camera has");
+    }
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
+}
+
+SensorGroup sensors_over(const Scene& scene, const FloorGrid& grid) {
+  const std::string where = grid.file + ":" + std::to_string(grid.line);
+  std::vector<PolygonIndex> polygons;
+  std::set<std::string> names;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::string name = group_name(scene, scene.polygons[p].group);
+    names.insert(name);
+    if (name == grid.group || matches(name, grid.group)) polygons.push_back(p);
+  }
+  if (polygons.empty()) {
+    const std::vector<std::string> allowed(names.begin(), names.end());
+    throw InputError(where, "sensors.floor: no face is of a group '" + grid.group + "'" +
+                                suggestion(grid.group, allowed) + " The groups are " + listed(allowed));
+  }
+  const std::vector<PolygonIndex> floor = floor_of(scene, polygons);
+  if (floor.empty()) throw InputError(where, "sensors.floor: no face of '" + grid.group + "' is level");
+  const auto [corner, x, y] = rectangle_over(scene, floor, grid.height);
+  require_sensible(where, {x, y}, grid.spacing);
+  SensorGroup group = floor_grid(scene, floor, grid.height, grid.spacing);
+  group.name = grid.name;
+  group.file = grid.file;
+  group.lines = {grid.line};
+  if (group.sensors.empty()) throw InputError(where, "sensors.spacing: no cell has its middle over the floor");
+  return group;
+}
+
+}  // namespace patchlight

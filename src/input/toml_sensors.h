@@ -1,0 +1,19 @@
+#pragma once
+
+#include "input/toml_models.h"
+
+#include <variant>
+#include <vector>
+
+namespace patchlight {
+
+/// The tables [[sensors]]; files of points are read. \throws InputError.
+std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& root, const TomlFrame& frame);
+
+/// The tables [[camera]]. \throws InputError.
+std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame);
+
+/// The grid over the floor of the groups that it names. \throws InputError when there is no such group, or no floor.
+SensorGroup sensors_over(const Scene& scene, const FloorGrid& grid);
+
+}  // namespace patchlight

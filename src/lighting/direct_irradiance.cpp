@@ -1,0 +1,171 @@
+#include "patchlight/lighting/direct_irradiance.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/base/sampling.h"
+
+#include "lighting/receiver.h"
+#include "lighting/sky_irradiance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// Independent estimates of each irradiance: their spread is its standard error.
+constexpr std::uint32_t replicates = 4;
+
+// Scrambles of the Sobol points that patches and sources choose from; odd steps lead through all of them.
+constexpr std::uint32_t scrambles = 64;
+constexpr std::uint32_t step = 17;
+
+// Something that gives light: an estimate of the mean irradiance of a receiver.
+struct Source {
+  std::function<Spectrum(const Receiver&, SamplePoints)> mean;
+  std::uint32_t samples = 0;
+  bool has_extent = false;
+};
+
+using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
+
+// Of light that comes from one direction for each sample. Places over which another polygon lies do not count.
+Spectrum mean_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
+                          SamplePoints samples) {
+  std::vector<Segment> segments;
+  std::vector<Arrival> arrivals;
+  std::size_t exposed = 0;
+  for (const auto& [u, v, s, t] : samples) {
+    const SurfacePoint at = receiver.place(u, v);
+    if (is_covered(lighting, receiver, at)) continue;
+    ++exposed;
+    const Arrival arrival = arrival_at(at, {s, t});
+    if (!(arrival.irradiance > 0)) continue;
+    segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
+    arrivals.push_back(arrival);
+  }
+  Spectrum sum = Spectrum::Zero(lighting.bands);
+  if (exposed == 0) return sum;
+  const Field transmittance = lighting.paths.transmittance(segments);
+  for (std::size_t k = 0; k < arrivals.size(); ++k)
+    sum += arrivals[k].irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrivals[k].colour;
+  return sum / static_cast<double>(exposed);
+}
+
+std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
+  std::vector<Source> sources;
+  const auto add = [&](const ArrivalAt& arrival_at, int samples, bool has_extent) {
+    const auto mean = [&lighting, arrival_at](const Receiver& receiver, SamplePoints points) {
+      return mean_of_arrivals(lighting, arrival_at, receiver, points);
+    };
+    sources.push_back({mean, static_cast<std::uint32_t>(samples), has_extent});
+  };
+  for (const Luminaire& luminaire : lighting.luminaires) {
+    const auto arrival = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
+      return from_luminaire(luminaire, lighting.up, at, uv);
+    };
+    add(arrival, options.lamp_samples, std::holds_alternative<SphericalLamp>(luminaire.light));
+  }
+  if (lighting.sun) {
+    add([&lighting](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); },
+        options.sun_samples, false);
+  }
+  if (lighting.sky) {
+    // With openings a sample takes two rays.
+    const int rays = lighting.openings.empty() ? 1 : 2;
+    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points) {
+      return sky_irradiance(lighting, receiver, points);
+    };
+    sources.push_back({mean, static_cast<std::uint32_t>(options.sky_samples / rays), true});
+  }
+  return sources;
+}
+
+// Irradiance by one source or by all.
+struct Estimate {
+  Spectrum mean;
+  Spectrum variance;  // of the mean
+};
+
+struct Estimator {
+  Eigen::Index bands = 0;
+  std::vector<Source> sources;
+  std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
+
+  Estimate by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const;
+  Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const;
+};
+
+Estimator estimator_for(const Lighting& lighting, const LightingOptions& options) {
+  const int most = std::max({options.lamp_samples, options.sun_samples, options.sky_samples});
+  const auto count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(most) / replicates);
+  Estimator estimator{lighting.bands, sources_of(lighting, options), {}};
+  for (std::uint32_t k = 0; k < scrambles; ++k)
+    estimator.points.push_back(scrambled_sobol(count, hash({options.seed, k})));
+  return estimator;
+}
+
+Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
+  const auto set = [&](std::uint32_t k) { return SamplePoints(points[(key + k * step) % scrambles]); };
+  if (receiver.is_point && !source.has_extent) return {source.mean(receiver, set(0).first(1)), Spectrum::Zero(bands)};
+  const std::size_t each = std::max<std::size_t>(1, source.samples / replicates);
+  Spectrum sum = Spectrum::Zero(bands);
+  Spectrum squares = sum;
+  for (std::uint32_t k = 0; k < replicates; ++k) {
+    const Spectrum one = source.mean(receiver, set(k).first(each));
+    sum += one;
+    squares += one.square();
+  }
+  const Spectrum mean = sum / replicates;
+  const Spectrum spread = (squares / replicates - mean.square()).max(0.0);
+  return {mean, spread / (replicates - 1)};
+}
+
+Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const {
+  Estimate all{Spectrum::Zero(bands), Spectrum::Zero(bands)};
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const Estimate one = by_one(sources[k], receiver, hash({seed, index, k}));
+    all.mean += one.mean;
+    all.variance += one.variance;
+  }
+  return all;
+}
+
+DirectIrradiance at_receivers(const Estimator& estimator, const std::vector<Receiver>& receivers, std::uint64_t seed,
+                              const Observer& observer) {
+  const auto rows = static_cast<Eigen::Index>(receivers.size());
+  DirectIrradiance direct{Field(rows, estimator.bands), Field(rows, estimator.bands)};
+  parallel_for(receivers.size(), Stage::direct_light, observer, [&](std::size_t k) {
+    const Estimate estimate = estimator.by_all(receivers[k], seed, k);
+    direct.irradiance.row(static_cast<Eigen::Index>(k)) = estimate.mean;
+    direct.standard_error.row(static_cast<Eigen::Index>(k)) = estimate.variance.sqrt();
+  });
+  return direct;
+}
+
+}  // namespace
+
+DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
+                                   const Observer& observer) {
+  std::vector<Receiver> receivers;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const auto place = [&mesh, i](double u, double v) {
+      return SurfacePoint{square_to_quad(mesh.corner_points(i).points, u, v), mesh.normal[i], mesh.polygon[i]};
+    };
+    receivers.push_back({place, mesh.side[i], false});
+  }
+  return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
+}
+
+DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
+                                   const LightingOptions& options, const Observer& observer) {
+  std::vector<Receiver> receivers;
+  for (const SurfacePoint& point : points) {
+    receivers.push_back({[&point](double, double) { return point; }, Side::front, true});
+  }
+  return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
+}
+
+}  // namespace patchlight

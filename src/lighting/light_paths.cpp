@@ -1,0 +1,82 @@
+#include "patchlight/lighting/light_paths.h"
+
+#include <algorithm>
+
+namespace patchlight {
+namespace {
+
+bool has_openings(const Scene& scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_opening(scene, p)) return true;
+  }
+  return false;
+}
+
+Spectrum transmittance_of(const Scene& scene, PolygonIndex polygon, Side side) {
+  const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
+  if (material.transmittance.size() > 0) return material.transmittance;
+  return Spectrum::Zero(material.reflectance.size());
+}
+
+}  // namespace
+
+LightPaths::LightPaths(const Scene& scene, const Coverings& coverings)
+    : bounds_(bounds(scene)),
+      opaque_(scene, Occluder::Blockers::opaque, coverings),
+      bands_(scene.materials.front().reflectance.size()) {
+  if (!has_openings(scene)) return;
+  clear_.emplace(scene, Occluder::Blockers::clear);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    openings_.push_back({transmittance_of(scene, p, Side::front), transmittance_of(scene, p, Side::back)});
+}
+
+Field LightPaths::transmittance(std::span<const Segment> segments) const {
+  Field share(static_cast<Eigen::Index>(segments.size()), bands_);
+  const std::vector<Passage> all = passages(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k) share.row(static_cast<Eigen::Index>(k)) = all[k].transmittance;
+  return share;
+}
+
+std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) const {
+  const auto blocked = opaque_.occluded(segments);
+  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
+  std::vector<Passage> found(segments.size());
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (meets_opening[k] && !blocked[k]) {
+      found[k] = through_openings(segments[k]);
+    } else {
+      found[k].transmittance = Spectrum::Constant(bands_, blocked[k] ? 0.0 : 1.0);
+    }
+  }
+  return found;
+}
+
+// Goes from opening to opening, each of which a straight line meets once at most.
+Passage LightPaths::through_openings(const Segment& segment) const {
+  Passage passage{Spectrum::Ones(bands_), {}};
+  const Vector way = segment.to - segment.from;
+  const double length = way.norm();
+  double gone = 0;
+  Ray ray{segment.from, way / length, segment.from_polygon};
+  for (std::size_t k = 0; k < openings_.size(); ++k) {
+    const std::optional<Hit> hit = clear_->first_hits({&ray, 1}).front();
+    if (!hit || gone + hit->distance >= length || hit->polygon == segment.to_polygon) break;
+    gone += hit->distance;
+    passage.transmittance *= openings_[hit->polygon][hit->side == Side::front ? 0 : 1];
+    passage.crossings.push_back({hit->polygon, gone});
+    ray.origin = hit->point;
+    ray.from_polygon = hit->polygon;
+  }
+  return passage;
+}
+
+Point LightPaths::beyond(const Point& from, const Vector& direction) const {
+  const double reach = bounds_.diagonal().norm() + (from - bounds_.center()).norm();
+  return from + reach * direction;
+}
+
+bool LightPaths::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
+  return opaque_.is_covered_in_part(polygon, side) && opaque_.is_covered(polygon, side, place);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,114 @@
+#include "patchlight/lighting/lighting.h"
+
+#include "patchlight/base/sampling.h"
+#include "patchlight/scene/photometric_web.h"
+#include "patchlight/scene/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace patchlight {
+namespace {
+
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
+
+// Relative intensity and colour of lamps without extent.
+double relative_intensity(const PointLight&, const Luminaire&, const Vector&, const Vector&) { return 1; }
+double relative_intensity(const SpotLight& spot, const Luminaire& luminaire, const Vector& direction, const Vector&) {
+  return spot_profile(spot, luminaire.aim.dot(direction));
+}
+double relative_intensity(const WebLight& light, const Luminaire& luminaire, const Vector& direction,
+                          const Vector& up) {
+  const double tilt = std::acos(std::clamp(-luminaire.aim.dot(up), -1.0, 1.0)) * degrees_per_radian;
+  return tilt_factor(*light.web, tilt) * candela(*light.web, {luminaire.aim, luminaire.zero_plane}, direction);
+}
+const Spectrum& colour_of(const PointLight& light) { return light.intensity; }
+const Spectrum& colour_of(const SpotLight& light) { return light.intensity; }
+const Spectrum& colour_of(const WebLight& light) { return light.watts_per_lumen; }
+
+// E = I cos theta / d^2
+template <typename Light>
+Arrival from_light(const Light& light, const Luminaire& luminaire, const Vector& up, const SurfacePoint& at) {
+  const Vector way = luminaire.position - at.point;
+  const double square = way.squaredNorm();
+  const double cosine = at.normal.dot(way) / std::sqrt(square);
+  if (!(cosine > 0)) return {};
+  const double intensity = relative_intensity(light, luminaire, -way / std::sqrt(square), up);
+  return {luminaire.position, intensity * cosine / square, &colour_of(light)};
+}
+
+// Two unit vectors at right angles to a third and to each other.
+struct Across {
+  Vector first;
+  Vector second;
+};
+Across across(const Vector& axis) {
+  const Vector first = axis.unitOrthogonal();
+  return {first, axis.cross(first)};
+}
+
+Arrival from_sphere(const SphericalLamp& lamp, const Point& centre, const SurfacePoint& at, const Eigen::Vector2d& uv) {
+  const Vector way = centre - at.point;
+  const double distance = way.norm();
+  if (distance <= lamp.radius) return {};
+  // The sphere fills the cone with this half angle; 1 - cos without cancellation.
+  const double sine = lamp.radius / distance;
+  const double lift = sine * sine / (1 + std::sqrt(1 - sine * sine));
+  const double cosine = 1 - uv.x() * lift;
+  const double turn = 2 * std::numbers::pi * uv.y();
+  const Vector axis = way / distance;
+  const Across frame = across(axis);
+  const Vector direction = cosine * axis + std::sqrt(std::max(0.0, 1 - cosine * cosine)) *
+                                               (std::cos(turn) * frame.first + std::sin(turn) * frame.second);
+  const double received = at.normal.dot(direction);
+  if (!(received > 0)) return {};
+  // Nearer than the sphere's middle by the half chord.
+  const double along = distance * cosine;
+  const double half_chord = std::sqrt(std::max(0.0, lamp.radius * lamp.radius - distance * distance + along * along));
+  // L times the solid angle of the cone, 2 pi (1 - cos), with L = E / pi.
+  return {at.point + (along - half_chord) * direction, 2 * lift * received, &lamp.exitance};
+}
+
+Opening opening_of(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  const Vector area = area_vector(corners);
+  Opening opening{polygon, area.normalized(), area_centroid(corners), area.norm(), {}};
+  for (const auto& [a, b, c] : triangulate(corners)) opening.triangles.push_back({corners[a], corners[b], corners[c]});
+  return opening;
+}
+
+}  // namespace
+
+Lighting lighting_of(const Scene& scene, const Coverings& coverings) {
+  Lighting lighting{.luminaires = scene.luminaires,
+                    .sun = {},
+                    .sky = {},
+                    .openings = {},
+                    .up = scene.up,
+                    .bands = scene.materials.front().reflectance.size(),
+                    .paths = LightPaths(scene, coverings)};
+  if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
+  if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));
+  }
+  return lighting;
+}
+
+Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at,
+                       const Eigen::Vector2d& uv) {
+  if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light))
+    return from_sphere(*sphere, luminaire.position, at, uv);
+  if (const auto* point = std::get_if<PointLight>(&luminaire.light)) return from_light(*point, luminaire, up, at);
+  if (const auto* spot = std::get_if<SpotLight>(&luminaire.light)) return from_light(*spot, luminaire, up, at);
+  return from_light(std::get<WebLight>(luminaire.light), luminaire, up, at);
+}
+
+Arrival from_sun(const Lighting& lighting, const SurfacePoint& at) {
+  const double cosine = at.normal.dot(lighting.sun->direction);
+  if (!(cosine > 0)) return {};
+  return {lighting.paths.beyond(at.point, lighting.sun->direction), cosine, &lighting.sun->normal_irradiance};
+}
+
+}  // namespace patchlight

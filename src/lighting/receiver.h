@@ -1,0 +1,26 @@
+#pragma once
+
+#include "patchlight/lighting/lighting.h"
+
+#include <array>
+#include <functional>
+#include <span>
+
+namespace patchlight {
+
+/// Points of a four-dimensional Sobol sequence: two numbers for a place of the receiver, two for one of the source.
+using SamplePoints = std::span<const std::array<double, 4>>;
+
+/// A patch or a point that receives light: a place of it for each point of the unit square.
+struct Receiver {
+  std::function<SurfacePoint(double, double)> place;
+  Side side = Side::front;  ///< of the places' polygon
+  bool is_point = false;
+};
+
+/// True when another polygon lies over this place of the receiver.
+inline bool is_covered(const Lighting& lighting, const Receiver& receiver, const SurfacePoint& at) {
+  return at.polygon != no_polygon && lighting.paths.is_covered(at.polygon, receiver.side, at.point);
+}
+
+}  // namespace patchlight

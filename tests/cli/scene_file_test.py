@@ -1,0 +1,179 @@
+"""Scene files: the examples of the documentation, the same scene by options, sensors against closed forms, refusals."""
+import csv
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import unittest
+
+from support import ToolTest
+
+MESHES = pathlib.Path(os.environ["PATCHLIGHT_MESHES"])
+FORMATS = MESHES.parent / "docs" / "formats.md"
+USAGE, INPUT = 1, 2
+
+# Black ground of 40 x 40 m, so that nothing is reflected.
+GROUND = "mtllib ground.mtl\nv -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\no ground\nusemtl black\nf 1 2 3 4\n"
+BLACK = "newmtl black\nKd 0 0 0\n"
+
+
+class SceneFileTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("ground.obj", GROUND)
+        self.write("ground.mtl", BLACK)
+
+    def solve(self, *arguments):
+        done = self.run_tool("solve", *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def rows(self, name):
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def readings(self, toml, *options):
+        self.write("scene.toml", toml)
+        self.solve("scene.toml", "--points-output", "out.csv", *options)
+        return self.rows("out.csv")
+
+    def refused(self, code, parts, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_the_examples_of_the_documentation_are_solved(self):
+        examples = re.findall(r"```toml\n(.*?)```", FORMATS.read_text(), re.DOTALL)
+        self.assertEqual(len(examples), 2)
+        for name in ("two_rooms", "cornell_box"):
+            for extension in (".obj", ".mtl"):
+                shutil.copy(MESHES / (name + extension), self.folder)
+        self.write("facade.pts", "1.4 1.4 -0.5 0 0 -1\n1.4 2.5 -0.5 0 0 -1\n")
+        sensors = []
+        for k, example in enumerate(examples):
+            self.write(f"{k}.toml", example)
+            self.solve(f"{k}.toml", "--patches", 200, "--points-output", f"{k}.csv", "--points-output", f"{k}.vtp",
+                       "--report", f"{k}.json")
+            rows = self.rows(f"{k}.csv")
+            self.assertTrue(all(float(row["E_v_lx"]) >= 0 for row in rows))
+            report = json.loads((self.folder / f"{k}.json").read_text())
+            self.assertEqual(report["sensors"]["unit"], "lx")
+            self.assertEqual(report["sensors"]["warnings"], [])
+            sensors.append([(group["name"], group["sensors"]) for group in report["sensors"]["groups"]])
+        self.assertEqual([name for name, _ in sensors[0]], ["work plane", "desk"])
+        self.assertEqual(sensors[1], [("floor", 25), ("facade", 2)])
+
+    def test_it_is_the_scene_of_the_same_options_to_the_last_bit(self):
+        self.write("spots.pts", "0 0 0.3 0 0 1\n0.5 0.2 1.5 1 0 1\n")
+        self.write("scene.toml", '[[model]]\nfile = "room.obj"\nunit = "ft"\n[[material]]\nname = "wh*"\n'
+                   'reflectance = [0.3, 0.4, 0.5]\n[[material]]\nname = "lamp"\nradiance = 3\n')
+        common = ("--patches", 300, "-q", "--points", "spots.pts")
+        self.solve("scene.toml", *common, "-o", "a.ply", "--points-output", "a.csv")
+        self.write("spots.pts", "0 0 0.984251968503937 0 0 1\n1.6404199475065617 0.6561679790026247 4.921259842519685 1 0 1\n")
+        self.solve("room.obj", "--unit", "ft", "--set", "white.reflectance=0.3,0.4,0.5", "--set", "lamp.radiance=3",
+                   *common, "-o", "b.ply", "--points-output", "b.csv")
+        # What follows the header, in which the command lines differ.
+        bodies = [(self.folder / name).read_bytes().split(b"end_header\n")[1] for name in ("a.ply", "b.ply")]
+        self.assertEqual(bodies[0], bodies[1])
+        for a, b in zip(self.rows("a.csv"), self.rows("b.csv")):
+            # The points are the same to 1e-16, not to the last bit.
+            self.assertAlmostEqual(float(a["E_r"]), float(b["E_r"]), delta=1e-6 * float(b["E_r"]))
+
+    # E = I h / (h^2 + r^2)^1.5 with I = 10,000 lm / 4 pi at h = 3 m
+    def test_a_point_light_has_its_closed_form(self):
+        points = ", ".join(f"[{r}, 0, 0.0, 0, 0, 1]" for r in range(6))
+        rows = self.readings(f'[[model]]\nfile = "ground.obj"\n[[luminaire]]\nkind = "point"\nposition = [0, 0, 3]\n'
+                             f'lumens = 10000\n[[sensors]]\npoints = [{points}]\n', "--patches", 10)
+        for r, row in enumerate(rows):
+            expected = 10000 / (4 * math.pi) * 3 / (9 + r * r) ** 1.5
+            self.assertAlmostEqual(float(row["E_v_lx"]), expected, delta=1e-6 * expected)
+            self.assertEqual(float(row["SE_v_lx"]), 0)
+        self.assertEqual([round(float(row["E_v_lx"]), 2) for row in rows], [88.42, 75.49, 50.93, 31.26, 19.10, 12.04])
+
+    def test_under_an_open_overcast_sky_daylight_factors_are_known(self):
+        rows = self.readings('up = "z"\n[[model]]\nfile = "ground.obj"\n[sky]\nkind = "overcast"\nilluminance = 10000\n'
+                             '[[sensors]]\npoints = [[0, 0, 1, 0, 0, 1], [0, 0, 1, 1, 0, 0]]\n', "--patches", 10)
+        # Horizontal: all of it; a facade over black ground: 39.62 % (Moon and Spencer's sky, integrated).
+        for row, expected in zip(rows, (100, 39.62)):
+            error = 100 * float(row["SE_v_lx"]) / 10000
+            self.assertAlmostEqual(float(row["daylight_factor_percent"]), expected, delta=0.05 + 3 * error)
+            self.assertLess(error, 0.2)
+
+    def test_a_lamp_beside_the_sky_leaves_no_daylight_factor(self):
+        rows = self.readings('[[model]]\nfile = "ground.obj"\n[sky]\nkind = "overcast"\nilluminance = 10000\n'
+                             '[[luminaire]]\nkind = "point"\nposition = [0, 0, 3]\nlumens = 1\n'
+                             '[[sensors]]\npoints = [[0, 0, 1, 0, 0, 1]]\n', "--patches", 10)
+        self.assertNotIn("daylight_factor_percent", rows[0])
+
+    def test_sensors_are_written_beside_the_result_unless_told_otherwise(self):
+        (self.folder / "results").mkdir()
+        self.write("my.toml", '[[model]]\nfile = "room.obj"\n[[sensors]]\nname = "a"\npoints = [[0, 0, 1, 0, 0, 1]]\n')
+        done = self.solve("my.toml", "--patches", 100, "-o", "results/out.vtp")
+        self.assertEqual(len(self.rows("results/my.irradiance.csv")), 1)
+        self.assertIn("U0", done.stdout)
+
+    def test_doubtful_sensors_are_named_with_file_and_line(self):
+        # The room with a closed box of 0.4 m in it.
+        box = "".join(f"v {x} {y} {z}\n" for z in (0.2, 0.6) for y in (-0.2, 0.2) for x in (-0.9, -0.5))
+        box += "".join(f"f {' '.join(map(str, face))}\n" for face in
+                       ((1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (2, 4, 8, 6), (4, 3, 7, 8), (3, 1, 5, 7)))
+        self.write("box.obj", box)
+        self.write("spots.pts", "0 0 0.3 0 0 1\n-0.7 0 0.4 0 0 1\n-0.5 0 0.4 0 0 1\n")
+        self.write("scene.toml", '[[model]]\nfile = "room.obj"\n[[model]]\nfile = "box.obj"\n')
+        done = self.solve("scene.toml", "--patches", 200, "--points", "spots.pts")
+        warnings = [line for line in done.stderr.splitlines() if "warning" in line]
+        self.assertEqual(len(warnings), 2, done.stderr)
+        self.assertIn("spots.pts:2", warnings[0])
+        self.assertIn("inside a wall", warnings[0])
+        self.assertIn("spots.pts:3", warnings[1])
+        self.assertIn("in a surface", warnings[1])
+        self.assertEqual(float(self.rows("spots.irradiance.csv")[1]["E_r"]), 0)
+
+    def test_pictures_are_taken_by_cameras_of_the_file(self):
+        cameras = "".join(f'[[camera]]\nname = "{name}"\neye = [{x}, -0.5, 1]\ntarget = [0, 0.5, 0.5]\n'
+                          for name, x in (("left", -0.8), ("right", 0.8)))
+        self.write("scene.toml", '[[model]]\nfile = "room.obj"\n' + cameras)
+        common = ("scene.toml", "--patches", 100, "-q", "--picture")
+        self.solve(*common, "first.png")
+        self.solve(*common, "left.png", "--view", "left")
+        self.solve(*common, "right.png", "--view", "right")
+        pictures = [(self.folder / f"{name}.png").read_bytes() for name in ("first", "left", "right")]
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertNotEqual(pictures[1], pictures[2])
+        self.refused(INPUT, ["--view", "'top'", "left, right"], "solve", *common, "top.png", "--view", "top")
+
+    def test_refusals(self):
+        self.write("unknown.toml", '[[model]]\nfile = "room.obj"\nscales = 2\n')
+        self.refused(INPUT, ["unknown.toml:3: ", "'scales'", "did you mean 'scale'?"], "solve", "unknown.toml", "-o",
+                     "a.vtp")
+        self.refused(INPUT, ["unknown.toml:3: "], "check", "unknown.toml")
+        self.write("nothing.toml", 'unit = "m"\n')
+        self.refused(INPUT, ["nothing.toml", "names no model"], "solve", "nothing.toml", "-o", "a.vtp")
+        self.write("bad.toml", "[[model]\n")
+        self.refused(INPUT, ["bad.toml:1: is not TOML"], "solve", "bad.toml", "-o", "a.vtp")
+        self.refused(INPUT, ["none.toml", "does not exist"], "solve", "none.toml", "-o", "a.vtp")
+        self.write("plain.toml", '[[model]]\nfile = "room.obj"\n')
+        self.refused(INPUT, ["--points-output", "no sensors"], "solve", "plain.toml", "--points-output", "a.csv")
+        self.refused(INPUT, ["--unit"], "solve", "plain.toml", "--unit", "cm", "-o", "a.vtp")
+        self.refused(USAGE, ["--points-output", ".csv or .vtp"], "solve", "plain.toml", "--points-output", "a.txt")
+        self.refused(USAGE, ["--view", "--picture"], "solve", "plain.toml", "-o", "a.vtp", "--view", "a")
+        self.assertEqual(sorted(p.name for p in self.folder.glob("a.*")), [])
+
+    def test_lights_of_a_scene_are_not_lost_with_its_form_factors(self):
+        self.write("lit.toml", '[[model]]\nfile = "room.obj"\n[[luminaire]]\nkind = "point"\nposition = [0, 0, 1.5]\n'
+                   'lumens = 100\n[[sensors]]\npoints = [[0.5, 0.5, 0.3, 0, 0, 1]]\n')
+        done = self.run_tool("form-factors", "lit.toml", "-o", "lit.ff", "--patches", 200, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.refused(INPUT, ["luminaires", "--form-factors"], "relight", "lit.ff", "-o", "a.vtp")
+        self.solve("lit.toml", "--form-factors", "lit.ff", "--points-output", "stored.csv", "-q")
+        self.solve("lit.toml", "--patches", 200, "--points-output", "anew.csv", "-q")
+        stored, anew = self.rows("stored.csv"), self.rows("anew.csv")
+        # Stored form factors are rounded to floats: 6e-8.
+        self.assertAlmostEqual(float(stored[0]["E_v_lx"]), float(anew[0]["E_v_lx"]), delta=1e-6 * float(anew[0]["E_v_lx"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

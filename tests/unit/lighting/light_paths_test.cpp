@@ -1,0 +1,79 @@
+#include "patchlight/lighting/light_paths.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+Material glass(double transmittance) {
+  Material material = grey(0.1);
+  material.transmittance = Spectrum::Constant(1, transmittance);
+  return material;
+}
+
+// A square of 2 x 2 m across the z axis.
+Scene with_sheet(Scene scene, double z, MaterialIndex material) {
+  return with_quad(std::move(scene), {Point(-1, -1, z), Point(1, -1, z), Point(1, 1, z), Point(-1, 1, z)}, material);
+}
+
+// Opaque, glass of 0.8 and glass of 0.5.
+Scene nothing() { return empty_scene({grey(0.5), glass(0.8), glass(0.5)}); }
+
+double share(const Scene& scene, const Segment& segment) {
+  return LightPaths(scene).transmittance({&segment, 1})(0, 0);
+}
+
+TEST(LightPaths, MultiplyTheOpeningsOnTheWay) {
+  const Scene scene = with_sheet(with_sheet(with_sheet(nothing(), 0, 1), 1, 2), 2, 1);
+  EXPECT_EQ(share(scene, {Point(0.1, 0.2, -1), Point(0.1, 0.2, 3)}), 0.8 * 0.5 * 0.8);
+  EXPECT_EQ(share(scene, {Point(0.1, 0.2, 3), Point(0.1, 0.2, -1)}), 0.8 * 0.5 * 0.8);
+  EXPECT_EQ(share(scene, {Point(0.1, 0.2, 0.5), Point(0.3, 0.2, 1.5)}), 0.5);
+  EXPECT_EQ(share(scene, {Point(5, 0, -1), Point(5, 0, 3)}), 1);
+}
+
+TEST(LightPaths, EndBehindTheLastOpeningThatCounts) {
+  // From one opening to another, and to a point before one.
+  const Scene scene = with_sheet(with_sheet(with_sheet(nothing(), 0, 1), 1, 2), 2, 1);
+  EXPECT_EQ(share(scene, {Point(0, 0, 0), Point(0.1, 0, 2), 0, 2}), 0.5);
+  EXPECT_EQ(share(scene, {Point(0, 0, -1), Point(0, 0, 0.9)}), 0.8);
+}
+
+TEST(LightPaths, EndAtAnythingOpaque) {
+  const Scene scene = with_sheet(with_sheet(nothing(), 0, 1), 1, 0);
+  EXPECT_EQ(share(scene, {Point(0, 0, -1), Point(0, 0, 3)}), 0);
+  EXPECT_EQ(share(scene, {Point(0, 0, -1), Point(0, 0, 0.5)}), 0.8);
+  // Also on the scene's convex hull, which is no obstacle between its points.
+  EXPECT_EQ(share(with_sheet(nothing(), 0, 0), {Point(0, 0, -1), Point(0, 0, 1)}), 0);
+}
+
+TEST(LightPaths, GoFromTheOutsideOfAnEmptyWindow) {
+  const Scene scene = with_sheet(nothing(), 0, 0);
+  EXPECT_EQ(share(scene, {Point(2, 0, -1), Point(2, 0, 1)}), 1);
+}
+
+TEST(LightPaths, BeyondIsOutsideTheScene) {
+  const Scene scene = with_box(nothing(), Point(0, 0, 0), Point(4, 3, 2), true);
+  const LightPaths paths(scene);
+  for (const Vector& direction : {Vector(1, 0, 0), Vector(-0.6, 0, 0.8), Vector(0, 1, 0)}) {
+    EXPECT_FALSE(bounds(scene).contains(paths.beyond(Point(1, 1, 1), direction)));
+    EXPECT_FALSE(bounds(scene).contains(paths.beyond(Point(-9, 1, 1), direction)));
+  }
+}
+
+TEST(LightPaths, KeepTheBandsApart) {
+  Scene scene = empty_scene({{"opaque", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {"tinted", rgb(0, 0, 0), rgb(0, 0, 0)}});
+  scene.materials[1].transmittance = rgb(0.9, 0.5, 0);
+  scene = with_sheet(with_sheet(std::move(scene), 0, 1), 1, 1);
+  const Segment segment{Point(0, 0, -1), Point(0, 0, 3)};
+  const Field share = LightPaths(scene).transmittance({&segment, 1});
+  EXPECT_EQ(share(0, 0), 0.9 * 0.9);
+  EXPECT_EQ(share(0, 1), 0.25);
+  EXPECT_EQ(share(0, 2), 0);
+}
+
+}  // namespace
+}  // namespace patchlight
