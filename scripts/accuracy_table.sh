@@ -11,7 +11,7 @@ if [ $# -lt 1 ]; then
 fi
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
-patches=${2:-8000}
+patches=${2:-7000}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 programs=${PATCHLIGHT_BENCHMARKS:-build/tests/benchmarks}

@@ -26,6 +26,15 @@ Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std
   return interest;
 }
 
+void require_reflecting(const Scene& scene, const RadiosityProblem& problem, const Eigen::VectorXd& interest) {
+  if ((interest.array() == 1).all()) return;
+  const double highest = (problem.reflectance.colwise() * interest.array()).maxCoeff();
+  if (highest > 0) return;
+  throw InputError(scene.file,
+                   "found nothing that reflects light among what is of interest; expected a material, object or group "
+                   "with a reflectance above 0, as an accuracy is that of reflected light");
+}
+
 void require_names(const Scene& scene, const std::vector<std::string>& names) {
   std::set<std::string> known(scene.groups.begin(), scene.groups.end());
   for (const Material& material : scene.materials) known.insert(material.name);

@@ -104,6 +104,7 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
                            .display = display_errors(result.mesh, solved)};
 
   result.interest = interest_of(setting.scene, mesh, plan.interest);
+  require_reflecting(setting.scene, simulation.problem, result.interest);
   const bool all = result.interest.minCoeff() == 1;
   const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
   // The sources' effects as shares of the errors that they explain, and the errors of gaps, which are their own.

@@ -44,7 +44,7 @@ double patches_for(double patches, double factor) { return patches * std::pow(st
 int next_samples(int samples, double factor) {
   const double needed = samples * factor * factor;
   int next = samples;
-  while (next < needed && next < most_samples) next *= 2;
+  while (next < needed && 2 * next <= most_samples) next *= 2;
   return next;
 }
 
@@ -128,6 +128,7 @@ std::size_t Search::cuts_in_time(const AccuracyStep& step) const {
 // The next mesh; none when the last one is good enough, or time is up.
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const AccuracyStep& step = steps.back();
+  if (!solved.simulation.solution.converged) return std::nullopt;
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
   if (margin * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
@@ -156,8 +157,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 
 SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   Search search{setting, request, plan};
-  if (plan.accuracy)
-    search.plan.solver.relative_error = std::max(plan.solver.relative_error, share_of_solver * *plan.accuracy);
+  if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
   MeshToSolve to_solve{nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge)), {}, {}};
   for (;;) {
     require_memory(to_solve.mesh.patches.size(), request);

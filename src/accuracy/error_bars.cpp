@@ -1,6 +1,8 @@
 #include "patchlight/accuracy/error_bars.h"
 
+#include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace patchlight {
 
@@ -11,13 +13,15 @@ double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const
   const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
   const Eigen::ArrayXd error = area_norm(problem.reflectance * bar, area);
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
-  return (reflected > 0).select(error / reflected, 0.0).maxCoeff();
+  // Of what reflects nothing every error is infinitely large.
+  const Eigen::ArrayXd relative = (error > 0).select(error / reflected, 0.0);
+  return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : relative.maxCoeff();
 }
 
 Field solver_errors(const SolvedProblem& solved) {
   const Field& rho = solved.problem.reflectance;
   const Field& error = solved.solution.error;
-  if (error.size() == 0) return Field::Zero(rho.rows(), rho.cols());
+  if (error.size() == 0) return Field::Constant(rho.rows(), rho.cols(), std::numeric_limits<double>::infinity());
   const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
   return (rho > 0).select(of_reflecting, of_reflecting.colwise().maxCoeff().replicate(rho.rows(), 1));
 }
@@ -29,6 +33,7 @@ Eigen::ArrayXd exposure_errors(const LostShare& lost) {
 }
 
 Field dark_differences(const LostShare& lost, const SolvedProblem& solved) {
+  assert(lost.dark.size() == solved.problem.area.size());
   const Eigen::ArrayXd dark = lost.dark.array();
   const Eigen::ArrayXd share = (dark < 1).select(dark.min(0.5) / (1 - dark.min(0.5)), 0.0);
   return (solved.solution.radiosity - solved.problem.exitance).colwise() * share;

@@ -55,13 +55,15 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double 
   const double all = effects.sum();
   const double wanted = std::max(all / (factor * factor), all * (1 - bulk * (1 - left_by_a_cut)));
   std::vector<std::uint8_t> marks(order.size(), 0);
+  if (factor <= 1) return marks;
   double left = all;
   // A mesh that hardly differs costs nearly as much as one that does.
   const std::size_t least = order.size() / 20;
   std::size_t cut = 0;
   for (const std::size_t parent : order) {
-    if ((left <= wanted && cut >= least) || cut == most) break;
-    left -= effects[static_cast<Eigen::Index>(parent)] * (1 - left_by_a_cut);
+    const double effect = effects[static_cast<Eigen::Index>(parent)];
+    if ((left <= wanted && cut >= least) || cut == most || effect == 0) break;
+    left -= effect * (1 - left_by_a_cut);
     marks[parent] = 1;
     ++cut;
   }

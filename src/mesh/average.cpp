@@ -142,7 +142,8 @@ SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
     // Least squares over the patches around; without a slope across the patch.
     Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
-    for (const std::uint32_t vertex : mesh.corners[i]) {
+    const auto corners = std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
+    for (const std::uint32_t vertex : corners) {
       for (const PatchIndex j : at_vertex[vertex]) {
         if (mesh.polygon[j] != mesh.polygon[i]) continue;
         const Vector way = mesh.centroid[j] - mesh.centroid[i];

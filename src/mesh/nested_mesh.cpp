@@ -30,10 +30,8 @@ std::vector<std::uint8_t> large_patches(const PatchMesh& mesh) {
   return large;
 }
 
-}  // namespace
-
-NestedMesh nest(PatchMesh parents) {
-  Refinement refined = refine(parents, large_patches(parents));
+NestedMesh nest(PatchMesh parents, std::span<const std::uint8_t> is_cut) {
+  Refinement refined = refine(parents, is_cut);
   NestedMesh mesh{std::move(parents), std::move(refined.mesh), std::move(refined.parent), {}};
   for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
     if (i == 0 || mesh.parent[i] != mesh.parent[i - 1]) mesh.first_patch.push_back(i);
@@ -42,19 +40,33 @@ NestedMesh nest(PatchMesh parents) {
   return mesh;
 }
 
+}  // namespace
+
+NestedMesh nest(PatchMesh parents) {
+  const std::vector<std::uint8_t> large = large_patches(parents);
+  return nest(std::move(parents), large);
+}
+
 FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents) {
   Refinement parents = refine(mesh.parents, marked_parents);
   std::vector<PatchIndex> parts(mesh.parents.size(), 0);
   for (const PatchIndex parent : parents.parent) ++parts[parent];
+  const auto patches_before = [&](PatchIndex parent) {
+    const PatchRange range = mesh.patches_of(parents.parent[parent]);
+    return range.end - range.begin;
+  };
 
-  FinerMesh finer{nest(std::move(parents.mesh)), {}};
+  // What was whole stays so until it is cut; then it is a parent as others are.
+  std::vector<std::uint8_t> is_cut;
+  for (PatchIndex g = 0; g < parents.mesh.size(); ++g)
+    is_cut.push_back(parts[parents.parent[g]] > 1 || patches_before(g) > 1 ? 1 : 0);
+  FinerMesh finer{nest(std::move(parents.mesh), is_cut), {}};
   finer.place.assign(finer.mesh.patches.size(), no_patch);
   for (PatchIndex g = 0; g < finer.mesh.parents.size(); ++g) {
-    if (parts[parents.parent[g]] != 1) continue;
     const PatchRange now = finer.mesh.patches_of(g);
-    const PatchRange before = mesh.patches_of(parents.parent[g]);
-    if (now.end - now.begin != before.end - before.begin) continue;
-    for (PatchIndex k = 0; k < now.end - now.begin; ++k) finer.place[now.begin + k] = before.begin + k;
+    if (parts[parents.parent[g]] != 1 || now.end - now.begin != patches_before(g)) continue;
+    const PatchIndex first_before = mesh.first_patch[parents.parent[g]];
+    for (PatchIndex k = 0; k < now.end - now.begin; ++k) finer.place[now.begin + k] = first_before + k;
   }
   return finer;
 }

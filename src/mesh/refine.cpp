@@ -81,9 +81,10 @@ class Cutter {
     mesh.material.push_back(from.material[patch]);
     mesh.polygon.push_back(from.polygon[patch]);
     mesh.side.push_back(from.side[patch]);
+    const bool is_whole = corners == from.corners[patch];
     const PatchCorners points = mesh.corner_points(static_cast<PatchIndex>(mesh.corners.size() - 1));
-    mesh.centroid.push_back(area_centroid(points));
-    mesh.area.push_back(area_vector(points).norm());
+    mesh.centroid.push_back(is_whole ? from.centroid[patch] : area_centroid(points));
+    mesh.area.push_back(is_whole ? from.area[patch] : area_vector(points).norm());
     result_.parent.push_back(patch);
   }
 

@@ -23,7 +23,8 @@ struct ErrorBars {
   Field total() const;
 };
 
-/// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band. Patches of weight 0 do not count.
+/// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band; infinite where there is an error
+/// and no reflected light. Patches of weight 0 do not count.
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
                     const Eigen::VectorXd& weight);
 
@@ -36,7 +37,7 @@ struct SolvedProblem {
 
 /// What the sampling of form factors does to the irradiance: the root mean square over random draws of the entries'
 /// errors (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In a closed scene the draws
-/// are closed as the matrix was, so that rows keep their sums. docs/theory.md section 10. Costs some tens of
+/// are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens of
 /// applications. `raw` has the entries' errors. Where the irradiance straight from the lamps was found a second time,
 /// with other samples, `direct_difference` is how far both are apart, and the draws are of the rest of the light only.
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,

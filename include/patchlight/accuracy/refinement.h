@@ -31,7 +31,8 @@ Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& 
                                    const Eigen::VectorXd& weight);
 
 /// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
-/// per parent. Where cutting all would not suffice, those with nine tenths of the effect. At most `most` are cut.
+/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; a twentieth of all at least,
+/// unless nothing has to fall, none without an effect, and `most` at most.
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most);
 
 /// How much a change of each patch's irradiance matters to the light on the patches of `interest` (1 or 0 per patch):

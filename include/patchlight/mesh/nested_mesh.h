@@ -31,6 +31,7 @@ struct FinerMesh {
 };
 
 /// The same with finer patches where parents are marked: these are cut, with those that balance takes, see refine().
+/// A parent that stayed whole has parts of its own once it is cut.
 FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents);
 
 /// Sums over the patches of each parent.

@@ -131,7 +131,7 @@ TEST(Refine, PartsStandWhereTheirParentStood) {
       for (const Side side : {Side::front, Side::back}) {
         const PatchRange range = finer.mesh.patches_on(0, side);
         for (PatchIndex i = range.begin; i < range.end; ++i) EXPECT_EQ(finer.mesh.side[i], side);
-        EXPECT_NEAR(area_of(finer.mesh, range), area / 2, rounding) << shape.name;
+        EXPECT_NEAR(area_of(finer.mesh, range), area / 2, rounding * area) << shape.name;
       }
       mesh = finer.mesh;
     }
