@@ -71,19 +71,20 @@ TEST(ParentsToCut, AreTheMostEffectiveOnesWhenThereIsALimit) {
 }
 
 // <interest, B>_A = <psi, E>_A for the solution of B = E + R F B: the adjoint equation's reason to be. psi is solved to
-// 5 %: ||d(R psi)||_A <= 0.05 ||R (psi - interest)||_A, and psi is off by F of that, of no larger norm. A third of the
-// patches are black and another third of interest, so that psi = interest + R F psi would show.
+// 5 %: ||d(R psi)||_A <= 0.05 ||R (psi - interest)||_A, and psi is off by F of that, of no larger norm. What is of
+// interest reflects a third of what the others do, so that psi = interest + R F psi would show.
 TEST(Importance, IsReciprocal) {
   constexpr PatchIndex size = 60;
-  test::Room room = test::made_up(size, 0.8);
+  test::Room room = test::made_up(size, 0.9);
   RadiosityProblem& problem = room.problem;
-  problem.reflectance = Field::Constant(size, 1, 0.8);
+  problem.reflectance = Field::Constant(size, 1, 0.9);
   problem.exitance = Field(size, 1);
   Eigen::VectorXd interest(size);
   for (PatchIndex i = 0; i < size; ++i) {
     problem.exitance(i, 0) = 1 + std::sin(3.0 * i);
-    if (i % 3 == 1) problem.reflectance(i, 0) = 0;
     interest[i] = i % 3 == 0 ? 1 : 0;
+    if (i % 3 == 0) problem.reflectance(i, 0) = 0.3;
+    if (i % 3 == 1) problem.reflectance(i, 0) = 0.1;
   }
   const Eigen::VectorXd psi = importance(*room.transport, problem, interest);
   const Eigen::ArrayXd A = problem.area.array();
@@ -94,9 +95,8 @@ TEST(Importance, IsReciprocal) {
   const double off = 0.06 * area_norm(problem.reflectance.colwise() * (psi - interest).array(), problem.area)[0];
   const double tolerance = off * area_norm(problem.exitance, problem.area)[0];
   EXPECT_NEAR(by_importance, seen, tolerance);
-  EXPECT_LT(tolerance, 0.1 * seen);
-  // Without reflections it would be far off.
-  EXPECT_GT(seen - (A * interest.array() * E).sum(), 2 * tolerance);
+  // What is reflected is many times the tolerance.
+  EXPECT_GT(seen - (A * interest.array() * E).sum(), 5 * tolerance);
 }
 
 TEST(Importance, IsInterestWhereNothingReflects) {

@@ -7,6 +7,7 @@
 #include "support/polygon_shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <optional>
@@ -108,10 +109,13 @@ TEST(Refine, NothingMarkedChangesNothing) {
     const Refinement same = refine(mesh, std::vector<std::uint8_t>(mesh.size(), 0));
     EXPECT_EQ(same.mesh.vertices, mesh.vertices) << name;
     EXPECT_EQ(same.mesh.corners, mesh.corners) << name;
-    EXPECT_EQ(same.mesh.centroid, mesh.centroid) << name;
-    EXPECT_EQ(same.mesh.area, mesh.area) << name;
+    EXPECT_EQ(same.mesh.middles.size(), 0U) << name;
     EXPECT_EQ(same.mesh.first_patch, mesh.first_patch) << name;
-    for (PatchIndex i = 0; i < mesh.size(); ++i) EXPECT_EQ(same.parent[i], i);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      EXPECT_EQ(same.parent[i], i);
+      EXPECT_NEAR(same.mesh.area[i], mesh.area[i], rounding) << name;
+      EXPECT_LT((same.mesh.centroid[i] - mesh.centroid[i]).norm(), rounding) << name;
+    }
   }
 }
 
@@ -131,7 +135,8 @@ TEST(Refine, PartsStandWhereTheirParentStood) {
       for (const Side side : {Side::front, Side::back}) {
         const PatchRange range = finer.mesh.patches_on(0, side);
         for (PatchIndex i = range.begin; i < range.end; ++i) EXPECT_EQ(finer.mesh.side[i], side);
-        EXPECT_NEAR(area_of(finer.mesh, range), area / 2, rounding * area) << shape.name;
+        // A patch that is cut leaves each of its parts with rounding of its own.
+        EXPECT_NEAR(area_of(finer.mesh, range), area / 2, rounding * std::sqrt(finer.mesh.size())) << shape.name;
       }
       mesh = finer.mesh;
     }
