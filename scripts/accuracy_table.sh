@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # Measures what an accuracy that is asked for gives and costs in ten rooms: the table of docs/accuracy.md. Takes some
 # twenty minutes.
-# usage: scripts/accuracy_table.sh OUT [REFERENCE_PATCHES]
-# Writes OUT/rooms and OUT/accuracy.md. PATCHLIGHT_BENCHMARKS may name the folder of benchmark programs that are built
+# usage: scripts/accuracy_table.sh OUT [ACCURACIES [REFERENCE_PATCHES]]
+# ACCURACIES are percentages, 3,1 by default. Writes OUT/rooms and OUT/accuracy.md. PATCHLIGHT_BENCHMARKS may name the folder of benchmark programs that are built
 # already.
 set -euo pipefail
 if [ $# -lt 1 ]; then
-  echo "usage: scripts/accuracy_table.sh OUT [REFERENCE_PATCHES]" >&2
+  echo "usage: scripts/accuracy_table.sh OUT [ACCURACIES [REFERENCE_PATCHES]]" >&2
   exit 1
 fi
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
-patches=${2:-7000}
+accuracies=${2:-3,1}
+patches=${3:-4000}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 programs=${PATCHLIGHT_BENCHMARKS:-build/tests/benchmarks}
@@ -23,5 +24,5 @@ scripts/make_varied_rooms.py "$out/rooms"
 {
   echo "Machine: $(nproc) processors, $(grep -m1 'model name' /proc/cpuinfo | sed 's/.*: //')"
   echo
-  "$programs/benchmark_accuracy" "$patches" "$out"/rooms/*.obj
+  "$programs/benchmark_accuracy" "$patches" "$accuracies" "$out"/rooms/*.obj
 } | tee "$out/accuracy.md"

@@ -31,7 +31,11 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const Coverings coverings = find_coverings(scene, plan.sides);
   for (const Problem& problem : problems_with_overlaps(scene, coverings)) plan.notes.push_back(problem.what);
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
-  for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge)) plan.notes.push_back(std::move(note));
+  // Where patches are refined, error bars see a lamp that is close.
+  if (!refines(request)) {
+    for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
+      plan.notes.push_back(std::move(note));
+  }
 
   // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
   //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.

@@ -93,7 +93,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
     const std::size_t asked = request.patches.value_or(refines(request) ? first_patches : default_patches);
     const std::size_t least = least_patches(scene, plan.sides);
     const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
-    if (wanted > asked) plan.notes.push_back(note_on_patches(scene, asked, wanted));
+    if (wanted > asked && !nested) plan.notes.push_back(note_on_patches(scene, asked, wanted));
     // A nested mesh is made from parents with edges twice as long.
     plan.max_edge = nested ? max_edge_for(scene, plan.sides, wanted / 4) / 2 : max_edge_for(scene, plan.sides, wanted);
   }

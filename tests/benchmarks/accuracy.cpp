@@ -1,6 +1,7 @@
 // What an accuracy that is asked for gives and costs, against a far finer solution, and what the cheapest setting costs
 // that a sweep of uniform meshes finds.
-// usage: benchmark_accuracy REFERENCE_PATCHES MODEL...
+// usage: benchmark_accuracy REFERENCE_PATCHES ACCURACIES MODEL...
+// ACCURACIES are percentages, as 3,1,0.3.
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
@@ -12,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,6 @@ namespace {
 using namespace patchlight;
 using namespace patchlight::test;
 
-constexpr double asked_accuracies[] = {0.03, 0.01, 0.003};
 constexpr std::size_t uniform_meshes[] = {150, 300, 600, 1200, 2400, 4800};
 constexpr int sample_numbers[] = {4, 16};
 
@@ -97,11 +98,18 @@ void print(const std::string& name, double asked, const FinerReference& referenc
   std::fflush(stdout);
 }
 
+std::vector<double> accuracies(const std::string& percentages) {
+  std::istringstream text(percentages);
+  std::vector<double> all;
+  for (std::string one; std::getline(text, one, ',');) all.push_back(std::stod(one) / 100);
+  return all;
+}
+
 }  // namespace
 
 int main(int count, char** values) {
-  if (count < 3) {
-    std::fputs("usage: benchmark_accuracy REFERENCE_PATCHES MODEL...\n", stderr);
+  if (count < 4) {
+    std::fputs("usage: benchmark_accuracy REFERENCE_PATCHES ACCURACIES MODEL...\n", stderr);
     return 1;
   }
   const auto patches = static_cast<std::size_t>(std::strtoul(values[1], nullptr, 10));
@@ -109,12 +117,12 @@ int main(int count, char** values) {
       "| room | asked | true | stated | patches within their bar | median bar / median error | patches, samples | CPU "
       "s "
       "| cheapest uniform setting: patches, samples: CPU s | ratio |\n|---|---|---|---|---|---|---|---|---|---|");
-  for (int k = 2; k < count; ++k) {
+  for (int k = 3; k < count; ++k) {
     const Scene scene = read_scene(values[k]);
     const Simulation finer = finest(scene, patches);
     const FinerReference reference = reference_of(finer);
     const std::vector<Setting> settings = sweep(scene, reference);
-    for (const double asked : asked_accuracies)
+    for (const double asked : accuracies(values[2]))
       print(std::filesystem::path(values[k]).stem().string(), asked, reference, settings, scene);
     std::fprintf(stderr, "%s: reference of %u patches\n", values[k], finer.mesh.size());
   }
