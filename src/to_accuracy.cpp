@@ -27,7 +27,7 @@ constexpr double share_of_form_factors = 0.6;
 constexpr double share_of_solver = 0.02;
 
 // Shadow rays of a pair, more than which are not worth their time.
-constexpr int most_samples = 4096;
+constexpr int most_samples = 512;
 
 // So many meshes at most.
 constexpr int most_steps = 20;

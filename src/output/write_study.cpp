@@ -158,7 +158,7 @@ struct Picture {
 
 std::vector<Picture> pictures() {
   const auto competes = [](const StudySweep& sweep) { return sweep.competes; };
-  const auto by_samples = [](const StudySweep& sweep) { return sweep.swept == Swept::samples; };
+  const auto is_estimator = [](const StudySweep& sweep) { return !sweep.competes; };
   const auto megabytes = [](const StudySetting& setting) { return setting.matrix_bytes / 1e6; };
   const char* const error = "relative error of the patch means";
   return {{"error_by_cpu_second", "CPU seconds", error, cpu_seconds_of, &StudySetting::error,
@@ -168,7 +168,7 @@ std::vector<Picture> pictures() {
           {"display_error_by_cpu_second", "CPU seconds", "relative error of the field, constant on each patch",
            cpu_seconds_of, &StudySetting::display_error, nullptr, competes},
           {"estimators_by_cpu_second", "CPU seconds", "relative error due to the form factors alone", cpu_seconds_of,
-           &StudySetting::own_error, nullptr, by_samples}};
+           &StudySetting::own_error, nullptr, is_estimator}};
 }
 
 Curve front_of(const Study& study, const Picture& picture) {
