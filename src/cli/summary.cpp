@@ -167,7 +167,7 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
        << rounded(simulation.plan.max_edge) << " m\n";
   if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
-  if (!simulation.accuracy.empty()) text << errors(simulation) << '\n';
+  if (!simulation.accuracy.empty() && simulation.solution.converged) text << errors(simulation) << '\n';
   if (long_form && simulation.accuracy.size() > 1) text << steps_table(simulation.accuracy);
   text << energy(simulation) << '\n';
   text << seconds(simulation.costs) << '\n';

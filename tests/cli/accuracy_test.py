@@ -179,6 +179,12 @@ class AccuracyTest(ToolTest):
         self.assertAlmostEqual(float(found[1]) / 100 / report["relative_error"]["total"], 1, delta=0.05)
         self.assertIn("a.vtp", self.names())
 
+    def test_what_is_not_solved_states_no_error(self):
+        done = self.solve("--set", "white.reflectance=1", "--set", "lamp.reflectance=1", "--error-bars", "--patches", 200,
+                          "-o", "a.vtp", code=NOT_REACHED)
+        self.assertIn("warning: not solved", done.stderr)
+        self.assertNotIn("error of the patches' means", done.stdout)
+
     def test_an_accuracy_out_of_memory_is_exit_code_4_with_what_can_be_had(self):
         done = self.solve("--accuracy", "0.05%", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
         found = re.search(r"--accuracy 0.05%: found that it takes about (\d+) patches and (\S+) GB, and 0.08 GB may be "
