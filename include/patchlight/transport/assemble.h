@@ -79,7 +79,8 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
                                  const Observer& observer = {});
 
 /// The same with the automatic estimator, but pairs of patches that are both known are taken as they are: what
-/// assembling all would give. Cost and counts are those of the others; the sampling error is that of all.
+/// assembling all would give, but for rounding, as clusters differ. Standard errors of known pairs stay, the sampling
+/// error is pooled over both meshes. Cost and counts are those of the others.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const KnownEntries& known, const Observer& observer = {});
 
