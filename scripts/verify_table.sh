@@ -11,8 +11,8 @@ out=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 
-echo "| model, options | patches | paths | CPU s | z, rms | mean | chi-square | verdict |"
-echo "|---|---|---|---|---|---|---|---|"
+echo "| model, options | patches | paths | CPU s | error bars | z, rms | mean | chi-square | verdict |"
+echo "|---|---|---|---|---|---|---|---|---|"
 # row MODEL PATHS OPTIONS ...: one line; a verdict that disagrees is exit code 5.
 row() {
   local json="$out/$1_$2_${*: -1}.json"
@@ -24,15 +24,16 @@ import re, sys
 model, paths, cpu, text, options = sys.argv[1:]
 said = open(text).read()
 z, mean = re.search(r"root mean square (\S+) .*mean difference (\S+) %", said).groups()
+bars = re.search(r"the patches, (\S+) % as a whole", said)[1]
 chi, p = re.search(r"chi-square (\S+) of .* p = (\S+)", said).groups()
 patches = re.search(r"of (\d+) patches, \d+ paths", said)[1]
 verdict = f"agrees, p = {p}" if "\nagrees" in said else "disagrees"
-print(f"| {model} {options} | {patches} | {paths} | {cpu} | {z} | {mean} % | {chi} | {verdict} |")
+print(f"| {model} {options} | {patches} | {paths} | {cpu} | {bars} % | {z} | {mean} % | {chi} | {verdict} |")
 PY
 }
-row cornell_box 4096 --sides front --patches 2000
+row cornell_box 4096 --sides front
 row cornell_box 65536 --sides front --patches 16000
-row cornell_box 4096 --patches 4000
+row cornell_box 4096 --sides auto
 row two_rooms 4096 --sides front --patches 2000
-row two_rooms 4096 --sides front --patches 8000
+row two_rooms 4096 --sides front
 row two_rooms 65536 --sides front --patches 16000

@@ -62,13 +62,16 @@ bool is_forced(const Plan& plan, Effect effect) {
   });
 }
 
-// Ranges of patches that emit.
-std::vector<PatchRange> lamps_of(const RadiosityProblem& problem) {
+// Rows of lamps that are asked for at once.
+constexpr PatchIndex rows_at_once = 64;
+
+// Ranges of patches that emit, of so many at most.
+std::vector<PatchRange> lamps_of(const FieldView& exitance) {
   std::vector<PatchRange> lamps;
-  for (Eigen::Index row = 0; row < problem.exitance.rows(); ++row) {
-    if (!(problem.exitance.row(row) > 0).any()) continue;
+  for (Eigen::Index row = 0; row < exitance.rows(); ++row) {
+    if (!(exitance.row(row) > 0).any()) continue;
     const auto i = static_cast<PatchIndex>(row);
-    if (!lamps.empty() && lamps.back().end == i) {
+    if (!lamps.empty() && lamps.back().end == i && i - lamps.back().begin < rows_at_once) {
       ++lamps.back().end;
     } else {
       lamps.push_back({i, i + 1});
@@ -77,18 +80,12 @@ std::vector<PatchRange> lamps_of(const RadiosityProblem& problem) {
   return lamps;
 }
 
-// H = F E + H_direct, from the rows of the lamps alone; B = E + rho o H.
+// H = F E + H_direct; B = E + rho o H.
 Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& problem, const Observer& observer) {
   const double start = wall_seconds();
-  Field H = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
-  if (problem.direct_irradiance.size() > 0) H = problem.direct_irradiance;
-  Eigen::Index rows = 0;
-  for (const PatchRange& lamp : lamps_of(problem)) {
-    if (observer && !observer({.stage = Stage::solve})) throw Cancelled();
-    const Eigen::Index count = lamp.end - lamp.begin;
-    H += transport.shoot(lamp, problem.exitance.middleRows(lamp.begin, count));
-    rows += count;
-  }
+  Field H = irradiance_by_lamps(transport, problem.exitance, Stage::solve, observer);
+  if (problem.direct_irradiance.size() > 0) H += problem.direct_irradiance;
+  const auto rows = (problem.exitance > 0).rowwise().any().count();
   Solution solution;
   solution.radiosity = problem.exitance + problem.reflectance * H;
   solution.direct_irradiance = H;
@@ -118,18 +115,29 @@ Scene scene_as_planned(Scene scene, const Plan& plan) {
   return scene;
 }
 
-DirectIrradiance direct_irradiance_as_planned(const Scene& scene, const Coverings& coverings, const Plan& plan,
-                                              const PatchMesh& mesh, const Observer& observer) {
-  const LightingOptions options{.seed = plan.seed};
-  if (plan.lamp_colour.size() == 0) return direct_irradiance(lighting_of(scene, coverings), mesh, options, observer);
+DirectIrradiance direct_irradiance_as_planned(const Setting& setting, const Plan& plan, const PatchMesh& mesh) {
+  const auto trace = [&](const Scene& scene) {
+    return direct_irradiance(lighting_of(scene, setting.coverings), mesh, {.seed = plan.seed}, setting.observer);
+  };
+  if (plan.lamp_colour.size() == 0) return trace(setting.scene);
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
   Eigen::Index brightest = 0;
   plan.lamp_colour.maxCoeff(&brightest);
   const auto band = [brightest](const Spectrum& spectrum) { return Spectrum::Constant(1, spectrum[brightest]); };
-  const Scene one = with_spectra(scene, band);
-  const DirectIrradiance found = direct_irradiance(lighting_of(one, coverings), mesh, options, observer);
+  const DirectIrradiance found = trace(with_spectra(setting.scene, band));
   const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
   return {in_all(found.irradiance), in_all(found.standard_error)};
+}
+
+Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
+                          const Observer& observer) {
+  Field H = Field::Zero(exitance.rows(), exitance.cols());
+  for (const PatchRange& lamp : lamps_of(exitance)) {
+    if (observer && !observer({.stage = stage})) throw Cancelled();
+    const Eigen::Index count = lamp.end - lamp.begin;
+    H += transport.shoot(lamp, exitance.middleRows(lamp.begin, count));
+  }
+  return H;
 }
 
 SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {

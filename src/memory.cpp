@@ -17,6 +17,8 @@ namespace {
 // take, and the mesh, the fields and the results per patch.
 constexpr double bytes_per_pair = 2;
 constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
+constexpr double bytes_while_refining =
+    5.5;  // another matrix before closure, and at the end of a mesh that of the next
 constexpr double bytes_per_patch = 1500;
 constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
@@ -26,6 +28,8 @@ constexpr double usable_share = 0.8;
 
 double bytes_of_a_pair(const Request& request) {
   if (request.on_demand) return 0;
+  if (refines(request)) return bytes_per_pair + bytes_while_refining;
+  if (request.error_bars) return 2 * bytes_per_pair + bytes_per_error;
   return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
 }
 
@@ -37,6 +41,11 @@ double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+// The number of patches at first.
+std::size_t patches_asked(const Request& request) {
+  return request.patches.value_or(refines(request) ? first_patches : default_patches);
+}
+
 // The number of patches for which memory_needed() is this.
 double patches_in(double bytes, const Request& request) {
   const double left = std::max(0.0, bytes - bytes_of_program);
@@ -46,13 +55,19 @@ double patches_in(double bytes, const Request& request) {
   return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
 }
 
+}  // namespace
+
 std::string gigabytes(double bytes) {
   std::ostringstream text;
   text << std::setprecision(3) << bytes / 1e9 << " GB";
   return text.str();
 }
 
-}  // namespace
+double usable_memory(const Request& request) {
+  return request.memory ? *request.memory : usable_share * installed_bytes();
+}
+
+double patches_that_fit(const Request& request) { return patches_in(usable_memory(request), request); }
 
 double memory_needed(std::size_t patches, const Request& request) {
   const auto n = static_cast<double>(patches);
@@ -61,12 +76,11 @@ double memory_needed(std::size_t patches, const Request& request) {
 
 void require_memory(std::size_t patches, const Request& request) {
   const double needed = memory_needed(patches, request);
-  const double usable = request.memory ? *request.memory : usable_share * installed_bytes();
+  const double usable = usable_memory(request);
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_in(usable, request));
   // Small faces take a patch each, however few are asked for.
-  const bool too_many_faces =
-      !request.max_edge && static_cast<long>(request.patches.value_or(default_patches)) <= fitting;
+  const bool too_many_faces = !request.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
   const std::string hint =
       usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
       : too_many_faces
@@ -84,7 +98,7 @@ void require_memory(const Scene& scene, const Request& request) {
     // Too many to count are as good as the largest number.
     require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request);
   } else {
-    require_memory(request.patches.value_or(default_patches), request);
+    require_memory(patches_asked(request), request);
   }
 }
 

@@ -4,12 +4,22 @@
 #include "patchlight/scene/scene.h"
 
 #include <cstddef>
+#include <string>
 
 namespace patchlight {
 
 /// Bytes that solving takes at its peak, all in all: rather a little too many than too few. By the request: whether
 /// form factors are kept, and their standard errors, too.
 double memory_needed(std::size_t patches, const Request& request);
+
+/// Bytes that the run may take.
+double usable_memory(const Request& request);
+
+/// The largest number of patches for which memory_needed() is usable.
+double patches_that_fit(const Request& request);
+
+/// For messages: "1.25 GB".
+std::string gigabytes(double bytes);
 
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.

@@ -1,23 +1,18 @@
 #include "patchlight/simulate.h"
 
 #include "patchlight/base/parallel.h"
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/plan/close_lamps.h"
-#include "patchlight/solve/energy.h"
-#include "patchlight/transport/dense.h"
-#include "patchlight/transport/on_demand.h"
-#include "patchlight/transport/ray_rate.h"
 #include "patchlight/visibility/occluder.h"
 
 #include "effects.h"
+#include "interest.h"
 #include "memory.h"
-#include "problem_of.h"
+#include "solve_mesh.h"
 #include "stage_clock.h"
+#include "to_accuracy.h"
 
 #include <cassert>
-#include <limits>
-#include <memory>
 #include <utility>
 
 namespace patchlight {
@@ -25,72 +20,33 @@ namespace patchlight {
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
   const ThreadLimit threads(request.threads);
   StageClock clock;
-  Simulation result;
 
-  // 1. Decide which sides take part, how finely they are subdivided, and how form factors and radiosities are found.
+  // 1. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
+  //    how form factors and radiosities are found.
   require_memory(scene, request);
-  result.plan = make_plan(scene, request);
-  const Plan& plan = result.plan;
-  assert(!request.on_demand || !with.exchange);
-  if (with.exchange) result.plan.on_demand = false;
+  require_names(scene, request.interest);
+  Plan plan = make_plan(scene, request);
+  assert(!with.exchange || (!request.on_demand && !plan.error_bars));
+  assert(!with.mesh || !plan.error_bars);
+  if (with.exchange) plan.on_demand = false;
   const Scene lit = scene_as_planned(scene, plan);
+  clock.finish(Stage::plan);
 
-  // 2. Subdivide the kept sides of the polygons into patches.
-  result.mesh = tessellate(scene, plan.sides, plan.max_edge);
-  const PatchMesh& mesh = result.mesh;
-  require_memory(mesh.size(), request);
-  clock.finish(Stage::mesh);
-
-  // 3. Exchange areas S_ij = A_i F_ij of all pairs, with visibility from shadow rays, unless their rows are computed on
-  //    demand; and the share of each patch's hemisphere from which no patch is seen.
+  // 2. What stands between patches, and what lies on them.
   const Coverings coverings = find_coverings(scene, plan.sides);
-  for (const Problem& problem : problems_with_overlaps(scene, coverings)) result.plan.notes.push_back(problem.what);
+  for (const Problem& problem : problems_with_overlaps(scene, coverings)) plan.notes.push_back(problem.what);
   const Occluder occluder(scene, blockers_of(plan), coverings);
-  for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
-    result.plan.notes.push_back(std::move(note));
-  const auto find = plan.on_demand ? exchange_on_demand : trace_exchange;
-  Exchange exchange = with.exchange ? with.exchange(mesh)
-                                    : find(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
-  const Eigen::VectorXd area = exchange.area;
-  TransportFacts& facts = result.transport;
-  facts = {.raw_row_sum = exchange.raw_row_sum,
-           .row_sum = {},
-           .lost = exchange.lost,
-           .counts = exchange.counts,
-           .error = exchange.error,
-           .closure = exchange.closure};
-  if (!with.exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
-  clock.finish(Stage::form_factors);
-
-  // 4. Closure: each row sums up to what its patch sees.
-  std::unique_ptr<RowTransport> transport;
-  if (plan.on_demand) {
-    transport = on_demand_transport(mesh, occluder, assembly_options(plan), area);
-  } else {
-    ClosedExchangeAreas closed = plan.close ? close_exchange(std::move(exchange), observer)
-                                            : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
-    facts.closure = closed.method;
-    transport = dense_transport(std::move(closed), area);
-    facts.row_sum = transport->apply(Field::Ones(mesh.size(), 1)).matrix();
-  }
-  clock.finish(Stage::closure);
-
-  // 5. Light of luminaires, sun and sky where it first arrives.
-  result.problem = problem_of(lit, mesh, area, plan.sides.emit_from_back);
-  if (has_point_or_daylight(lit)) {
-    DirectIrradiance direct = direct_irradiance_as_planned(lit, coverings, plan, mesh, observer);
-    result.problem.direct_irradiance = std::move(direct.irradiance);
-    result.direct_standard_error = std::move(direct.standard_error);
-    clock.finish(Stage::direct_light);
+  // Where patches are refined, error bars see a lamp that is close.
+  if (!refines(request)) {
+    for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
+      plan.notes.push_back(std::move(note));
   }
 
-  // 6. Solve B = E + rho o (F B + H_direct), and see where the light went.
-  SolverOptions options = plan.solver;
-  options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
-  result.solution = solver_as_planned(with.solve, plan)(*transport, result.problem, options, observer);
-  result.balance = energy_balance(result.problem, result.solution,
-                                  plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
-  clock.finish(Stage::solve);
+  // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
+  //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.
+  const Setting setting{lit, coverings, occluder, with, observer};
+  Simulation result = refines(request) ? solve_to_accuracy(setting, request, plan, clock).simulation
+                                       : solve_mesh(setting, request, plan, clock).simulation;
   result.costs = clock.costs();
   return result;
 }

@@ -3,16 +3,20 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/simulate.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace patchlight {
 
-/// Notes what each stage costs.
+/// Notes what each stage costs, all its rounds together.
 class StageClock {
  public:
   /// Ends a stage; the next one begins.
   void finish(Stage stage) {
-    costs_.push_back({stage, wall_seconds() - wall_, cpu_seconds() - cpu_});
+    auto of_stage = std::find_if(costs_.begin(), costs_.end(), [&](const StageCost& c) { return c.stage == stage; });
+    if (of_stage == costs_.end()) of_stage = costs_.insert(of_stage, {stage, 0, 0});
+    of_stage->seconds += wall_seconds() - wall_;
+    of_stage->cpu_seconds += cpu_seconds() - cpu_;
     wall_ = wall_seconds();
     cpu_ = cpu_seconds();
   }

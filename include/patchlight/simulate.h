@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/accuracy/error_bars.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
@@ -8,6 +9,7 @@
 #include "patchlight/transport/exchange.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,20 @@ struct TransportFacts {
   std::string closure;              ///< which method closed the rows
 };
 
+/// One of the meshes on the way to an accuracy, and what it gave; relative errors as relative_bar() has them.
+struct AccuracyStep {
+  PatchIndex patches = 0;
+  PatchIndex new_patches = 0;  ///< those not in the mesh before
+  int samples = 0;             ///< Plan::samples
+  double mesh = 0;
+  double form_factor = 0;
+  double solver = 0;
+  double total = 0;    ///< the three in quadrature
+  double display = 0;  ///< of the radiosity at the points of patches, which are drawn with their means
+  double seconds = 0;  ///< since the start
+  double cpu_seconds = 0;
+};
+
 /// A solved scene.
 struct Simulation {
   Plan plan;
@@ -39,6 +55,8 @@ struct Simulation {
   RadiosityProblem problem;
   Solution solution;
   EnergyBalance balance;
+  std::optional<ErrorBars> error_bars;  ///< when asked for
+  std::vector<AccuracyStep> accuracy;   ///< with error bars: every mesh, the last one is this one
   std::vector<StageCost> costs;
   Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };
@@ -46,14 +64,22 @@ struct Simulation {
 /// The exchange between the patches of a mesh where it is known already.
 using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 
+/// The mesh where it is known already.
+using MeshOf = std::function<PatchMesh()>;
+
 /// What finds the solution; solve() is one.
 using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
                                          const SolverOptions& options, const Observer& observer)>;
+
+/// Told of every mesh on the way to an accuracy.
+using LookAt = std::function<void(const Simulation& simulation)>;
 
 /// Steps of simulate() that may be done otherwise.
 struct Steps {
   ExchangeOf exchange = {};  ///< empty: form factors are computed
   SolveWith solve = patchlight::solve;
+  LookAt look = {};
+  MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
 };
 
 /// From a scene to converged radiosities: the whole program.

@@ -6,6 +6,8 @@ const char* name_of(Stage stage) {
   switch (stage) {
     case Stage::read:
       return "read";
+    case Stage::plan:
+      return "plan";
     case Stage::mesh:
       return "mesh";
     case Stage::form_factors:
@@ -16,6 +18,8 @@ const char* name_of(Stage stage) {
       return "direct light";
     case Stage::solve:
       return "solve";
+    case Stage::error_bars:
+      return "error bars";
     case Stage::gather:
       return "gather";
     case Stage::trace_paths:

@@ -10,6 +10,7 @@
 #include "cli/plan_options.h"
 #include "cli/relight_options.h"
 #include "cli/solve_options.h"
+#include "cli/study_options.h"
 #include "cli/validate_options.h"
 #include "cli/verify_options.h"
 
@@ -21,8 +22,9 @@ namespace patchlight::cli {
 namespace {
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 good, 1 usage, 2 input, 3 not converged (results are written), 4 out of memory,\n"
-    "5 a validation or verification failed, 6 output cannot be written, 70 internal error, 130 interrupted.";
+    "Exit codes: 0 good, 1 usage, 2 input, 3 not converged or not as accurate as asked (results are\n"
+    "written), 4 out of memory, 5 a validation or verification failed, 6 output cannot be written,\n"
+    "70 internal error, 130 interrupted.";
 
 // ": did you mean --max-edge?" when an option is at most two letters away, nothing otherwise.
 std::string near_option(const CLI::App& command, const std::string& unknown) {
@@ -103,6 +105,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
   const std::shared_ptr<CompareCommandOptions> compare_options = add_compare(tool);
+  const std::shared_ptr<StudyCommandOptions> study_options = add_study(tool);
   const std::shared_ptr<VerifyCommandOptions> verify_options = add_verify(tool);
   const std::shared_ptr<ValidateOptions> validate_options = add_validate(tool);
   tool.allow_extras();
@@ -127,6 +130,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     }
     if (command.get_name() == "compare") {
       CompareArguments arguments = finish_compare(*compare_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
+    if (command.get_name() == "study") {
+      StudyArguments arguments = finish_study(*study_options);
       arguments.command_line = joined(count, values);
       return arguments;
     }

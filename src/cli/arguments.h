@@ -5,6 +5,7 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/study/compare.h"
+#include "patchlight/study/study.h"
 #include "patchlight/study/verify.h"
 
 #include "cli/messages.h"
@@ -92,8 +93,16 @@ struct CompareArguments {
   std::string command_line;  ///< for the record
 };
 
-/// The relative standard error that `patchlight verify` grants an irradiance.
-inline constexpr double default_bar = 0.02;
+/// What `patchlight study` is asked to do.
+struct StudyArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  Request request;
+  StudyOptions options;
+  std::filesystem::path output;  ///< a folder
+  bool quiet = false;
+  std::string command_line;  ///< for the record
+};
 
 /// What `patchlight verify` is asked to do.
 struct VerifyArguments {
@@ -101,7 +110,7 @@ struct VerifyArguments {
   ReadOptions read;
   Request request;
   VerifyOptions options;
-  double bar = default_bar;
+  std::optional<double> bar;   ///< the relative standard error that every irradiance is granted; none: its error bars
   std::filesystem::path json;  ///< .json; empty when it is not wanted
   std::string command_line;    ///< for the record
 };
@@ -119,7 +128,7 @@ struct Information {
 };
 
 using Arguments = std::variant<Information, SolveArguments, CheckArguments, PlanArguments, FormFactorArguments,
-                               CompareArguments, VerifyArguments, ValidateArguments>;
+                               CompareArguments, StudyArguments, VerifyArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -9,6 +9,7 @@
 #include "cli/messages.h"
 #include "cli/plan.h"
 #include "cli/solve.h"
+#include "cli/study.h"
 #include "cli/validate.h"
 #include "cli/verify.h"
 
@@ -33,6 +34,7 @@ ExitCode run(int count, const char* const* values) {
   if (const auto* to_plan = std::get_if<PlanArguments>(&arguments)) return plan(*to_plan);
   if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
   if (const auto* to_compare = std::get_if<CompareArguments>(&arguments)) return compare(*to_compare);
+  if (const auto* to_study = std::get_if<StudyArguments>(&arguments)) return study(*to_study);
   if (const auto* to_verify = std::get_if<VerifyArguments>(&arguments)) return verify(*to_verify);
   if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
     return validate(*to_validate, validation_cases());

@@ -4,8 +4,26 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 namespace patchlight::cli {
+namespace {
+
+// What a unit is called, and how much it is.
+using Unit = std::pair<const char*, double>;
+
+// A number above 0 times the unit that follows it; nothing when there is no such unit.
+std::optional<double> quantity(const std::string& text, std::span<const Unit> units) {
+  const std::size_t end = text.find_last_of("0123456789.") + 1;
+  const std::size_t begin = std::min(text.find_first_not_of(' ', end), text.size());
+  const std::optional<double> value = to_number(text.substr(0, end));
+  for (const auto& [unit, size] : units) {
+    if (value && *value > 0 && text.substr(begin) == unit) return *value * size;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<double> to_number(const std::string& text) {
   double value = 0;
@@ -50,21 +68,32 @@ std::uint64_t whole_number(const std::string& option, const std::string& text, s
 }
 
 double bytes(const std::string& option, const std::string& text) {
-  constexpr std::array<std::pair<const char*, double>, 8> units = {{{"", 1},
-                                                                    {"B", 1},
-                                                                    {"kB", 1e3},
-                                                                    {"MB", 1e6},
-                                                                    {"GB", 1e9},
-                                                                    {"TB", 1e12},
-                                                                    {"MiB", 1024.0 * 1024},
-                                                                    {"GiB", 1024.0 * 1024 * 1024}}};
-  const std::size_t end = text.find_last_of("0123456789.") + 1;
-  const std::size_t begin = std::min(text.find_first_not_of(' ', end), text.size());
-  const std::optional<double> value = to_number(text.substr(0, end));
-  for (const auto& [unit, size] : units) {
-    if (value && *value > 0 && text.substr(begin) == unit) return *value * size;
-  }
+  constexpr std::array<Unit, 8> units = {{{"", 1},
+                                          {"B", 1},
+                                          {"kB", 1e3},
+                                          {"MB", 1e6},
+                                          {"GB", 1e9},
+                                          {"TB", 1e12},
+                                          {"MiB", 1024.0 * 1024},
+                                          {"GiB", 1024.0 * 1024 * 1024}}};
+  if (const std::optional<double> value = quantity(text, units)) return *value;
   throw refusal(option, text, "a size above 0 such as 2GB, 512MiB or '2 GB'; units: B, kB, MB, GB, TB, MiB, GiB");
+}
+
+double seconds(const std::string& option, const std::string& text) {
+  constexpr std::array<Unit, 3> units = {{{"s", 1}, {"min", 60}, {"h", 3600}}};
+  if (const std::optional<double> value = quantity(text, units)) return *value;
+  throw refusal(option, text, "a time above 0 such as 30s, 2min or '1 h'; units: s, min, h");
+}
+
+double relative_error(const std::string& option, const std::string& text) {
+  const bool percent = text.ends_with('%');
+  const std::size_t end = percent ? text.find_last_not_of(" %") + 1 : text.size();
+  const bool once = std::count(text.begin(), text.end(), '%') <= 1;
+  const std::optional<double> value = to_number(text.substr(0, end));
+  const double error = value ? *value / (percent ? 100 : 1) : 0;
+  if (once && error > 0 && error < 1) return error;
+  throw refusal(option, text, "an error above 0 and below 100%, such as 1% or 0.01");
 }
 
 double share(const std::string& option, const std::string& text) {

@@ -33,6 +33,12 @@ double bytes(const std::string& option, const std::string& text);
 /// The value of an option as a share above 0, as 0.05 for 5%. \throws UsageError.
 double share(const std::string& option, const std::string& text);
 
+/// The value of an option as a relative error above 0 and below 1: 0.01 for 1% and for 0.01. \throws UsageError.
+double relative_error(const std::string& option, const std::string& text);
+
+/// The value of an option as a time above 0 in seconds, as in 30s, 2 min or 1h. \throws UsageError.
+double seconds(const std::string& option, const std::string& text);
+
 /// The value of an option as a point X,Y,Z. \throws UsageError.
 Point point(const std::string& option, const std::string& text);
 

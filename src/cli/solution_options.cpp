@@ -120,6 +120,19 @@ path default_points_output(const SolveArguments& arguments) {
   return beside.parent_path() / (name.stem().string() + ".irradiance.csv");
 }
 
+void add_points_options(CLI::App& command, SolutionOptions& options) {
+  add_file(command, "--points", options.points,
+           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
+           "receiving side");
+  command
+      .add_option("--points-output", options.points_outputs,
+                  "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), or for "
+                  "ParaView (.vtp); may be repeated;\ndefault: the points file's or scene's name with "
+                  ".irradiance.csv, in\nthe folder of -o, else in the current one")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
+}
+
 }  // namespace
 
 void add_up_option(CLI::App& command, SolutionOptions& options) {
@@ -165,16 +178,7 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
         if (text.empty()) throw refusal("--view", text, "the name of a camera");
         options.view = text;
       });
-  add_file(command, "--points", options.points,
-           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
-           "receiving side");
-  command
-      .add_option("--points-output", options.points_outputs,
-                  "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), or for "
-                  "ParaView (.vtp); may be repeated;\ndefault: the points file's or scene's name with "
-                  ".irradiance.csv, in\nthe folder of -o, else in the current one")
-      ->allow_extra_args(false)
-      ->option_text("FILE");
+  add_points_options(command, options);
 }
 
 void add_solver_options(CLI::App& command, SolutionOptions& options) {

@@ -94,8 +94,11 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 2. Solve
   const auto keep_iterates = [&](const Progress& progress) {
-    if (progress.irradiance && !arguments.series.empty())
+    if (progress.irradiance && !arguments.series.empty()) {
+      // A finer mesh begins anew.
+      if (progress.iteration->number == 0) results.iterates.clear();
       results.iterates.emplace_back(progress.irradiance->cast<float>());
+    }
     return observer(progress);
   };
   simulation = simulate(results.scene, input.request, keep_iterates, {.exchange = input.exchange});
@@ -163,8 +166,12 @@ ExitCode solve(const SolveArguments& arguments) {
     std::cout << sensor_summary(results.scene, results.readings);
     std::cout << files_line(written) << std::flush;
   }
-  if (results.simulation.solution.converged) return good;
-  print_message("warning", explain_not_converged(results.simulation));
+  if (!results.simulation.solution.converged) {
+    print_message("warning", explain_not_converged(results.simulation));
+    return not_converged;
+  }
+  if (is_accurate(results.simulation)) return good;
+  print_message("warning", explain_not_accurate(results.simulation));
   return not_converged;
 }
 

@@ -1,5 +1,6 @@
 #include "cli/solve_options.h"
 
+#include "cli/accuracy_options.h"
 #include "cli/add_option.h"
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
@@ -44,6 +45,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   add_sides_option(command, to.mesh);
   add_output_options(command, to.solution);
   add_patch_options(command, to.mesh);
+  add_accuracy_options(command, to.mesh.request);
   add(command, "--form-factors", "FOLDER",
       "what patchlight form-factors has written for this model:\ntaken from there, with the options of then; "
       "default:\ncomputed",
@@ -75,6 +77,7 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments = with_solution(std::move(arguments), "solve", options.solution);
   require_solver_of_rows(arguments);
   require_consistent_effects(arguments.request);
+  require_error_bars_possible(arguments.request, arguments.form_factors.string());
   return arguments;
 }
 

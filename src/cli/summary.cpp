@@ -33,6 +33,30 @@ std::string convergence(const Plan& plan, const Solution& solution) {
   return text.str();
 }
 
+std::string percent(double share, int digits = 2) { return rounded(100 * share, digits); }
+
+// How far off the patches' means may be, and what is drawn with them.
+std::string errors(const Simulation& simulation) {
+  const AccuracyStep& step = simulation.accuracy.back();
+  std::string on;
+  for (const std::string& name : simulation.plan.interest) on += (on.empty() ? " on " : ", ") + name;
+  return "error of the patches' means" + on + " about " + percent(step.total) + " %: mesh " + percent(step.mesh) +
+         ", form factors " + percent(step.form_factor) + ", solver " + percent(step.solver, 1) +
+         "; drawn with one value a patch " + percent(step.display) + " %";
+}
+
+// The meshes on the way to an accuracy.
+std::string steps_table(const std::vector<AccuracyStep>& steps) {
+  std::vector<TextRow> rows{
+      {"patches", "of these new", "samples", "mesh %", "form factors %", "solver %", "total %", "s", "CPU s"}};
+  for (const AccuracyStep& step : steps) {
+    rows.push_back({std::to_string(step.patches), std::to_string(step.new_patches), std::to_string(step.samples),
+                    percent(step.mesh), percent(step.form_factor), percent(step.solver), percent(step.total),
+                    rounded(step.seconds), rounded(step.cpu_seconds)});
+  }
+  return text_table(rows);
+}
+
 std::string energy(const Simulation& simulation) {
   const EnergyBalance& balance = simulation.balance;
   const bool row_sums_known = simulation.transport.row_sum.size() > 0;
@@ -155,6 +179,8 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
   text << effects_line(simulation.plan.decisions);
   if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
+  if (!simulation.accuracy.empty() && simulation.solution.converged) text << errors(simulation) << '\n';
+  if (long_form && simulation.accuracy.size() > 1) text << steps_table(simulation.accuracy);
   text << energy(simulation) << '\n';
   text << seconds(simulation.costs) << '\n';
   return text.str();
@@ -164,6 +190,21 @@ std::string files_line(const std::vector<std::filesystem::path>& files) {
   std::string line;
   for (const std::filesystem::path& file : files) line += (line.empty() ? "wrote " : ", ") + file.string();
   return line + '\n';
+}
+
+bool is_accurate(const Simulation& simulation) {
+  const std::optional<double>& asked = simulation.plan.accuracy;
+  return !asked || (!simulation.accuracy.empty() && simulation.accuracy.back().total <= *asked);
+}
+
+std::string explain_not_accurate(const Simulation& simulation) {
+  const AccuracyStep& step = simulation.accuracy.back();
+  const bool by_mesh = step.mesh >= step.form_factor;
+  std::string text = "accuracy of " + percent(*simulation.plan.accuracy, 3) + " % NOT reached: the error is about " +
+                     percent(step.total) + " % after " + rounded(step.seconds) + " s; most of it is from the " +
+                     (by_mesh ? "size of the patches" : "sampling of form factors") + ". ";
+  if (simulation.plan.seconds) return text + "Give a longer --time";
+  return text + (by_mesh ? "Begin with more --patches" : "Begin with more --samples");
 }
 
 std::string explain_not_converged(const Simulation& simulation) {

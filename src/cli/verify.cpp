@@ -72,15 +72,24 @@ double root_mean_square(const Field& values) {
   return std::sqrt(squares.sum() / static_cast<double>(std::max<Eigen::Index>(1, values.isFinite().count())));
 }
 
-std::string verdict(const Verification& verification, double bar) {
+// What the irradiances are granted.
+std::string bars(const std::optional<double>& bar, const Simulation& simulation) {
+  if (bar) return "a bar of " + rounded(100 * *bar) + " % of the irradiance, or of its mean where that is larger";
+  const AccuracyStep& errors = simulation.accuracy.back();
+  return "the error bars of the patches, " + rounded(100 * errors.total, 2) + " % as a whole (mesh " +
+         rounded(100 * errors.mesh, 2) + ", form factors " + rounded(100 * errors.form_factor, 2) + ", solver " +
+         rounded(100 * errors.solver, 1) + ")";
+}
+
+std::string verdict(const Verification& verification, const std::string& granted) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
        << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
        << rounded(100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1), 3) << " %\n"
-       << (verification.agrees ? "agrees" : "DISAGREES") << ": with a bar of " << 100 * bar
-       << " % of the irradiance, or of its mean where that is larger, chi-square " << verification.chi_square.maxCoeff()
-       << " of " << verification.patches.size() << " patches in the worst band, p = " << verification.probability
-       << (verification.agrees ? " >= " : " < ") << least_probability << "\n";
+       << (verification.agrees ? "agrees" : "DISAGREES") << ": with " << granted << ", chi-square "
+       << verification.chi_square.maxCoeff() << " of " << verification.patches.size()
+       << " patches in the worst band, p = " << verification.probability << (verification.agrees ? " >= " : " < ")
+       << least_probability << "\n";
   return text.str();
 }
 
@@ -107,8 +116,8 @@ ExitCode verify(const VerifyArguments& arguments) {
 
   // 2. Trace paths, and compare
   const double begin = wall_seconds();
-  const Verification verification =
-      patchlight::verify(scene, simulation, irradiance_bar(simulation, arguments.bar), arguments.options, observer);
+  const Field bar = arguments.bar ? irradiance_bar(simulation, *arguments.bar) : simulation.error_bars->total();
+  const Verification verification = patchlight::verify(scene, simulation, bar, arguments.options, observer);
   const double seconds = wall_seconds() - begin;
   line.hide();
   const WritingGuard guard;
@@ -120,7 +129,7 @@ ExitCode verify(const VerifyArguments& arguments) {
             << " of " << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
             << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
             << " s; irradiance in W/m^2\n"
-            << verdict(verification, arguments.bar) << std::flush;
+            << verdict(verification, bars(arguments.bar, simulation)) << std::flush;
   return verification.agrees ? good : validation_failed;
 }
 

@@ -13,7 +13,7 @@ struct VerifyCommandOptions {
   ModelOptions model;
   MeshOptions mesh;
   VerifyOptions verify;
-  double bar = default_bar;
+  std::optional<double> bar;
   std::string json;
 };
 
@@ -31,9 +31,8 @@ void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
         options.verify.checked = whole_number("--checked", text, 1, 1'000'000'000);
       });
   add(command, "--bar", "PERCENT",
-      "standard error that each patch's irradiance is granted for patch\nsize and form factors, in percent of it, or "
-      "of "
-      "the mean where that\nis larger; default 2%",
+      "standard error that each patch's irradiance is granted instead of\nits error bars, in percent of it, or of the "
+      "mean where that is\nlarger, e.g. 2%; default: error bars from mesh, form factors and\nsolver",
       [&options](const std::string& text) {
         const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
         const auto inside = [](double x) { return x >= 0 && x <= 100; };
@@ -72,6 +71,10 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.options = options.verify;
   arguments.options.seed = arguments.request.seed;
   arguments.bar = options.bar;
+  arguments.request.error_bars = !options.bar;
+  if (!options.bar && arguments.request.estimator != Estimator::automatic) {
+    throw UsageError("--estimator leaves the error bars unknown; give --bar PERCENT with it");
+  }
   arguments.json = options.json;
   return arguments;
 }

@@ -31,12 +31,41 @@ Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& moments) {
   return smallest_gap > ambiguity * values.sum() ? solver.eigenvectors() : Eigen::Matrix3d::Identity();
 }
 
+// Calls use(A, B, C) for the triangles of a patch.
+template <typename Use>
+void for_triangles(const PatchMesh& mesh, PatchIndex patch, Use use) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  for (std::size_t k = 2; k < static_cast<std::size_t>(corners.count); ++k)
+    use(corners.points[0], corners.points[k - 1], corners.points[k]);
+}
+
+double triangle_area(const Point& a, const Point& b, const Point& c) { return (b - a).cross(c - a).norm() / 2; }
+
+// The integral of x x^T over a triangle.
+Eigen::Matrix3d second_moments(const Vector& a, const Vector& b, const Vector& c) {
+  const Vector sum = a + b + c;
+  return triangle_area(a, b, c) / 12 *
+         (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+}
+
+// The integral over a triangle of the cube of each coordinate: a tenth of the area times the sum of all ten products of
+// three of its values at the corners.
+Vector third_moments(const Vector& a, const Vector& b, const Vector& c) {
+  const Eigen::Array3d x = a.array(), y = b.array(), z = c.array();
+  const Eigen::Array3d products =
+      x.cube() + y.cube() + z.cube() + x.square() * (y + z) + y.square() * (x + z) + z.square() * (x + y) + x * y * z;
+  return triangle_area(a, b, c) / 10 * products.matrix();
+}
+
 // Each axis points to the side of its third moment, or if that vanishes to the side of its largest coordinate.
 Eigen::Matrix3d oriented(Eigen::Matrix3d axes, const Point& centre, double size, const PatchMesh& mesh) {
   Vector third = Vector::Zero();
   double total = 0;
+  const auto local = [&](const Point& point) -> Vector { return axes.transpose() * (point - centre); };
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    third += mesh.area[i] * (axes.transpose() * (mesh.centroid[i] - centre)).array().cube().matrix();
+    for_triangles(mesh, i, [&](const Point& a, const Point& b, const Point& c) {
+      third += third_moments(local(a), local(b), local(c));
+    });
     total += mesh.area[i];
   }
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -49,8 +78,8 @@ Eigen::Matrix3d oriented(Eigen::Matrix3d axes, const Point& centre, double size,
   return axes;
 }
 
+// By moments of the surfaces, not of the patches' centroids: however they are cut, it stays.
 Frame scene_frame(const PatchMesh& mesh) {
-  // Centroid and second moments by area.
   double total = 0;
   Vector sum = Vector::Zero();
   const Point origin = mesh.centroid[0];
@@ -61,8 +90,9 @@ Frame scene_frame(const PatchMesh& mesh) {
   const Point centre = origin + sum / total;
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const Vector offset = mesh.centroid[i] - centre;
-    moments += mesh.area[i] / total * offset * offset.transpose();
+    for_triangles(mesh, i, [&](const Point& a, const Point& b, const Point& c) {
+      moments += second_moments(a - centre, b - centre, c - centre) / total;
+    });
   }
   const double size = std::sqrt(moments.trace());
   return {centre, oriented(principal_axes(moments), centre, size, mesh), size};

@@ -2,6 +2,7 @@
 
 #include "input/toml_value.h"
 
+#include <algorithm>
 #include <sstream>
 #include <toml++/toml.h>
 
@@ -28,7 +29,11 @@ std::string description(const toml::node& node) {
     return "a list of " + std::to_string(list->size()) + (list->size() == 1 ? " value" : " values");
   }
   if (node.is_table()) return "a table";
-  if (const auto* const word = node.as_string()) return std::string("'").append(word->get()).append("'");
+  if (const auto* const word = node.as_string()) {
+    std::string quoted = std::string("'").append(word->get()).append("'");
+    std::replace(quoted.begin(), quoted.end(), '\n', ' ');  // messages are one line
+    return quoted;
+  }
   std::ostringstream text;
   node.visit([&text](const auto& value) {
     if constexpr (toml::is_value<decltype(value)>) text << value.get();

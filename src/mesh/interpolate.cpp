@@ -2,9 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace patchlight {
 namespace {
+
+// The middles of edges that are those of a patch still, in the order of the cuts.
+std::vector<Middle> hanging(const PatchMesh& mesh) {
+  if (mesh.middles.empty()) return {};
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& c : mesh.corners) {
+    for (std::size_t k = 0; k < 4; ++k) edges.insert(std::minmax(c[k], c[(k + 1) % 4]));
+  }
+  std::vector<Middle> found;
+  for (const Middle& middle : mesh.middles) {
+    if (edges.contains(std::minmax(middle.ends[0], middle.ends[1]))) found.push_back(middle);
+  }
+  return found;
+}
 
 using Weights = std::array<double, 4>;
 
@@ -54,6 +70,10 @@ Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const C
   for (std::size_t vertex = 0; vertex < total.size(); ++vertex) {
     if (total[vertex] > 0) sum.row(static_cast<Eigen::Index>(vertex)) /= total[vertex];
   }
+  // On the edge of a patch that was not cut a value between those at the edge's ends, as it has there itself. The ends
+  // may hang on longer edges; these have been cut before.
+  for (const Middle& middle : hanging(mesh))
+    sum.row(middle.vertex) = (sum.row(middle.ends[0]) + sum.row(middle.ends[1])) / 2;
   return sum;
 }
 

@@ -2,6 +2,7 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "output/accuracy_json.h"
 #include "output/decisions_part.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
@@ -61,6 +62,10 @@ Json request_part(const Request& request) {
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
+  part["error_bars"] = request.error_bars;
+  part["accuracy"] = json_of(request.accuracy);
+  part["time_s"] = json_of(request.seconds);
+  part["interest"] = request.interest;
   part["force"] = names_of(request.force);
   part["skip"] = names_of(request.skip);
   return part;
@@ -282,6 +287,8 @@ void write_report(const std::filesystem::path& file, const Run& run) {
   report["transport"] = transport_part(run.scene, simulation);
   report["energy_balance"] = energy_part(simulation.balance, simulation.transport.row_sum.size() > 0);
   report["solution"] = solution_part(simulation);
+  report["relative_error"] = relative_errors(simulation);
+  report["accuracy"] = accuracy_steps(simulation);
   report["costs"] = costs_part(simulation.costs);
   report["memory_peak_bytes"] = memory_peak_bytes();
   report["exposure"] = run.provenance.exposure;

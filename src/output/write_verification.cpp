@@ -1,5 +1,6 @@
 #include "patchlight/output/write_verification.h"
 
+#include "output/accuracy_json.h"
 #include "output/write_bytes.h"
 
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["agrees"] = verification.agrees;
   json["probability"] = verification.probability;
   json["least_probability"] = least_probability;
+  json["relative_error"] = relative_errors(simulation);
   json["chi_square"] = list(verification.chi_square);
   json["patches"] = mesh.size();
   json["paths_per_patch"] = verification.paths.paths;

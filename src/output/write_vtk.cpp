@@ -17,7 +17,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 16> units = {
+constexpr std::array<std::array<const char*, 2>, 21> units = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -32,8 +32,31 @@ constexpr std::array<std::array<const char*, 2>, 16> units = {
      {"row_sum", "1"},
      {"raw_row_sum", "1"},
      {"rgb", "sRGB, 8 bits, at the recorded exposure"},
+     {"error_mesh", "W/(m^2 sr)"},
+     {"error_form_factor", "W/(m^2 sr)"},
      {"error_solver", "W/(m^2 sr)"},
+     {"error_total", "W/(m^2 sr)"},
+     {"display_error", "W/(m^2 sr)"},
+     {"error_irradiance", "W/m^2"},
      {"radiance_smooth", "W/(m^2 sr)"}}};
+
+// How far the radiance may be off, by where it comes from; of the solver alone where that is all that is known.
+void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
+  if (!simulation.error_bars) {
+    const Field& of_solver = simulation.solution.error;
+    if (of_solver.size() > 0) cell_data.AddArray(floats("error_solver", of_solver / std::numbers::pi));
+    return;
+  }
+  const ErrorBars& bars = *simulation.error_bars;
+  const Field total = bars.total();
+  const Field per_irradiance = simulation.problem.reflectance / std::numbers::pi;  // dL = rho dH / pi
+  cell_data.AddArray(floats("error_mesh", per_irradiance * bars.mesh));
+  cell_data.AddArray(floats("error_form_factor", per_irradiance * bars.form_factor));
+  cell_data.AddArray(floats("error_solver", per_irradiance * bars.solver));
+  cell_data.AddArray(floats("error_total", per_irradiance * total));
+  cell_data.AddArray(floats("display_error", per_irradiance * bars.display));
+  cell_data.AddArray(floats("error_irradiance", total));
+}
 
 void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
   const PatchMesh& mesh = simulation.mesh;
@@ -50,9 +73,7 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   cell_data.AddArray(floats("direct_irradiance", H_direct));
   // Rounding may make the difference slightly negative.
   cell_data.AddArray(floats("indirect_irradiance", (H - H_direct).max(0.0)));
-  if (simulation.solution.error.size() > 0) {
-    cell_data.AddArray(floats("error_solver", simulation.solution.error / std::numbers::pi));
-  }
+  add_errors(cell_data, simulation);
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
   cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
   cell_data.AddArray(floats("luminance", luminances));
@@ -90,6 +111,14 @@ void add_history(vtkFieldData& facts, const Simulation& simulation) {
   facts.AddArray(column("iteration_seconds", history, &Iteration::seconds));
   facts.AddArray(column("iteration_work", history, &Iteration::work));
 
+  if (!simulation.accuracy.empty()) {
+    const AccuracyStep& errors = simulation.accuracy.back();
+    facts.AddArray(numbers<vtkDoubleArray>("relative_error_mesh", std::array{errors.mesh}));
+    facts.AddArray(numbers<vtkDoubleArray>("relative_error_form_factor", std::array{errors.form_factor}));
+    facts.AddArray(numbers<vtkDoubleArray>("relative_error_solver", std::array{errors.solver}));
+    facts.AddArray(numbers<vtkDoubleArray>("relative_error_total", std::array{errors.total}));
+    facts.AddArray(numbers<vtkDoubleArray>("relative_display_error", std::array{errors.display}));
+  }
   std::vector<std::string> stages;
   std::vector<double> seconds, cpu_seconds;
   for (const StageCost& cost : simulation.costs) {

@@ -86,6 +86,8 @@ Plan make_plan(const Scene& scene, const Request& request) {
   return plan;
 }
 
+bool refines(const Request& request) { return request.accuracy || request.seconds; }
+
 KeptSides sides_for(const Scene& scene, const Request& request) {
   assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
   if (request.kept_sides) return *request.kept_sides;
@@ -97,15 +99,18 @@ KeptSides sides_for(const Scene& scene, const Request& request) {
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   assert(!request.max_edge || *request.max_edge > 0);
+  const bool nested = request.error_bars || refines(request);
   Plan plan;
   plan.sides = sides_for(scene, request);
   if (request.max_edge) {
     plan.max_edge = *request.max_edge;
   } else {
-    const std::size_t asked = request.patches.value_or(default_patches);
-    const std::size_t wanted = enough_patches(asked, least_patches(scene, plan.sides));
-    if (wanted > asked) plan.notes.push_back(note_on_patches(scene, asked, wanted));
-    plan.max_edge = max_edge_for(scene, plan.sides, wanted);
+    const std::size_t asked = request.patches.value_or(refines(request) ? first_patches : default_patches);
+    const std::size_t least = least_patches(scene, plan.sides);
+    const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
+    if (wanted > asked && !nested) plan.notes.push_back(note_on_patches(scene, asked, wanted));
+    // A nested mesh is made from parents with edges twice as long.
+    plan.max_edge = nested ? max_edge_for(scene, plan.sides, wanted / 4) / 2 : max_edge_for(scene, plan.sides, wanted);
   }
   // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
   plan.probes = std::max(plan.probes, request.samples / 2);
@@ -113,9 +118,13 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.seed = request.seed;
   plan.estimator = request.estimator;
   plan.short_cuts = request.short_cuts;
+  plan.error_bars = nested;
+  plan.standard_errors = request.standard_errors || nested;
+  plan.accuracy = request.accuracy;
+  plan.seconds = request.seconds;
+  plan.interest = request.interest;
   plan.on_demand = request.on_demand;
   plan.close = request.close && !request.on_demand;
-  plan.standard_errors = request.standard_errors;
   plan.solver = {.solver = request.solver,
                  .relative_error = request.tolerance,
                  .max_iterations = request.max_iterations,

@@ -89,14 +89,14 @@ std::array<Vector, 3> rectangle_over(const Scene& scene, std::span<const Polygon
 
 SensorGroup floor_grid(const Scene& scene, std::span<const PolygonIndex> floor, double height, double spacing) {
   assert(!floor.empty());
-  const auto [corner, x, y] = rectangle_over(scene, floor, height);
-  const SensorGroup all = rectangle_grid(corner, {x, y}, spacing);
+  const std::array<Vector, 3> around = rectangle_over(scene, floor, height);
+  const SensorGroup all = rectangle_grid(around[0], {around[1], around[2]}, spacing);
   std::vector<std::vector<Point>> outlines;
   for (const PolygonIndex p : floor) outlines.push_back(corner_points(scene, p));
   SensorGroup group;
   for (std::size_t k = 0; k < all.sensors.size(); ++k) {
     const bool over_floor = std::any_of(outlines.begin(), outlines.end(), [&](const std::vector<Point>& outline) {
-      return is_inside(outline, all.sensors[k].point, x, y);
+      return is_inside(outline, all.sensors[k].point, around[1], around[2]);
     });
     if (!over_floor) continue;
     group.sensors.push_back(all.sensors[k]);

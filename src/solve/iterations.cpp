@@ -77,13 +77,8 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
   if (options_.reference) {
-    const Field& B = *options_.reference;
-    const Eigen::ArrayXd error = area_norm(B - iterate.radiosity, problem_.area);
-    const Eigen::ArrayXd size = area_norm(B - emitted_, problem_.area);
-    iteration.true_error = 0;
-    for (Eigen::Index band = 0; band < error.size(); ++band) {
-      iteration.true_error = worse(iteration.true_error, ratio(error[band], size[band]));
-    }
+    const RadiosityProblem of_emitted{problem_.reflectance, emitted_, problem_.area};
+    iteration.true_error = relative_error(*options_.reference, iterate.radiosity, of_emitted);
   }
   return iteration;
 }

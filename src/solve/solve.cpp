@@ -134,6 +134,18 @@ Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) {
   return (x.square().colwise() * area.array()).colwise().sum().sqrt().transpose();
 }
 
+double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem) {
+  const Eigen::ArrayXd error = area_norm(reference - radiosity, problem.area);
+  const Eigen::ArrayXd size = area_norm(reference - problem.exitance, problem.area);
+  double worst = 0;
+  for (Eigen::Index band = 0; band < error.size(); ++band) {
+    // 0 / 0 is 0: nothing is wrong where there is nothing. What is not a number is worse than any.
+    const double of_band = error[band] == 0 ? 0 : error[band] / size[band];
+    if (std::isnan(of_band) || of_band > worst) worst = of_band;
+  }
+  return worst;
+}
+
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options,
                const Observer& observer) {
   assert(problem.exitance.rows() == static_cast<Eigen::Index>(transport.size()));

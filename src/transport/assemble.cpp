@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -43,6 +44,10 @@ struct Assembler {
   const PatchMesh& mesh;
   const AssemblyOptions& options;
   const ClusterPairs& pairs;
+  const KnownEntries* known;  // none: null
+
+  LaneMask new_lanes(std::size_t cluster) const;
+  bool is_known(const ClusterPair& pair) const { return (new_lanes(pair.row) | new_lanes(pair.column)) == 0; }
 
   template <typename Use>
   void for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, Use use) const;
@@ -51,14 +56,29 @@ struct Assembler {
   RowFacts fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const;
 };
 
-// ClusterPairs::for_facing() for all patches of two clusters, counted.
+// The patches of a cluster of which not all is known.
+LaneMask Assembler::new_lanes(std::size_t cluster) const {
+  if (known == nullptr) return all_lanes;
+  const PatchCluster& of = pairs.clusters()[cluster];
+  unsigned lanes = 0;
+  for (int lane = 0; lane < of.size; ++lane) {
+    if (known->place[of.patches[static_cast<std::size_t>(lane)]] == no_patch) lanes |= 1U << lane;
+  }
+  return static_cast<LaneMask>(lanes);
+}
+
+// ClusterPairs::for_facing() for all pairs of two clusters that are not known, counted.
 template <typename Use>
 void Assembler::for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, Use use) const {
-  pairs.for_facing(pair, all_lanes, all_lanes, [&](PatchIndex i, PatchIndex j, float unoccluded) {
+  const auto counted = [&](PatchIndex i, PatchIndex j, float unoccluded) {
     counts.near_pairs += unoccluded < 0 && is_near(pairs.shapes()[i], pairs.shapes()[j]) ? 1 : 0;
     ++counts.facing_pairs;
     use(i, j, unoccluded);
-  });
+  };
+  const LaneMask new_rows = new_lanes(pair.row);
+  const auto known_rows = static_cast<LaneMask>(~new_rows);
+  if (new_rows != 0) pairs.for_facing(pair, new_rows, all_lanes, counted);
+  if (known_rows != 0) pairs.for_facing(pair, known_rows, new_lanes(pair.column), counted);
 }
 
 void Assembler::count(const Pair& pair, RowFacts& facts) const {
@@ -101,6 +121,7 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& err
   std::vector<Pair> sampled;
   for (std::size_t column = row; column < clusters.size(); ++column) {
     const ClusterPair both{row, column};
+    if (is_known(both)) continue;
     const PairClass pair_class = pairs.class_of(both);
     if (pair_class == PairClass::averted) continue;
     if (pair_class == PairClass::free) {
@@ -131,23 +152,40 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& err
   return facts;
 }
 
+// Adds what is known.
+Assembly with_known(Assembly assembly, const KnownEntries& known) {
+  const Assembly& from = known.assembly;
+  parallel_for(known.place.size(), [&](std::size_t row) {
+    const auto j = static_cast<PatchIndex>(row);
+    if (known.place[j] == no_patch) return;
+    for (PatchIndex i = 0; i < j; ++i) {
+      if (known.place[i] == no_patch) continue;
+      assembly.exchange_areas.set(i, j, from.exchange_areas.at(known.place[i], known.place[j]));
+      if (assembly.entry_errors.size() > 0)
+        assembly.entry_errors.copy(i, j, from.entry_errors, {known.place[i], known.place[j]});
+    }
+  });
+  return assembly;
+}
+
 // Closed forms, and shadow rays where something may be in between.
 Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                       const Observer& observer) {
+                       const KnownEntries* known, const Observer& observer) {
   const ClusterPairs pairs(mesh, occluder, options);
-  const Assembler assembler{mesh, options, pairs};
+  const Assembler assembler{mesh, options, pairs, known};
   Assembly result{ExchangeAreas(mesh.size()), {}, {}, options.keep_errors ? EntryErrors(mesh.area) : EntryErrors()};
   std::vector<RowFacts> rows(pairs.clusters().size());
   parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
     rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
   });
+  if (known != nullptr) result.error = known->assembly.error;
   for (const RowFacts& row : rows) {
     result.counts += row.counts;
     result.error += row.error;
   }
   result.entry_errors =
       with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error, mesh.area);
-  return result;
+  return known == nullptr ? result : with_known(std::move(result), *known);
 }
 
 }  // namespace
@@ -184,7 +222,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
   assert(options.probes >= 1 && options.samples >= options.probes);
   switch (options.estimator) {
     case Estimator::automatic:
-      return by_pair_class(mesh, occluder, options, observer);
+      return by_pair_class(mesh, occluder, options, nullptr, observer);
     case Estimator::area:
       return estimate_by_area(mesh, occluder, options, observer);
     case Estimator::point_polygon:
@@ -195,7 +233,14 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
       return estimate_by_contour(mesh, occluder, options, observer);
   }
   assert(false);
-  return by_pair_class(mesh, occluder, options, observer);
+  return by_pair_class(mesh, occluder, options, nullptr, observer);
+}
+
+Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                                 const KnownEntries& known, const Observer& observer) {
+  assert(options.estimator == Estimator::automatic && known.place.size() == mesh.size());
+  assert(!options.keep_errors || known.assembly.entry_errors.size() == known.assembly.exchange_areas.size());
+  return by_pair_class(mesh, occluder, options, &known, observer);
 }
 
 }  // namespace patchlight

@@ -47,6 +47,10 @@ void EntryErrors::set(PatchIndex i, PatchIndex j, EntryKind kind, double standar
   codes_[offset(i, j)] = static_cast<std::uint8_t>(code);
 }
 
+void EntryErrors::copy(PatchIndex i, PatchIndex j, const EntryErrors& other, std::array<PatchIndex, 2> there) {
+  codes_[offset(i, j)] = other.codes_[offset(there[0], there[1])];
+}
+
 EntryErrors with_sampling_error(EntryErrors unoccluded, const ExchangeAreas& S, const SamplingError& error,
                                 std::span<const double> area) {
   EntryErrors errors = std::move(unoccluded);

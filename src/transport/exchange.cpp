@@ -14,7 +14,10 @@ constexpr double storage_loss = 5 * 0x1p-24;
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         int lost_share_rays, const Observer& observer) {
   Assembly raw = assemble_exchange_areas(mesh, occluder, options, observer);
-  LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
+  return exchange_of(std::move(raw), mesh, measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer));
+}
+
+Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost) {
   const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
   const Eigen::VectorXd area = exposed_area(mesh, lost, seen);
   return {std::move(raw.exchange_areas), area, seen.cwiseQuotient(area), std::move(lost), raw.counts, raw.error,

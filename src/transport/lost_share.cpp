@@ -31,6 +31,7 @@ struct Shares {
   double escaped = 0;
   double at_backs = 0;
   double covered = 0;
+  double dark = 0;
 };
 
 struct Observatory {
@@ -107,6 +108,7 @@ Shares shares_of_groups(const std::vector<Sight>& sights, const std::vector<Sigh
   int exposed = 0;
   int escaped = 0;
   int at_backs = 0;
+  int dark = 0;
   for (std::size_t first = 0; first < sights.size(); first += rays_per_point) {
     const auto count = [&](const std::vector<Sight>& among, Sight sight) {
       const auto begin = among.begin() + static_cast<std::ptrdiff_t>(first);
@@ -120,9 +122,11 @@ Shares shares_of_groups(const std::vector<Sight>& sights, const std::vector<Sigh
     ++exposed;
     escaped += count(sights, Sight::nothing);
     at_backs += count(sights, Sight::back);
+    dark += 2 * count(sights, Sight::back) > rays_per_point ? 1 : 0;
   }
   const double rays = std::max(1, exposed * rays_per_point);
-  return {escaped / rays, at_backs / rays, static_cast<double>(covered) / (covered + exposed)};
+  return {escaped / rays, at_backs / rays, static_cast<double>(covered) / (covered + exposed),
+          static_cast<double>(dark) / std::max(1, exposed)};
 }
 
 Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
@@ -130,7 +134,7 @@ Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) cons
   const auto sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
   const auto count = [&](Sight sight) { return std::count(sights.begin(), sights.end(), sight); };
   if (count(Sight::back) + count(Sight::contact) == 0) {
-    return {static_cast<double>(count(Sight::nothing)) / rays, 0, 0};
+    return {static_cast<double>(count(Sight::nothing)) / rays, 0, 0, 0};
   }
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   const auto groups = hemisphere_rays(mesh, patch, rays, rays_per_point, seed);
@@ -149,13 +153,14 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
-  LostShare lost{zero, zero, zero, rays_per_patch};
+  LostShare lost{zero, zero, zero, rays_per_patch, zero};
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
     const Shares shares = observatory.measure(i, rays_per_patch, hash({seed, keys[i], 1}));
     lost.escaped[i] = shares.escaped;
     lost.at_backs[i] = shares.at_backs;
     lost.covered[i] = shares.covered;
+    lost.dark[i] = shares.dark;
   });
   return lost;
 }

@@ -44,6 +44,20 @@ double standard_error(const SamplingError& error, double visible_share, std::uin
   return pairs > 0 ? std::sqrt(square / static_cast<double>(pairs) / effort) : 1;
 }
 
+double standard_error(const SamplingError::Unanimous& unanimous) {
+  if (unanimous.pairs == 0) return 0;
+  constexpr double steps = SamplingError::Unanimous::steps;
+  // Most pairs of the first step have nothing wrong at all.
+  auto counts = unanimous.by_share;
+  counts[0] -= std::min(counts[0], unanimous.pairs - unanimous.missed);
+  double squares = 0;
+  for (std::size_t step = 0; step < counts.size(); ++step) {
+    const double share = (static_cast<double>(step) + 0.5) / steps;
+    squares += static_cast<double>(counts[step]) * share * share;
+  }
+  return std::sqrt(squares / static_cast<double>(unanimous.pairs));
+}
+
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {
   constexpr std::uint64_t enough = 100;
   constexpr double sure = 0.97;

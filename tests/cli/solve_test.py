@@ -10,8 +10,9 @@ import unittest
 
 from support import TOOL, ToolTest
 
-OPTIONS = """--output --series --report --picture --false-color --camera --view --points --points-output --format --unit --up --sides --set --max-edge
---patches --on-demand --solver --tolerance --max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
+OPTIONS = """--output --series --report --picture --false-color --camera --view --points --points-output --format --unit --up
+--sides --set --max-edge --patches --accuracy --time --interest --error-bars --on-demand --solver --tolerance
+--max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
 
 NOT_CONVERGED, INTERRUPTED = 3, 130
 

@@ -14,9 +14,10 @@ class VerifyTest(ToolTest):
     def test_cornell_box_agrees_and_the_json_tells_the_same(self):
         done = self.run_tool("verify", CORNELL_BOX, "--patches", 2000, "--sides", "front", "--json", "out.json")
         self.assertEqual((done.returncode, done.stderr), (GOOD, ""), done.stdout)
-        self.assertIn("agrees: with a bar of 2 %", done.stdout)
+        self.assertRegex(done.stdout, r"agrees: with the error bars of the patches, \S+ % as a whole \(mesh ")
         facts = json.loads((self.folder / "out.json").read_text())
         self.assertTrue(facts["agrees"])
+        self.assertGreater(facts["relative_error"]["total"], 0)
         self.assertGreaterEqual(facts["probability"], facts["least_probability"])
         self.assertEqual((len(facts["checked"]), facts["paths_per_patch"]), (64, 4096))
         chi_square = [0, 0, 0]
@@ -33,6 +34,19 @@ class VerifyTest(ToolTest):
         sizes = [abs(float(row.split()[-1])) for row in rows]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
         self.assertTrue(all("cornell_box.obj:" in row for row in rows))
+
+    def test_two_rooms_agree(self):
+        done = self.run_tool("verify", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front")
+        self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
+
+    def test_a_bar_may_be_given_instead(self):
+        done = self.run_tool("verify", "room.obj", "--patches", 300, "--bar", "5%", "--json", "out.json")
+        self.assertIn("with a bar of 5 % of the irradiance", done.stdout)
+        facts = json.loads((self.folder / "out.json").read_text())
+        self.assertIsNone(facts["relative_error"])
+        for patch in facts["checked"]:
+            for ours, bar in zip(patch["irradiance_W_m2"], patch["bar_W_m2"]):
+                self.assertGreaterEqual(bar, 0.05 * ours)
 
     def test_too_few_patches_disagree(self):
         """Without a bar the error of a coarse mesh is many times the noise."""
@@ -55,6 +69,7 @@ class VerifyTest(ToolTest):
 
     def test_refusals(self):
         for words, code in ((["room.obj", "--bar", "a"], USAGE), (["room.obj", "--bar", "-1"], USAGE),
+                            (["room.obj", "--estimator", "area"], USAGE),
                             (["room.obj", "--paths", "0"], USAGE), (["room.obj", "--json", "a.txt"], USAGE),
                             ([], USAGE), (["missing.obj"], INPUT), (["room.obj", "--json", "missing/a.json"], OUTPUT)):
             done = self.run_tool("verify", *words)

@@ -8,7 +8,20 @@
 namespace patchlight {
 
 /// The stages of a run, in order.
-enum class Stage { read, mesh, form_factors, closure, direct_light, solve, gather, trace_paths, render, write };
+enum class Stage {
+  read,
+  plan,
+  mesh,
+  form_factors,
+  closure,
+  direct_light,
+  solve,
+  error_bars,
+  gather,
+  trace_paths,
+  render,
+  write
+};
 
 /// The stage's name as users see it.
 const char* name_of(Stage stage);

@@ -12,7 +12,8 @@ namespace patchlight {
 using CornerWeights = Eigen::Array<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 /// Values at the mesh's vertices: the mean of the patches that share each vertex, weighted by their weights there. 0 at
-/// a vertex without any weight. Rows are vertices.
+/// a vertex without any weight; on the edge of a patch that is not cut there, the mean of those at its ends. Rows are
+/// vertices.
 Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const CornerWeights& weights);
 
 /// The weights, not negative and of sum 1, with which the corners of a patch contribute to a point in it: barycentric

@@ -11,6 +11,9 @@
 
 namespace patchlight {
 
+/// Stands for "no patch".
+inline constexpr PatchIndex no_patch = ~PatchIndex{0};
+
 /// The corners of one patch: three or four points.
 struct PatchCorners {
   std::array<Point, 4> points;
@@ -18,8 +21,14 @@ struct PatchCorners {
   operator std::span<const Point>() const { return {points.data(), static_cast<std::size_t>(count)}; }
 };
 
+/// A vertex in the middle between two others, where a patch was cut.
+struct Middle {
+  std::uint32_t vertex;
+  std::array<std::uint32_t, 2> ends;
+};
+
 /// The patches of a scene: triangles and planar convex quadrilaterals, each on one side of one polygon. Frozen: made by
-/// tessellate(), never changed. Every per-patch array has size() entries.
+/// tessellate() or refine(), never changed. Every per-patch array has size() entries.
 struct PatchMesh {
   std::vector<Point> vertices;                        ///< metres
   std::vector<std::array<std::uint32_t, 4>> corners;  ///< counter-clockwise from the front; a triangle repeats its last
@@ -30,6 +39,9 @@ struct PatchMesh {
   std::vector<PolygonIndex> polygon;    ///< the scene's polygon that the patch lies on
   std::vector<Side> side;               ///< the side of that polygon which is the patch's front
   std::vector<PatchIndex> first_patch;  ///< per 2 * polygon + side: its first patch; one more entry at the end
+
+  std::vector<Middle> middles;  ///< of all edges that were cut. Where a neighbour was not, the edge is one of its own
+                                ///< still, and the vertex hangs on it
 
   PatchIndex size() const { return static_cast<PatchIndex>(area.size()); }
   PatchCorners corner_points(PatchIndex patch) const;

@@ -10,9 +10,10 @@ namespace patchlight {
 /// Writes the solved patches as VTK XML PolyData (.vtp), appended raw data compressed with LZ4, for ParaView.
 /// Cell arrays: radiance, radiosity, irradiance, direct_irradiance, indirect_irradiance, exitance, reflectance (bands,
 /// linear), luminance, area, material_id, source_polygon, row_sum, raw_row_sum (both where known), rgb (UInt8 x 3,
-/// sRGB). Point array: radiance_smooth. FieldData: the unit of every array, material names, version, command line,
-/// seed, SHA-256 of the input, exposure, convergence history, seconds per stage. docs/output.md lists them all. \throws
-/// OutputError.
+/// sRGB); with error bars error_mesh, error_form_factor, error_solver, error_total, display_error, error_irradiance,
+/// else error_solver where it is known. Point array: radiance_smooth. FieldData: the unit of every array, material
+/// names, version, command line, seed, SHA-256 of the input, exposure, convergence history, relative errors, seconds
+/// per stage. docs/output.md lists them all. \throws OutputError.
 void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                const Provenance& provenance);
 

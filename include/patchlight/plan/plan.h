@@ -32,11 +32,18 @@ struct Request {
   bool close = true;          ///< correct the form factors so that rows sum up to what is seen
   bool on_demand = false;     ///< no matrix: rows of form factors are computed whenever the solver asks for them, and
                               ///< not closed. Memory in proportion to the patches; for progressive refinement
-  bool standard_errors = false;    ///< keep one for each entry: a quarter more memory
-  int threads = 0;                 ///< 0: all processors
-  std::optional<double> memory;    ///< bytes that the run may take; without it 0.8 of the machine's memory
-  std::vector<Effect> force = {};  ///< effects that are simulated whatever the scene is like
-  std::vector<Effect> skip = {};   ///< effects that are left out; none that is forced
+  bool standard_errors = false;         ///< keep one for each entry: a quarter more memory
+  bool error_bars = false;              ///< of every patch, from mesh, form factors and solver; keeps standard errors
+  std::optional<double> accuracy = {};  ///< relative error of the patches' mean radiosities that is asked for: patches
+                                        ///< and samples are refined until the error bars are below. `patches` and
+                                        ///< `samples` are where it starts
+  std::optional<double> seconds = {};   ///< refine for so long instead, or at most
+  std::vector<std::string> interest = {};  ///< names of materials, objects or groups: the accuracy is that of their
+                                           ///< patches; none: of all
+  int threads = 0;                         ///< 0: all processors
+  std::optional<double> memory;            ///< bytes that the run may take; without it 0.8 of the machine's memory
+  std::vector<Effect> force = {};          ///< effects that are simulated whatever the scene is like
+  std::vector<Effect> skip = {};           ///< effects that are left out; none that is forced
 };
 
 /// How a scene is going to be solved.
@@ -52,6 +59,10 @@ struct Plan {
   bool close = true;
   bool on_demand = false;
   bool standard_errors = false;
+  bool error_bars = false;
+  std::optional<double> accuracy;
+  std::optional<double> seconds;
+  std::vector<std::string> interest;
   SolverOptions solver;
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else
@@ -61,6 +72,12 @@ struct Plan {
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;
+
+/// The number of patches that refining to an accuracy starts from: a tenth of a second's work.
+inline constexpr std::size_t first_patches = 500;
+
+/// True when patches are refined until an accuracy is reached, or time is up.
+bool refines(const Request& request);
 
 /// The sides that take part: Request::kept_sides, else those that Request::sides chooses.
 KeptSides sides_for(const Scene& scene, const Request& request);

@@ -22,7 +22,7 @@ SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edg
 /// The level polygons at the lowest height among those given: a floor. Empty when none is level.
 std::vector<PolygonIndex> floor_of(const Scene& scene, std::span<const PolygonIndex> polygons);
 
-/// The rectangle around a floor, along its longest edge, `height` metres above it. Edges may be long beyond any grid.
+/// The rectangle around a floor, along its longest edge, `height` metres above it: a corner and the two edges from it.
 std::array<Vector, 3> rectangle_over(const Scene& scene, std::span<const PolygonIndex> floor, double height);
 
 /// A grid over a floor, facing up: that of rectangle_over(), without the cells whose middle lies beside the floor.

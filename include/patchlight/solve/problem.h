@@ -48,4 +48,9 @@ struct EnergyBalance {
 /// ||x||_A = sqrt(sum_i A_i x_i^2) per band.
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area);
 
+/// How far a radiosity is off: ||B_ref - B||_A / ||B_ref - E||_A in the worst band; the light that lamps emit
+/// themselves is in neither norm. 0 where nothing differs, infinite where B_ref = E and B is not; what is not a number
+/// stays so.
+double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem);
+
 }  // namespace patchlight

@@ -8,6 +8,7 @@
 #include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace patchlight {
 
@@ -65,10 +66,22 @@ struct Assembly {
   EntryErrors entry_errors;  ///< when asked for
 };
 
+/// What is known of some pairs already, from another mesh of the same scene and with the same options.
+struct KnownEntries {
+  const Assembly& assembly;
+  std::vector<PatchIndex> place;  ///< of each patch of the new mesh: the same patch in the other one, or no_patch
+};
+
 /// Exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal and between
 /// patches of one plane, with the automatic estimator and Estimator::contour never more than the unoccluded value. The
 /// same bits for any number of threads. O(size^2) time. \throws Cancelled.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options = {},
                                  const Observer& observer = {});
+
+/// The same with the automatic estimator, but pairs of patches that are both known are taken as they are: what
+/// assembling all would give, but for rounding, as clusters differ. Standard errors of known pairs stay, the sampling
+/// error is pooled over both meshes. Cost and counts are those of the others.
+Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                                 const KnownEntries& known, const Observer& observer = {});
 
 }  // namespace patchlight

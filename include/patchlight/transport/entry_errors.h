@@ -3,6 +3,7 @@
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/sampling_error.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,6 +34,8 @@ class EntryErrors {
   double standard_error(PatchIndex i, PatchIndex j) const;
   /// Different pairs may be set by different threads at once.
   void set(PatchIndex i, PatchIndex j, EntryKind kind, double standard_error = 0);
+  /// Takes what `other` has for the same two patches.
+  void copy(PatchIndex i, PatchIndex j, const EntryErrors& other, std::array<PatchIndex, 2> there);
 
  private:
   std::vector<double> root_of_area_;

@@ -15,7 +15,7 @@ namespace patchlight {
 
 /// What passes between the patches of a mesh. Geometry alone decides it.
 struct Exchange {
-  ExchangeAreas exchange_areas;
+  ExchangeAreas exchange_areas{0};
   Eigen::VectorXd area;         ///< m^2, the exposed part of each patch: F_ij = S_ij / A_i
   Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
   LostShare lost;
@@ -34,6 +34,9 @@ Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, con
 /// \throws Cancelled.
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         int lost_share_rays, const Observer& observer = {});
+
+/// The same from exchange areas that are known.
+Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);
 
 /// Closes what is not closed yet, see close_exchange_areas(). In a closed scene what the storage of closed rows as
 /// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws

@@ -16,6 +16,8 @@ struct LostShare {
   Eigen::VectorXd
       covered;  ///< share of the area from which nothing else can be seen: inside a solid, or against a face
   int rays_per_patch = 0;
+  Eigen::VectorXd dark = {};  ///< share of the exposed part from where mostly sides without patches are seen: of a
+                              ///< patch that reaches into a solid it is the part inside; empty when it was not measured
 
   /// True when no ray of any patch was lost.
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }

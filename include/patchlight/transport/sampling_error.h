@@ -42,6 +42,9 @@ std::uint32_t sampling_effort(double form_factor);
 /// samples; from all such pairs where fewer than 30 have about this visible share.
 double standard_error(const SamplingError& error, double visible_share, std::uint32_t effort = 1);
 
+/// The root mean square of what probes that agreed had wrong, as a share of U; 0 when none was sampled again.
+double standard_error(const SamplingError::Unanimous& unanimous);
+
 /// An upper bound, about 95 % sure for a pair chosen at random, of what probes that agreed had wrong, as a share of
 /// U: what 97 % of the pairs that were sampled again stayed below. 1 when fewer than 100 were.
 double bound_on_miss(const SamplingError::Unanimous& unanimous);

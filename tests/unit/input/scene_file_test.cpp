@@ -201,6 +201,7 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
       {"[[model]]\nfile = 3\n", {"scene.toml:4: model.file: found 3", "name of a file"}},
       {"[[model]]\n", {"scene.toml:3: model: found no key 'file'"}},
       {"file = \"twice\"\n", {"scene.toml:3: is not TOML"}},
+      {"unit = \"\"\"a\nb\"\"\"\n", {"scene.toml:3: model.unit: found 'a b'"}},
   };
   for (const auto& [keys, parts] : cases) {
     SCOPED_TRACE(keys);

@@ -109,8 +109,8 @@ TEST(VertexMeans, AreLinearInsideASymmetricGrid) {
   // the centroids are exact there.
   const Scene square = tiny::polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   const PatchMesh mesh = tessellate(square, tiny::front_sides(square), 0.1);
-  Field values(mesh.size(), 2);
-  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) values.row(patch) = linear(mesh.centroid[patch]);
+  Field values(mesh.size(), 1);
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) values(patch, 0) = linear(mesh.centroid[patch])[0];
   const Field means = vertex_means(mesh, values, areas(mesh));
   int inner = 0;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {

@@ -66,4 +66,23 @@ inline Simulation tiny_simulation() {
   return simulation;
 }
 
+/// The same with invented error bars on the irradiance.
+inline Simulation tiny_simulation_with_bars() {
+  Simulation simulation = tiny_simulation();
+  const Field& H = simulation.solution.irradiance;
+  simulation.error_bars = {.mesh = 0.03 * H, .form_factor = 0.02 * H, .solver = 0.0625 * H.sqrt(), .display = 0.5 * H};
+  simulation.accuracy = {{.patches = 2, .new_patches = 2, .samples = 16, .mesh = 0.5, .total = 0.5},
+                         {.patches = 3,
+                          .new_patches = 1,
+                          .samples = 32,
+                          .mesh = 0.03,
+                          .form_factor = 0.04,
+                          .solver = 0.001,
+                          .total = 0.05,
+                          .display = 0.25,
+                          .seconds = 2,
+                          .cpu_seconds = 4}};
+  return simulation;
+}
+
 }  // namespace patchlight

@@ -69,6 +69,28 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
   EXPECT_EQ(report["exposure"], 0.125);
 }
 
+TEST(WriteReport, TellsWhatAccuracyHasCost) {
+  const nlohmann::json report = report_of(tiny_scene(), tiny_simulation_with_bars());
+  EXPECT_EQ(
+      report["relative_error"],
+      (nlohmann::json{{"mesh", 0.03}, {"form_factor", 0.04}, {"solver", 0.001}, {"total", 0.05}, {"display", 0.25}}));
+  ASSERT_EQ(report["accuracy"].size(), 2U);
+  EXPECT_EQ(report["accuracy"][0]["mesh"], 0.5);
+  const nlohmann::json last = report["accuracy"][1];
+  EXPECT_EQ(last["patches"], 3);
+  EXPECT_EQ(last["new_patches"], 1);
+  EXPECT_EQ(last["samples"], 32);
+  EXPECT_EQ(last["total"], 0.05);
+  EXPECT_EQ(last["seconds"], 2);
+  EXPECT_EQ(last["cpu_seconds"], 4);
+  EXPECT_TRUE(report["request"].at("accuracy").is_null());
+  EXPECT_TRUE(report["request"].at("time_s").is_null());
+
+  const nlohmann::json without = report_of(tiny_scene(), tiny_simulation());
+  EXPECT_TRUE(without.at("relative_error").is_null());
+  EXPECT_TRUE(without.at("accuracy").empty());
+}
+
 // The row sums are 1 - lost, so the closed ones have no defect; the raw ones are off by 0, 1/4 and -1/4.
 TEST(WriteReport, WeighsRowSumsByArea) {
   const Simulation simulation = tiny_simulation();

@@ -8,7 +8,9 @@
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -89,6 +91,46 @@ TEST(WriteVtk, LeavesOutRowSumsThatAreNotKnown) {
   EXPECT_NE(polygons->GetCellData()->GetArray("area"), nullptr);
 }
 
+// dL = rho dH / pi; squares of the three add up to that of the total.
+TEST(WriteVtk, ErrorBarsAreOfTheRadiance) {
+  const Simulation simulation = tiny_simulation_with_bars();
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  vtkCellData* const cells = polygons->GetCellData();
+  const ErrorBars& bars = *simulation.error_bars;
+  const Field factor = simulation.problem.reflectance / std::numbers::pi;
+  expect_floats(cells->GetArray("error_mesh"), factor * bars.mesh);
+  expect_floats(cells->GetArray("error_form_factor"), factor * bars.form_factor);
+  expect_floats(cells->GetArray("error_solver"), factor * bars.solver);
+  expect_floats(cells->GetArray("display_error"), factor * bars.display);
+  expect_floats(cells->GetArray("error_irradiance"), bars.total());
+  for (int i = 0; i < 3; ++i) {
+    for (int band = 0; band < 3; ++band) {
+      const auto of = [&](const char* name) { return cells->GetArray(name)->GetComponent(i, band); };
+      const double total = std::hypot(of("error_mesh"), of("error_form_factor"), of("error_solver"));
+      EXPECT_NEAR(of("error_total") / total, 1, 2 * std::numeric_limits<float>::epsilon());
+    }
+  }
+  EXPECT_EQ(number(polygons, "relative_error_mesh"), 0.03);
+  EXPECT_EQ(number(polygons, "relative_error_form_factor"), 0.04);
+  EXPECT_EQ(number(polygons, "relative_error_solver"), 0.001);
+  EXPECT_EQ(number(polygons, "relative_error_total"), 0.05);
+  EXPECT_EQ(number(polygons, "relative_display_error"), 0.25);
+}
+
+// Without bars the solver's own bound, where there is one.
+TEST(WriteVtk, TheSolversBoundStandsAlone) {
+  Simulation simulation = tiny_simulation();
+  const auto without = written_and_read(tiny_scene(), simulation);
+  EXPECT_EQ(without->GetCellData()->GetArray("error_solver"), nullptr);
+  simulation.solution.error = 1e-3 * simulation.solution.radiosity;
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  expect_floats(polygons->GetCellData()->GetArray("error_solver"), simulation.solution.error / std::numbers::pi);
+  for (const char* name : {"error_mesh", "error_form_factor", "error_total", "display_error", "error_irradiance"}) {
+    EXPECT_EQ(polygons->GetCellData()->GetArray(name), nullptr) << name;
+  }
+  EXPECT_EQ(number(polygons, "relative_error_total"), -1);
+}
+
 TEST(WriteVtk, ValuesComeBackAsFloats) {
   const Simulation simulation = tiny_simulation();
   const auto polygons = written_and_read(tiny_scene(), simulation);
@@ -145,7 +187,7 @@ TEST(WriteVtk, TellsWhereItComesFrom) {
 }
 
 TEST(WriteVtk, EveryArrayOfValuesHasAUnit) {
-  const auto polygons = written_and_read(tiny_scene(), tiny_simulation());
+  const auto polygons = written_and_read(tiny_scene(), tiny_simulation_with_bars());
   for (vtkFieldData* const data :
        {static_cast<vtkFieldData*>(polygons->GetCellData()), static_cast<vtkFieldData*>(polygons->GetPointData())}) {
     ASSERT_GT(data->GetNumberOfArrays(), 0);

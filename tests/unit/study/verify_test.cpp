@@ -2,7 +2,6 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/patch_lookup.h"
 
 #include "support/scenes.h"
 
@@ -25,32 +24,19 @@ Request request_for(std::size_t patches, Sides sides = Sides::automatic) {
   return request;
 }
 
+// From front sides, with bars.
+Request with_error_bars(std::size_t patches) {
+  Request request = request_for(patches, Sides::front);
+  request.error_bars = true;
+  return request;
+}
+
 // The scene with one material's reflectance so many times as high.
 Scene repainted(Scene scene, const std::string& name, double factor) {
   for (Material& material : scene.materials) {
     if (material.name == name) material.reflectance *= factor;
   }
   return scene;
-}
-
-// A bar from a coarser solution with edges twice as long: where errors fall like the edge length, the finer one is
-// still off by as much as the two differ. They are compared by means over the patches of the coarser one. 1 % of the
-// irradiance or of its mean goes to what both have in common.
-Field bar_by_coarsening(const Simulation& simulation, const Simulation& coarse) {
-  const PatchMesh& mesh = simulation.mesh;
-  const PatchLookup lookup(coarse.mesh);
-  std::vector<PatchIndex> parent;
-  Field sum = Field::Zero(coarse.mesh.size(), simulation.solution.irradiance.cols());
-  Eigen::ArrayXd area = Eigen::ArrayXd::Zero(coarse.mesh.size());
-  for (PatchIndex k = 0; k < mesh.size(); ++k) {
-    parent.push_back(lookup.patch_at(mesh.polygon[k], mesh.side[k], mesh.centroid[k]).value());
-    sum.row(parent[k]) += simulation.problem.area[k] * simulation.solution.irradiance.row(k);
-    area[parent[k]] += simulation.problem.area[k];
-  }
-  const Field difference = sum.colwise() / area - coarse.solution.irradiance;
-  Field bar = irradiance_bar(simulation, 0.01).square();
-  for (PatchIndex k = 0; k < mesh.size(); ++k) bar.row(k) += difference.row(parent[k]).square();
-  return bar.sqrt();
 }
 
 // How far the differences as a whole are from 0, in standard errors by the noise of the paths alone; the worst band.
@@ -78,36 +64,26 @@ void expect_disagreement_by_five_sigma(const Verification& verification) {
   EXPECT_GT(sigmas_of_verdict(verification), 5);
 }
 
-// How many paths it takes to see a reflectance that is off by 5 %: at .7 to .8 it changes what is reflected by more
-// than that, and irradiances by x bars, bar and noise together, where x is 1 to 2. Then chi-square of n patches rises
-// by n x^2, and its standard deviation is sqrt(2 n): 5 sigma takes n = 50 for x = 1. The noise of 4096 paths is 2 % of
-// a patch's irradiance, as much as the bar: more paths would gain little, but in the two rooms, where the bars are
-// smaller, 8192 do. As right solutions stay well within their bars, chi-square begins 4 to 5 sigma below n, so that it
-// takes n = 128.
+// A reflectance that is off by 5 % changes what is reflected by more than that where it is .7 to .8. Against bars of 1
+// to 2 % and the noise of 4096 paths, 2 %, each of 64 patches differs by x = 2 to 3 standard deviations: chi-square
+// rises by 64 x^2, and its own standard deviation is sqrt(2 64). In the two rooms bars are larger in the gaps behind
+// the shelves and beside the dividing wall, so that fewer patches see it. That the solution is 1 % too dark there makes
+// a lower reflectance the harder case.
+
+void expect_agreement_until_repainted(const Scene& scene, const std::string& material) {
+  const Simulation simulation = simulate(scene, with_error_bars(default_patches));
+  const Field bar = simulation.error_bars->total();
+  expect_agreement(verify(scene, simulation, bar));
+  expect_disagreement_by_five_sigma(verify(repainted(scene, material, 1.05), simulation, bar));
+  expect_disagreement_by_five_sigma(verify(repainted(scene, material, 0.95), simulation, bar));
+}
 
 TEST(Verify, CornellBoxAgreesUntilItIsRepainted) {
-  const Scene scene = model("cornell_box.obj");
-  const Simulation simulation = simulate(scene, request_for(2000, Sides::front));
-  const Field bar = irradiance_bar(simulation, 0.02);
-  const VerifyOptions options{.paths = 4096, .checked = 128};
-  expect_agreement(verify(scene, simulation, bar, options));
-  expect_disagreement_by_five_sigma(verify(repainted(scene, "white", 1.05), simulation, bar, options));
-  expect_disagreement_by_five_sigma(verify(repainted(scene, "white", 0.95), simulation, bar, options));
+  expect_agreement_until_repainted(model("cornell_box.obj"), "white");
 }
 
 TEST(Verify, TwoRoomsAgreeUntilTheyAreRepainted) {
-  // In the gaps of 1 cm behind the shelves 8,000 patches still let in too much light, so that each patch has a bar of
-  // its own. The solution is .6 % too dark, so that a lower reflectance is the harder case.
-  const Scene scene = model("two_rooms.obj");
-  const Simulation coarse = simulate(scene, request_for(2000, Sides::front));
-  Request finer = request_for(2000, Sides::front);
-  finer.patches.reset();
-  finer.max_edge = coarse.plan.max_edge / 2;
-  const Simulation simulation = simulate(scene, finer);
-  const Field bar = bar_by_coarsening(simulation, coarse);
-  const VerifyOptions options{.paths = 8192, .checked = 128};
-  expect_agreement(verify(scene, simulation, bar, options));
-  expect_disagreement_by_five_sigma(verify(repainted(scene, "plaster_white", 0.95), simulation, bar, options));
+  expect_agreement_until_repainted(model("two_rooms.obj"), "plaster_white");
 }
 
 TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "patchlight/accuracy/error_bars.h"
+#include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/transport_operator.h"
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// What is to be told apart.
+struct EffectsOf {
+  Field difference;        ///< of radiosity, W/m^2
+  Eigen::VectorXd weight;  ///< of each patch in the error
+};
+
+/// How far each patch is from the mean of its parent, radiosity in W/m^2.
+Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved);
+
+/// How much the light elsewhere changes by differences of radiosity: per parent the sum over all patches of
+/// A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. What it takes to tell where finer patches pay. After
+/// one reflection. `weight` is that of each patch in the error.
+Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
+                                   const EffectsOf& of);
+
+/// The squares of bars on the irradiance as relative_bar() adds them up, per parent, worst band.
+Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
+                                   const Eigen::VectorXd& weight);
+
+/// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
+/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; a twentieth of all at least,
+/// unless nothing has to fall, none without an effect, and `most` at most.
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most);
+
+/// How much a change of each patch's irradiance matters to the light on the patches of `interest` (1 or 0 per patch):
+/// the solution of the adjoint equation psi = interest + F R psi, worst band. As S is
+/// symmetric, F is its own adjoint in the norm weighted by area.
+Eigen::VectorXd importance(const RowTransport& transport, const RadiosityProblem& problem,
+                           const Eigen::VectorXd& interest);
+
+}  // namespace patchlight

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// Patches and the larger ones they are parts of, for comparing what both give: the difference tells the error.
+struct NestedMesh {
+  PatchMesh parents;
+  PatchMesh patches;
+  std::vector<PatchIndex> parent;       ///< of each patch
+  std::vector<PatchIndex> first_patch;  ///< per parent: its first patch; one more entry at the end
+
+  PatchRange patches_of(PatchIndex of) const { return {first_patch[of], first_patch[of + 1]}; }
+};
+
+/// Every parent in four parts; those whose longest edge is below a quarter of the longest of all, as small faces of a
+/// model are, stay whole.
+NestedMesh nest(PatchMesh parents);
+
+/// A nested mesh made from another.
+struct FinerMesh {
+  NestedMesh mesh;
+  std::vector<PatchIndex> place;  ///< per patch: the same patch in the mesh before, or no_patch
+};
+
+/// The same with finer patches where parents are marked: these are cut, with those that balance takes, see refine().
+/// A parent that stayed whole has parts of its own once it is cut.
+FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents);
+
+/// Sums over the patches of each parent.
+Field summed_by_parent(const NestedMesh& mesh, const FieldView& values);
+
+/// The means of a field over each parent, by the areas of its patches.
+Field means_by_parent(const NestedMesh& mesh, const FieldView& values, const Eigen::VectorXd& area);
+
+/// Each patch's value is that of its parent.
+Field of_parents(const NestedMesh& mesh, const FieldView& parent_values);
+
+}  // namespace patchlight

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "patchlight/study/study.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// The power p with which an error falls with the edge of the patches, from `coarse` to `fine`, when both were measured
+/// against a reference with the same kind of error: (x1^p - 1) / (x2^p - 1) = e1 / e2, x = sqrt(reference / patches).
+/// Infinitely many patches stand for the truth. Not a number where the errors do not fall.
+double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
+
+/// The sweep with its orders filled in.
+StudySweep with_orders(StudySweep sweep, double reference_patches);
+
+/// The error of a reference: Richardson's extrapolation from its difference to the finest setting of a sweep of
+/// patches, by the order observed from two sizes before on, taken as no less than 1/2 and no more than 2.
+double richardson_bar(const StudySweep& by_size, double reference_patches);
+
+/// The number of its patches; infinite for the closed form.
+double patches_of(const StudyReference& reference);
+
+/// Which of some points (cost, error) are on the Pareto front: no other one is at least as good in both and better in
+/// one.
+std::vector<bool> pareto_front(const std::vector<std::array<double, 2>>& points);
+
+/// The study with the fronts of all settings that compete marked.
+Study with_fronts(Study study);
+
+/// How a price was found.
+enum class Finding {
+  interpolated,  ///< between two settings of the front, in logarithms
+  at_most,       ///< the cheapest setting is good enough
+  extrapolated,  ///< beyond the finest mesh, by the observed order, no farther than 16 times its patches
+  not_reached    ///< farther, or no order is known
+};
+
+/// What an error costs.
+struct Price {
+  double error = 0;  ///< asked for
+  Finding finding = Finding::not_reached;
+  double cpu_seconds = 0;
+  double order = 0;  ///< by which it was extrapolated
+};
+
+/// The reference's bar counts as part of every error.
+Price price_of(double error, const Study& study);
+
+/// The study in a sentence: "1 % costs 2.1 CPU seconds here, 0.3 % about 19 (...); what limits you is ...".
+std::string conclusion(const Study& study);
+
+}  // namespace patchlight

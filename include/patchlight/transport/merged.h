@@ -1,0 +1,21 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/mesh/nested_mesh.h"
+#include "patchlight/transport/closure.h"
+
+#include <Eigen/Core>
+
+namespace patchlight {
+
+/// The exchange areas between the parents of a mesh from those between its patches: their sums, S_GH = sum_{i in G, j
+/// in H} S_ij. No ray is traced; row sums and closure carry over. O(size^2).
+ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& mesh);
+
+/// What it changes elsewhere that the patches of a parent differ: for each parent G
+/// sum over bands and patches i of weight_i (sum_{c in G} S_ic difference_c)^2, with the difference of each patch from
+/// its parent's mean. O(size^2).
+Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh, const FieldView& difference,
+                                 const FieldView& weight);
+
+}  // namespace patchlight

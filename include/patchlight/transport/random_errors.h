@@ -1,0 +1,28 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/entry_errors.h"
+#include "patchlight/transport/sampling_error.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace patchlight {
+
+/// What is known of the errors of a mesh's exchange areas.
+struct ErrorsOfEntries {
+  const PatchMesh& mesh;
+  const Eigen::VectorXd& area;  ///< m^2, exposed
+  const EntryErrors& errors;
+  const SamplingError& sampling;
+};
+
+/// What sampling errors do to a product with the exchange areas: D X for each of `draws` random symmetric matrices
+/// D_ij = +-sigma_ij with independent signs. sigma is the standard error of an estimated entry; of one whose probes
+/// agreed, what these have wrong in the root mean square, as a share of the unoccluded exchange area between the
+/// patches' centroids. Columns: those of x for the first draw, then for the second, ...; m^2 times the unit of x.
+/// O(size^2). The same bits for any number of threads.
+Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed);
+
+}  // namespace patchlight

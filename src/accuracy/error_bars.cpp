@@ -1,0 +1,52 @@
+#include "patchlight/accuracy/error_bars.h"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace patchlight {
+
+Field ErrorBars::total() const { return (mesh.square() + form_factor.square() + solver.square()).sqrt(); }
+
+double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
+                    const Eigen::VectorXd& weight) {
+  const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
+  const Eigen::ArrayXd error = area_norm(problem.reflectance * bar, area);
+  const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
+  // Of what reflects nothing every error is infinitely large.
+  const Eigen::ArrayXd relative = (error > 0).select(error / reflected, 0.0);
+  return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : relative.maxCoeff();
+}
+
+Field solver_errors(const SolvedProblem& solved) {
+  const Field& rho = solved.problem.reflectance;
+  const Field& error = solved.solution.error;
+  if (error.size() == 0) return Field::Constant(rho.rows(), rho.cols(), std::numeric_limits<double>::infinity());
+  const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
+  return (rho > 0).select(of_reflecting, of_reflecting.colwise().maxCoeff().replicate(rho.rows(), 1));
+}
+
+Eigen::ArrayXd exposure_errors(const LostShare& lost) {
+  const Eigen::ArrayXd covered = lost.covered.array();
+  const double variance = std::pow(static_cast<double>(lost.rays_per_patch), -1.5);
+  return (covered < 1).select((variance * covered / (1 - covered)).sqrt(), 0.0);
+}
+
+Field dark_differences(const LostShare& lost, const SolvedProblem& solved) {
+  assert(lost.dark.size() == solved.problem.area.size());
+  const Eigen::ArrayXd dark = lost.dark.array();
+  const Eigen::ArrayXd share = (dark < 1).select(dark.min(0.5) / (1 - dark.min(0.5)), 0.0);
+  return (solved.solution.radiosity - solved.problem.exitance).colwise() * share;
+}
+
+RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
+  RadiosityProblem of_parents;
+  of_parents.reflectance = means_by_parent(mesh, problem.reflectance, problem.area);
+  of_parents.exitance = means_by_parent(mesh, problem.exitance, problem.area);
+  if (problem.direct_irradiance.size() > 0)
+    of_parents.direct_irradiance = means_by_parent(mesh, problem.direct_irradiance, problem.area);
+  of_parents.area = summed_by_parent(mesh, problem.area.array()).col(0).matrix();
+  return of_parents;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,82 @@
+#include "patchlight/accuracy/refinement.h"
+
+#include "patchlight/solve/solve.h"
+#include "patchlight/transport/merged.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace patchlight {
+namespace {
+
+// What is left of a parent's squared effect when it is cut: halving the patches' size gains a factor of 2^mesh_order.
+const double left_by_a_cut = std::pow(2.0, -2 * mesh_order);
+
+// Where one cut of everything does not do, those with this share of the effect are cut.
+constexpr double bulk = 0.9;
+
+// rho_i^2 / ||B - E||_A^2
+Field squared_reflectance(const SolvedProblem& solved) {
+  const RadiosityProblem& problem = solved.problem;
+  const Eigen::ArrayXd reflected = area_norm(solved.solution.radiosity - problem.exitance, problem.area).square();
+  const Eigen::ArrayXd inverse = (reflected > 0).select(reflected.inverse(), 0.0);
+  return problem.reflectance.square().rowwise() * inverse.transpose();
+}
+
+}  // namespace
+
+Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved) {
+  const Field& B = solved.solution.radiosity;
+  return B - of_parents(mesh, means_by_parent(mesh, B, solved.problem.area));
+}
+
+Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
+                                   const EffectsOf& of) {
+  // A_i (rho_i / A_i sum_c S_ic difference_c)^2 / ||B - E||_A^2
+  const Field of_patch =
+      squared_reflectance(solved).colwise() * (of.weight.array().square() / solved.problem.area.array());
+  return effects_of_parts(raw, mesh, of.difference, of_patch);
+}
+
+Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
+                                   const Eigen::VectorXd& weight) {
+  const Eigen::ArrayXd area = solved.problem.area.array() * weight.array().square();
+  const Field squares = (squared_reflectance(solved) * bar.square()).colwise() * area;
+  return summed_by_parent(mesh, squares.rowwise().maxCoeff()).col(0).matrix();
+}
+
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(effects.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return effects[static_cast<Eigen::Index>(a)] > effects[static_cast<Eigen::Index>(b)];
+  });
+  const double all = effects.sum();
+  const double wanted = std::max(all / (factor * factor), all * (1 - bulk * (1 - left_by_a_cut)));
+  std::vector<std::uint8_t> marks(order.size(), 0);
+  if (factor <= 1) return marks;
+  double left = all;
+  // A mesh that hardly differs costs nearly as much as one that does.
+  const std::size_t least = order.size() / 20;
+  std::size_t cut = 0;
+  for (const std::size_t parent : order) {
+    const double effect = effects[static_cast<Eigen::Index>(parent)];
+    if ((left <= wanted && cut >= least) || cut == most || effect == 0) break;
+    left -= effect * (1 - left_by_a_cut);
+    marks[parent] = 1;
+    ++cut;
+  }
+  return marks;
+}
+
+Eigen::VectorXd importance(const RowTransport& transport, const RadiosityProblem& problem,
+                           const Eigen::VectorXd& interest) {
+  // With y = R psi it reads y = R interest + R F y.
+  const Field rho = problem.reflectance;
+  const RadiosityProblem adjoint{rho, rho.colwise() * interest.array(), problem.area};
+  const Field psi = solve(transport, adjoint, {.relative_error = 0.05}).irradiance.colwise() + interest.array();
+  return psi.rowwise().maxCoeff().matrix();
+}
+
+}  // namespace patchlight

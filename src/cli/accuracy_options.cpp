@@ -1,0 +1,57 @@
+#include "cli/accuracy_options.h"
+
+#include "cli/add_option.h"
+#include "cli/parse_value.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace patchlight::cli {
+
+void add_accuracy_options(CLI::App& command, Request& request) {
+  add(command, "--accuracy", "ERROR",
+      "relative error of the patches' mean radiosities, e.g. 1% or 0.01:\npatches and shadow rays are refined where it "
+      "pays until the error\nbars are below; begins with --patches, here 600 unless given, and\n--samples; default: "
+      "one "
+      "mesh",
+      [&request](const std::string& text) { request.accuracy = relative_error("--accuracy", text); });
+  add(command, "--time", "TIME",
+      "refines for about so long, e.g. 30s or 2min, or less when\n--accuracy is reached; default: no limit",
+      [&request](const std::string& text) { request.seconds = seconds("--time", text); });
+  command
+      .add_option("--interest", request.interest,
+                  "material, object or group: the error is that of its patches,\nand refinement serves them; may be "
+                  "repeated; default: all")
+      ->allow_extra_args(false)
+      ->option_text("NAME");
+  command.add_flag_callback(
+      "--error-bars", [&request] { request.error_bars = true; },
+      "error bars on every patch: from mesh, form factors and solver; as\nlong again as the solution; default: only "
+      "with --accuracy or --time");
+}
+
+void require_error_bars_possible(const Request& request, const std::string& form_factors) {
+  const char* const option = request.accuracy     ? "--accuracy"
+                             : request.seconds    ? "--time"
+                             : request.error_bars ? "--error-bars"
+                                                  : nullptr;
+  if (option == nullptr) {
+    if (request.interest.empty()) return;
+    throw UsageError("--interest needs --accuracy, --time or --error-bars");
+  }
+  const auto skips = [&request](Effect effect) {
+    return std::find(request.skip.begin(), request.skip.end(), effect) != request.skip.end();
+  };
+  const char* const other = request.on_demand                           ? "--on-demand"
+                            : !form_factors.empty()                     ? "--form-factors"
+                            : !request.close                            ? "--no-closure"
+                            : skips(Effect::closure)                    ? "--skip closure"
+                            : skips(Effect::interreflection)            ? "--skip interreflection"
+                            : request.estimator != Estimator::automatic ? "--estimator"
+                            : request.max_rows                          ? "--max-rows"
+                                                                        : nullptr;
+  if (other == nullptr) return;
+  throw UsageError(std::string(other) + " and " + option + " exclude each other; give one of them");
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,86 @@
+#include "cli/study.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/output/whole_file.h"
+#include "patchlight/output/write_study.h"
+#include "patchlight/study/price.h"
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/text_table.h"
+
+#include <iostream>
+#include <sstream>
+
+namespace patchlight::cli {
+namespace {
+
+std::string percent(double share) { return rounded(100 * share); }
+
+std::string table(const Study& study) {
+  std::vector<TextRow> rows{{"sweep", "patches", "samples", "tolerance", "seconds", "CPU", "MB", "error %", "display %",
+                             "own %", "order", "front"}};
+  for (const StudySweep& sweep : study.sweeps) {
+    for (const StudySetting& setting : sweep.settings) {
+      rows.push_back({sweep.name, std::to_string(setting.patches), std::to_string(setting.samples),
+                      rounded(setting.tolerance, 1), rounded(seconds_of(setting)), rounded(cpu_seconds_of(setting)),
+                      rounded(setting.matrix_bytes / 1e6, 2), percent(setting.error), percent(setting.display_error),
+                      percent(setting.own_error), rounded(setting.order, 2), setting.on_time_front ? "*" : ""});
+    }
+  }
+  return text_table(rows);
+}
+
+std::string facts(const Scene& scene, const Study& study) {
+  std::ostringstream text;
+  const StudyReference& reference = study.reference;
+  text << scene.file << ": errors of the reflected light against ";
+  if (reference.closed_form) {
+    text << "the closed form: a closed room with E = 1 - rho";
+  } else {
+    text << "a solution with " << reference.patches << " patches and " << reference.samples << " samples ("
+         << rounded(reference.cpu_seconds) << " CPU seconds), itself good to " << percent(reference.bar) << " %";
+  }
+  text << "\nerror: of the patch means; display: of the field, constant on each patch; own: due to the swept quantity "
+          "alone; *: on the Pareto front of error and CPU seconds\n"
+       << "at the finest setting: mesh " << percent(study.parts.mesh) << " %, form factors "
+       << percent(study.parts.form_factors) << " %, solver " << percent(study.parts.solver) << " %\n";
+  return text.str();
+}
+
+}  // namespace
+
+ExitCode study(const StudyArguments& arguments) {
+  check_study_writable(arguments.output);
+  const ThreadLimit limit(arguments.request.threads);
+  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  const Observer observer = [&line](const Progress& progress) {
+    line.show(progress);
+    return !interrupted();
+  };
+
+  // 1. Read the model, solve it in many ways
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Study study = patchlight::study(scene, arguments.request, arguments.options, observer);
+  line.hide();
+  if (!study.trapped.empty()) {
+    print_message("warning", "not solved, nothing written: " + study.trapped);
+    return not_converged;
+  }
+
+  // 2. Write tables and plots
+  const WritingGuard guard;
+  write_study(arguments.output, scene, study, {.command_line = arguments.command_line});
+  if (!arguments.quiet) {
+    for (const std::string& note : study.plan.notes) print_message("note", note);
+    std::cout << table(study) << facts(scene, study) << conclusion(study) << "\nwrote " << arguments.output.string()
+              << std::endl;
+  }
+  if (study.reference.converged) return good;
+  print_message("warning", "the reference has not converged: the errors above are relative to it");
+  return not_converged;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,77 @@
+#include "cli/study_options.h"
+
+#include "cli/add_option.h"
+#include "cli/mesh_options.h"
+#include "cli/model_options.h"
+#include "cli/parse_value.h"
+
+#include <string>
+
+namespace patchlight::cli {
+
+struct StudyCommandOptions {
+  ModelOptions model;
+  MeshOptions mesh;
+  StudyOptions study;
+  std::string output;
+  bool quiet = false;
+};
+
+namespace {
+
+void add_study_options(CLI::App& command, StudyCommandOptions& options) {
+  add(command, "-o,--output", "FOLDER", "folder for the table, the facts and the plots",
+      [&options](const std::string& text) { options.output = text; });
+  add(command, "--sizes", "N",
+      "how many sizes of patches at most, up to --patches or down to\n--max-edge; each has edges half as long as the "
+      "one before, so about\nfour times the patches; default 4",
+      [&options](const std::string& text) {
+        options.study.sizes = static_cast<int>(whole_number("--sizes", text, 2, 8));
+      });
+  add(command, "--tolerance", "NUMBER", "the smallest relative error of the solver; default 1e-6",
+      [&options](const std::string& text) {
+        const auto inside = [](double x) { return x >= 1e-10 && x < 1; };
+        options.mesh.request.tolerance = number("--tolerance", text, "a number from 1e-10 to below 1", inside);
+      });
+  command.add_flag_callback(
+      "--no-adaptive", [&options] { options.study.adaptive = false; },
+      "no solving to accuracies, with patches refined where it pays;\ndefault: 10, 3, 1 and 0.3 %, as far as twice "
+      "--patches");
+  command.add_flag_callback(
+      "--no-estimators", [&options] { options.study.estimators = false; },
+      "the estimators of form factors are not compared; default: they\nare, with a sixteenth of the patches");
+}
+
+}  // namespace
+
+std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
+  auto options = std::make_shared<StudyCommandOptions>();
+  StudyCommandOptions& to = *options;
+  CLI::App& command = *tool.add_subcommand("study", "solves a model in many ways: what accuracy costs");
+  add_model_options(command, to.model);
+  add_sides_option(command, to.mesh);
+  add_study_options(command, to);
+  add_patch_options(command, to.mesh);
+  add_sampling_options(command, to.mesh);
+  add_machine_options(command, to.mesh.request);
+  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
+  return options;
+}
+
+StudyArguments finish_study(const StudyCommandOptions& options) {
+  StudyArguments arguments;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.options = options.study;
+  arguments.output = options.output;
+  arguments.quiet = options.quiet;
+  if (arguments.models.empty()) throw UsageError("study: found no model; expected: patchlight study MODEL -o FOLDER");
+  if (arguments.output.empty()) throw UsageError("study: nothing would be written; give -o FOLDER");
+  if (arguments.request.estimator != Estimator::automatic) {
+    throw UsageError("--estimator: study compares all of them; leave the option out");
+  }
+  return arguments;
+}
+
+}  // namespace patchlight::cli

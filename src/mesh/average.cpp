@@ -1,0 +1,160 @@
+#include "patchlight/mesh/average.h"
+
+#include "patchlight/base/parallel.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cassert>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// Boxes that are this share of their size apart may touch: patches of a tilted polygon do so within rounding.
+constexpr double slack = 1e-9;
+
+Box box_of(const PatchMesh& mesh, PatchIndex patch) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  Box box;
+  for (const Point& corner : std::span<const Point>(corners)) box.extend(corner);
+  const Vector pad = Vector::Constant(slack * box.diagonal().norm());
+  return {box.min() - pad, box.max() + pad};
+}
+
+// The patches of one side of a polygon in the order of their lower ends along the axis on which they reach farthest.
+struct Row {
+  struct Entry {
+    Box box;
+    PatchIndex patch;
+  };
+  int axis = 0;
+  double longest = 0;  // of their boxes along the axis
+  std::vector<Entry> entries;
+};
+
+Row row_of(const PatchMesh& mesh, PatchRange range) {
+  Row row;
+  Box bounds;
+  for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
+    row.entries.push_back({box_of(mesh, patch), patch});
+    bounds.extend(row.entries.back().box);
+  }
+  if (row.entries.empty()) return row;
+  bounds.sizes().maxCoeff(&row.axis);
+  for (const Row::Entry& entry : row.entries) row.longest = std::max(row.longest, entry.box.sizes()[row.axis]);
+  const auto low = [&](const Row::Entry& entry) { return entry.box.min()[row.axis]; };
+  std::stable_sort(row.entries.begin(), row.entries.end(),
+                   [&](const auto& a, const auto& b) { return low(a) < low(b); });
+  return row;
+}
+
+// What two convex patches of one plane have in common: the one is cut by the planes that stand on the edges of the
+// other (Sutherland and Hodgman 1974).
+std::vector<Point> overlap(const PatchCorners& patch, const Vector& normal, const PatchCorners& other) {
+  const std::span<const Point> cut_by = patch;
+  const std::span<const Point> whole = other;
+  std::vector<Point> left(whole.begin(), whole.end());
+  for (std::size_t k = 0; k < cut_by.size() && !left.empty(); ++k) {
+    const Vector along = cut_by[(k + 1) % cut_by.size()] - cut_by[k];
+    left = clip_to_half_space(left, cut_by[k], normal.cross(along));
+  }
+  return left;
+}
+
+// Calls visit(k, common outline) for the patches of `row` that may overlap a patch.
+template <typename Visit>
+void for_overlaps(const PatchMesh& mesh, PatchIndex patch, const PatchMesh& other, const Row& row, Visit visit) {
+  const Box box = box_of(mesh, patch);
+  const PatchCorners corners = mesh.corner_points(patch);
+  const auto low = [&](const Row::Entry& entry, double end) { return entry.box.min()[row.axis] < end; };
+  const auto first = std::lower_bound(row.entries.begin(), row.entries.end(), box.min()[row.axis] - row.longest, low);
+  for (auto entry = first; entry != row.entries.end() && entry->box.min()[row.axis] <= box.max()[row.axis]; ++entry) {
+    if (!entry->box.intersects(box)) continue;
+    visit(entry->patch, overlap(corners, mesh.normal[patch], other.corner_points(entry->patch)));
+  }
+}
+
+std::vector<Row> rows_of(const PatchMesh& mesh) {
+  std::vector<Row> rows;
+  for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
+    rows.push_back(row_of(mesh, {mesh.first_patch[slot], mesh.first_patch[slot + 1]}));
+  }
+  return rows;
+}
+
+// Means over the patches of value(k, point) in the middle of what each has in common with a patch k of `other`.
+template <typename Value>
+Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns, Value value) {
+  assert(mesh.first_patch.size() == other.first_patch.size());
+  const std::vector<Row> rows = rows_of(other);
+  Field means = Field::Zero(mesh.size(), columns);
+  parallel_for(mesh.size(), [&](std::size_t i) {
+    const auto patch = static_cast<PatchIndex>(i);
+    const Row& row = rows[2 * static_cast<std::size_t>(mesh.polygon[i]) + static_cast<std::size_t>(mesh.side[i])];
+    double area = 0;
+    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
+      const double share = area_vector(common).norm();
+      if (share == 0) return;
+      means.row(patch) += share * value(k, area_centroid(common));
+      area += share;
+    });
+    assert(area > 0);
+    means.row(patch) /= area;
+  });
+  return means;
+}
+
+// The patches of the same polygon side at each vertex.
+std::vector<std::vector<PatchIndex>> patches_at_vertices(const PatchMesh& mesh) {
+  std::vector<std::vector<PatchIndex>> at(mesh.vertices.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const auto count = static_cast<std::size_t>(mesh.corner_points(i).count);
+    for (std::size_t k = 0; k < count; ++k) at[mesh.corners[i][k]].push_back(i);
+  }
+  return at;
+}
+
+}  // namespace
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
+  assert(values.rows() == other.size());
+  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
+}
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
+  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
+  const Eigen::Index columns = field.values.cols();
+  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
+    const Vector offset = point - other.centroid[k];
+    Field value = field.values.row(k);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
+    }
+    return value;
+  });
+}
+
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
+  const auto at_vertex = patches_at_vertices(mesh);
+  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
+  parallel_for(mesh.size(), [&](std::size_t row) {
+    const auto i = static_cast<PatchIndex>(row);
+    // Least squares over the patches around; without a slope across the patch.
+    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
+    const auto corners = std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
+    for (const std::uint32_t vertex : corners) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.polygon[j] != mesh.polygon[i]) continue;
+        const Vector way = mesh.centroid[j] - mesh.centroid[i];
+        moments += way * way.transpose();
+        right += way * (values.row(j) - values.row(i)).matrix();
+      }
+    }
+    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) field.slopes.row(i).segment(3 * c, 3) = slope.col(c).transpose();
+  });
+  return field;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "patchlight/study/reference.h"
+#include "patchlight/study/study.h"
+
+#include "study/nested_sizes.h"
+
+namespace patchlight {
+
+/// Where a study's settings are tried.
+struct Bench {
+  const Scene& scene;
+  Request request;  ///< of the finest setting
+  NestedSizes meshes;
+  Observer observer;
+
+  const SizedMesh& finest() const { return meshes.sizes.back(); }
+  /// Solves on one of the meshes.
+  Simulation run(const SizedMesh& on, const Request& asked, const SolveWith& solve = patchlight::solve) const;
+};
+
+/// \throws MemoryError when the reference would not fit.
+Bench bench_for(const Scene& scene, const Request& request, int sizes, const Observer& observer);
+
+/// What a solution has cost; its errors are left open.
+StudySetting setting_of(const Simulation& simulation);
+
+/// With its errors against the reference. Its own error is that of the patch means, too.
+StudySetting judged(const Simulation& simulation, const Reference& reference);
+
+/// With an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
+StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own);
+
+}  // namespace patchlight

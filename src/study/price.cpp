@@ -1,0 +1,219 @@
+#include "patchlight/study/price.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+// What a bar takes for granted where errors are seen to fall more slowly, or not to fall.
+constexpr double least_order = 0.5;
+
+// Below this share of the light nothing is worth a word.
+constexpr double least_error = 1e-6;
+
+// The largest number of patches that is looked at beyond the finest mesh, as a multiple of its own.
+constexpr double farthest = 16;
+
+// (x1^p - 1) / (x2^p - 1), which grows with p; ln x1 / ln x2 at p = 0.
+double ratio_of_errors(double p, double ln_x1, double ln_x2) {
+  return std::abs(p) < 1e-9 ? ln_x1 / ln_x2 : std::expm1(p * ln_x1) / std::expm1(p * ln_x2);
+}
+
+// ln(e1 / e2) / ln(x1 / x2)
+double slope(double e1, double e2, double ratio) {
+  return e1 > 0 && e2 > 0 && ratio != 1 ? std::log(e1 / e2) / std::log(ratio) : unknown;
+}
+
+double order_between(Swept swept, const StudySetting& before, const StudySetting& after, double reference_patches) {
+  switch (swept) {
+    case Swept::patch_size:
+      return order_in_edge(before, after, reference_patches);
+    case Swept::samples:
+      return slope(before.own_error, after.own_error, static_cast<double>(after.samples) / before.samples);
+    case Swept::tolerance:
+      return slope(before.own_error, after.own_error, before.tolerance / after.tolerance);
+  }
+  return unknown;
+}
+
+// Those that compete, on the front of CPU seconds, cheapest first: their errors fall.
+std::vector<StudySetting> time_front(const Study& study) {
+  std::vector<StudySetting> front;
+  for (const StudySweep& sweep : study.sweeps) {
+    for (const StudySetting& setting : sweep.settings) {
+      if (sweep.competes && setting.on_time_front) front.push_back(setting);
+    }
+  }
+  const auto cheaper = [](const auto& a, const auto& b) { return cpu_seconds_of(a) < cpu_seconds_of(b); };
+  std::stable_sort(front.begin(), front.end(), cheaper);
+  return front;
+}
+
+// Two sizes before the finest one, where there are so many: over a wider range it weighs less where patches happen to
+// meet the edges of shadows.
+const StudySetting& coarser_of(const StudySweep& sweep) {
+  return sweep.settings[sweep.settings.size() - std::min<std::size_t>(3, sweep.settings.size())];
+}
+
+// Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q from 1 to 2.
+Price extrapolated(double error, const StudySweep& by_size, const StudyReference& reference) {
+  Price price{error};
+  const StudySetting& fine = by_size.settings.back();
+  const StudySetting& coarse = coarser_of(by_size);
+  price.order = std::min(2.0, order_in_edge(coarse, fine, patches_of(reference)));
+  if (!(price.order > 0)) return price;
+  const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
+  if (!(more <= farthest)) return price;
+  const double growth = slope(cpu_seconds_of(fine), cpu_seconds_of(coarse),
+                              static_cast<double>(fine.patches) / static_cast<double>(coarse.patches));
+  price.finding = Finding::extrapolated;
+  price.cpu_seconds = cpu_seconds_of(fine) * std::pow(more, std::isnan(growth) ? 2 : std::clamp(growth, 1.0, 2.0));
+  return price;
+}
+
+// By the sweep of patches with which it is cheapest.
+Price extrapolated(double error, const Study& study) {
+  Price cheapest{error};
+  for (const StudySweep& sweep : study.sweeps) {
+    if (!sweep.competes || sweep.swept != Swept::patch_size || sweep.settings.size() < 2) continue;
+    const Price price = extrapolated(error, sweep, study.reference);
+    if (price.finding == Finding::not_reached) continue;
+    const bool first = cheapest.finding == Finding::not_reached;
+    if (first || price.cpu_seconds < cheapest.cpu_seconds) cheapest = price;
+  }
+  return cheapest;
+}
+
+// With so many digits, and never fewer than stand before the point.
+std::string rounded(double value, int digits) {
+  const int before_point = value >= 1 ? static_cast<int>(std::log10(value)) + 1 : 1;
+  std::ostringstream text;
+  text << std::setprecision(std::max(digits, before_point)) << value;
+  return text.str();
+}
+
+std::string percent(double share, int digits) { return rounded(100 * share, digits) + " %"; }
+
+std::string text_of(const Price& price, PatchIndex patches) {
+  const std::string error = percent(price.error, 2);
+  const std::string seconds = rounded(price.cpu_seconds, 2);
+  switch (price.finding) {
+    case Finding::interpolated:
+      return error + " costs " + seconds + " CPU seconds here";
+    case Finding::at_most:
+      return error + " costs at most " + seconds + " CPU seconds here";
+    case Finding::extrapolated:
+      return error + " costs about " + seconds + " CPU seconds (by the observed order " + rounded(price.order, 2) + ")";
+    case Finding::not_reached:
+      return error + " is not reached within " + std::to_string(patches) + " patches";
+  }
+  return {};
+}
+
+std::string limit_of(const ErrorParts& parts) {
+  const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
+  if (!(largest > least_error)) return "nothing limits you";
+  const std::string size = " (" + percent(largest, 2) + " of the light at the finest setting)";
+  if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
+  if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;
+  return "what limits you is the size of the patches" + size + ", most of all on `" + parts.worst_place + "`, " +
+         percent(parts.worst_share, 2) + " of the squared error";
+}
+
+}  // namespace
+
+double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches) {
+  const double ratio = coarse.error / fine.error;
+  if (std::isinf(reference_patches)) {
+    return 2 * slope(coarse.error, fine.error, static_cast<double>(fine.patches) / coarse.patches);
+  }
+  const double ln_x1 = 0.5 * std::log(reference_patches / coarse.patches);
+  const double ln_x2 = 0.5 * std::log(reference_patches / fine.patches);
+  if (!(ratio > 1) || !std::isfinite(ratio) || !(ln_x2 > 0) || !(ln_x1 > ln_x2)) return unknown;
+  double low = -10;
+  double high = 10;
+  while (high - low > 1e-6) {
+    const double middle = 0.5 * (low + high);
+    (ratio_of_errors(middle, ln_x1, ln_x2) < ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double patches_of(const StudyReference& reference) {
+  return reference.closed_form ? std::numeric_limits<double>::infinity() : static_cast<double>(reference.patches);
+}
+
+StudySweep with_orders(StudySweep sweep, double reference_patches) {
+  for (std::size_t k = 1; k < sweep.settings.size(); ++k) {
+    sweep.settings[k].order = order_between(sweep.swept, sweep.settings[k - 1], sweep.settings[k], reference_patches);
+  }
+  return sweep;
+}
+
+double richardson_bar(const StudySweep& by_size, double reference_patches) {
+  const StudySetting& fine = by_size.settings.back();
+  const double observed = order_in_edge(coarser_of(by_size), fine, reference_patches);
+  const double order = std::isnan(observed) ? least_order : std::clamp(observed, least_order, 2.0);
+  // e = C (h^p - h_ref^p), and C h_ref^p is what the reference is off.
+  return fine.error / std::expm1(0.5 * order * std::log(reference_patches / fine.patches));
+}
+
+std::vector<bool> pareto_front(const std::vector<std::array<double, 2>>& points) {
+  std::vector<bool> on_front;
+  for (const auto& a : points) {
+    on_front.push_back(std::none_of(points.begin(), points.end(), [&](const auto& b) {
+      return b[0] <= a[0] && b[1] <= a[1] && (b[0] < a[0] || b[1] < a[1]);
+    }));
+  }
+  return on_front;
+}
+
+Study with_fronts(Study study) {
+  std::vector<StudySetting*> competing;
+  for (StudySweep& sweep : study.sweeps) {
+    if (!sweep.competes) continue;
+    for (StudySetting& setting : sweep.settings) competing.push_back(&setting);
+  }
+  std::vector<std::array<double, 2>> by_time, by_memory;
+  for (const StudySetting* setting : competing) {
+    by_time.push_back({cpu_seconds_of(*setting), setting->error});
+    by_memory.push_back({setting->matrix_bytes, setting->error});
+  }
+  const std::vector<bool> time = pareto_front(by_time);
+  const std::vector<bool> memory = pareto_front(by_memory);
+  for (std::size_t k = 0; k < competing.size(); ++k) {
+    competing[k]->on_time_front = time[k];
+    competing[k]->on_memory_front = memory[k];
+  }
+  return study;
+}
+
+Price price_of(double error, const Study& study) {
+  const double bar = study.reference.bar;
+  const std::vector<StudySetting> front = time_front(study);
+  const auto good = std::find_if(front.begin(), front.end(),
+                                 [&](const StudySetting& setting) { return setting.error + bar <= error; });
+  if (good == front.end()) return extrapolated(error, study);
+  if (good == front.begin()) return {error, Finding::at_most, cpu_seconds_of(*good)};
+  const double e1 = (good - 1)->error + bar;
+  const double e2 = good->error + bar;
+  const double t1 = cpu_seconds_of(*(good - 1));
+  const double t2 = cpu_seconds_of(*good);
+  if (!(e2 > 0) || !(t1 > 0)) return {error, Finding::at_most, t2};
+  return {error, Finding::interpolated, t1 * std::pow(t2 / t1, std::log(e1 / error) / std::log(e1 / e2))};
+}
+
+std::string conclusion(const Study& study) {
+  const PatchIndex patches =
+      study.sweeps.empty() || study.sweeps.front().settings.empty() ? 0 : study.sweeps.front().settings.back().patches;
+  return text_of(price_of(0.01, study), patches) + ", " + text_of(price_of(0.003, study), patches) + "; " +
+         limit_of(study.parts) + ".";
+}
+
+}  // namespace patchlight

@@ -1,0 +1,85 @@
+#include "patchlight/study/study.h"
+
+#include "patchlight/base/parallel.h"
+#include "patchlight/study/price.h"
+#include "patchlight/study/reference.h"
+
+#include "study/bench.h"
+#include "study/error_parts.h"
+#include "study/sweeps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// What the settings are compared with, and what is told about it.
+struct Judge {
+  Reference reference;
+  StudyReference facts;
+};
+
+Judge judge_for(const Bench& bench, const Simulation& finest) {
+  Judge judge;
+  judge.reference.uniform = furnace_radiosity(finest.problem);
+  judge.facts.closed_form = judge.reference.uniform && finest.transport.lost.closed();
+  if (judge.facts.closed_form) return judge;
+  Request asked = bench.request;
+  asked.samples *= 4;
+  asked.tolerance = std::max(1e-12, 0.01 * asked.tolerance);
+  const Simulation finer = bench.run(bench.meshes.finer, asked);
+  judge.reference = reference_from(finer);
+  const StudySetting setting = setting_of(finer);
+  judge.facts.patches = setting.patches;
+  judge.facts.samples = setting.samples;
+  judge.facts.cpu_seconds = cpu_seconds_of(setting);
+  judge.facts.converged = finer.solution.converged;
+  return judge;
+}
+
+}  // namespace
+
+double seconds_of(const StudySetting& setting) {
+  double sum = 0;
+  for (const StageCost& cost : setting.costs) sum += cost.seconds;
+  return sum;
+}
+
+double cpu_seconds_of(const StudySetting& setting) {
+  double sum = 0;
+  for (const StageCost& cost : setting.costs) sum += cost.cpu_seconds;
+  return sum;
+}
+
+Study study(const Scene& scene, const Request& request, const StudyOptions& options, const Observer& observer) {
+  const ThreadLimit threads(request.threads);
+  // 1. The finest setting of the sweeps, and what all are judged by.
+  const Bench bench = bench_for(scene, request, options.sizes, observer);
+  const Tolerances tolerances = solve_to_tolerances(bench);
+  const Simulation& finest = tolerances.runs.back();
+  Study result;
+  result.plan = finest.plan;
+  result.trapped = finest.solution.trapped;
+  if (!result.trapped.empty()) return result;
+  const Judge judge = judge_for(bench, finest);
+  const Reference& reference = judge.reference;
+  result.reference = judge.facts;
+
+  // 2. One quantity at a time, all together, and the estimators.
+  result.sweeps = competing_sweeps(bench, reference, tolerances);
+  if (options.adaptive) result.sweeps.push_back(adaptive_sweep(bench, reference));
+  if (options.estimators) {
+    for (StudySweep& sweep : estimator_sweeps(bench, reference)) result.sweeps.push_back(std::move(sweep));
+  }
+
+  // 3. Orders, the reference's own error, the Pareto front, and what limits the finest setting.
+  const double patches = patches_of(judge.facts);
+  for (StudySweep& sweep : result.sweeps) sweep = with_orders(std::move(sweep), patches);
+  const StudySweep& by_size = result.sweeps[1];
+  result.reference.bar = judge.facts.closed_form ? 0 : richardson_bar(by_size, patches);
+  result.parts = error_parts(scene, finest, discrepancy(finest, reference), result.sweeps);
+  return with_fronts(std::move(result));
+}
+
+}  // namespace patchlight

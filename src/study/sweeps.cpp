@@ -1,0 +1,154 @@
+#include "study/sweeps.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+
+#include "memory.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Estimators are compared so many sizes below the finest, with about a sixteenth of the patches; on so few pairs they
+// differ as on many.
+constexpr std::size_t coarser_sizes = 2;
+// The hemisphere's samples are rays of a patch, not of a pair.
+constexpr int hemisphere_factor = 64;
+// What all of a sweep's samples are compared with has so many times more than the largest number of them.
+constexpr int finer_samples = 4;
+
+std::vector<double> tolerances_for(double finest) {
+  std::vector<double> tolerances;
+  for (double tolerance = 0.1; tolerance > 2 * finest; tolerance *= 0.1) tolerances.push_back(tolerance);
+  tolerances.push_back(finest);
+  return tolerances;
+}
+
+// Sizes of patches with as many samples as the finest one has, which is known already.
+StudySweep sweep_sizes(const Bench& bench, const Reference& reference, StudySetting finest) {
+  StudySweep sweep{"patch size at " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
+  Request asked = bench.request;
+  asked.samples = finest.samples;
+  const std::vector<SizedMesh>& sizes = bench.meshes.sizes;
+  for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
+    sweep.settings.push_back(judged(bench.run(sizes[k], asked), reference));
+  }
+  finest.own_error = finest.error;
+  sweep.settings.push_back(std::move(finest));
+  return sweep;
+}
+
+// Half, once, twice and four times the samples asked for.
+StudySweep sweep_samples(const Bench& bench, const Reference& reference, const Simulation& finest) {
+  Request asked = bench.request;
+  const int usual = asked.samples;
+  asked.samples = 4 * finer_samples * usual;
+  const Field own = bench.run(bench.finest(), asked).solution.radiosity;
+  StudySweep sweep{"samples", Swept::samples, {}};
+  for (const int samples : {std::max(1, usual / 2), usual, 2 * usual, 4 * usual}) {
+    asked.samples = samples;
+    const int used = make_plan(bench.scene, asked).samples;
+    if (!sweep.settings.empty() && used == sweep.settings.back().samples) continue;
+    const bool known = used == finest.plan.samples;
+    sweep.settings.push_back(judged(known ? finest : bench.run(bench.finest(), asked), reference, own));
+  }
+  return sweep;
+}
+
+StudySweep sweep_tolerances(const Tolerances& tolerances, const Reference& reference) {
+  StudySweep sweep{"tolerance", Swept::tolerance, {}};
+  for (const Simulation& run : tolerances.runs) sweep.settings.push_back(judged(run, reference, tolerances.exact));
+  return sweep;
+}
+
+}  // namespace
+
+Tolerances solve_to_tolerances(const Bench& bench) {
+  struct Run {
+    double tolerance;
+    Solution solution;
+    StageCost cost;
+  };
+  std::vector<Run> runs;
+  Tolerances result;
+  const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
+                                  const SolverOptions& usual, const Observer& watch) {
+    SolverOptions options = usual;
+    for (const double tolerance : tolerances_for(usual.relative_error)) {
+      options.relative_error = tolerance;
+      const double wall = wall_seconds();
+      const double cpu = cpu_seconds();
+      Solution solution = solve(transport, problem, options, watch);
+      runs.push_back({tolerance, std::move(solution), {Stage::solve, wall_seconds() - wall, cpu_seconds() - cpu}});
+    }
+    options.relative_error = std::max(1e-12, 0.01 * usual.relative_error);
+    result.exact = solve(transport, problem, options, watch).radiosity;
+    return runs.back().solution;
+  };
+  Simulation simulation = bench.run(bench.finest(), bench.request, solve_all);
+  for (Run& run : runs) {
+    simulation.plan.solver.relative_error = run.tolerance;
+    simulation.solution = std::move(run.solution);
+    for (StageCost& cost : simulation.costs) {
+      if (cost.stage == Stage::solve) cost = run.cost;
+    }
+    result.runs.push_back(simulation);
+  }
+  return result;
+}
+
+std::vector<StudySweep> competing_sweeps(const Bench& bench, const Reference& reference, const Tolerances& tolerances) {
+  const Simulation& finest = tolerances.runs.back();
+  StudySweep by_samples = sweep_samples(bench, reference, finest);
+  StudySweep usual = sweep_sizes(bench, reference, judged(finest, reference));
+  StudySweep more = sweep_sizes(bench, reference, by_samples.settings.back());
+  return {std::move(usual), std::move(more), std::move(by_samples), sweep_tolerances(tolerances, reference)};
+}
+
+StudySweep adaptive_sweep(const Bench& bench, const Reference& reference) {
+  StudySweep sweep{"adaptive", Swept::patch_size, {}};
+  Request asked = bench.request;
+  asked.patches.reset();
+  asked.max_edge = bench.meshes.coarsest_edge / 2;
+  asked.error_bars = true;
+  const std::size_t most = 2 * bench.finest().mesh.size();
+  for (const double accuracy : {0.1, 0.03, 0.01, 0.003}) {
+    asked.accuracy = accuracy;
+    asked.memory = std::min(usable_memory(bench.request), memory_needed(most, asked));
+    try {
+      StudySetting setting = judged(simulate(bench.scene, asked, bench.observer), reference);
+      const bool new_one = sweep.settings.empty() || setting.patches != sweep.settings.back().patches ||
+                           setting.samples != sweep.settings.back().samples;
+      if (new_one) sweep.settings.push_back(std::move(setting));
+    } catch (const MemoryError&) {
+      break;  // more than that is not to be judged by this reference
+    }
+  }
+  return sweep;
+}
+
+std::vector<StudySweep> estimator_sweeps(const Bench& bench, const Reference& reference) {
+  const std::vector<SizedMesh>& sizes = bench.meshes.sizes;
+  const SizedMesh& mesh = sizes[sizes.size() - 1 - std::min(coarser_sizes, sizes.size() - 1)];
+  Request asked = bench.request;
+  const int usual = asked.samples;
+  asked.samples = finer_samples * 16 * usual;
+  const Field own = bench.run(mesh, asked).solution.radiosity;
+  std::vector<StudySweep> sweeps;
+  for (const Estimator estimator :
+       {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
+    StudySweep sweep{std::string("estimator ") + name_of(estimator), Swept::samples, {}, false};
+    asked.estimator = estimator;
+    for (const int factor : {1, 4, 16}) {
+      asked.samples = factor * usual * (estimator == Estimator::hemisphere ? hemisphere_factor : 1);
+      sweep.settings.push_back(judged(bench.run(mesh, asked), reference, own));
+    }
+    sweeps.push_back(std::move(sweep));
+  }
+  return sweeps;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,178 @@
+#include "to_accuracy.h"
+
+#include "patchlight/accuracy/refinement.h"
+#include "patchlight/base/error.h"
+#include "patchlight/base/parallel.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/mesh/refine.h"
+
+#include "memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iomanip>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// How an accuracy is shared out, in quadrature. The solver's bound for all patches together is asked to be a fiftieth,
+// so that what it leaves to single patches is about a tenth.
+constexpr double share_of_mesh = 0.7;
+constexpr double share_of_form_factors = 0.6;
+constexpr double share_of_solver = 0.02;
+
+// Shadow rays of a pair, more than which are not worth their time.
+constexpr int most_samples = 512;
+
+// So many meshes at most.
+constexpr int most_steps = 20;
+
+std::string percent(double share) {
+  std::ostringstream text;
+  text << std::setprecision(2) << 100 * share << '%';
+  return text.str();
+}
+
+// The number of patches for which the mesh error is expected to be `factor` times smaller.
+double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
+
+int next_samples(int samples, double factor) {
+  const double needed = samples * factor * factor;
+  int next = samples;
+  while (next < needed && 2 * next <= most_samples) next *= 2;
+  return next;
+}
+
+// What one error may be when the others are as they are: what they leave, but no less than its share.
+double allowed(double accuracy, double share, double others) {
+  return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
+}
+
+// Errors are brought this much lower than they have to be, as they are estimates.
+constexpr double margin = 1.25;
+
+// By what factor the mesh error has to fall.
+double mesh_factor(const AccuracyStep& step, double accuracy) {
+  return margin * step.mesh / allowed(accuracy, share_of_mesh, std::hypot(step.form_factor, step.solver));
+}
+
+// The form factors' error falls as one over the root of samples and patches: samples for those that the mesh will need.
+// As long as that is far off, the usual number does.
+int samples_for(const AccuracyStep& step, double accuracy) {
+  constexpr double far_off = 1.5;
+  if (mesh_factor(step, accuracy) > far_off) return step.samples;
+  const double patches = patches_for(step.patches, mesh_factor(step, accuracy));
+  const double expected = step.form_factor * std::sqrt(step.patches / patches);
+  const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
+  return expected > share ? next_samples(step.samples, margin * expected / share) : step.samples;
+}
+
+// The pairs of patches that have to be found.
+double new_pairs(const AccuracyStep& step) {
+  const double all = step.patches;
+  const double known = step.patches - step.new_patches;
+  return all * all - known * known;
+}
+
+// The largest number of patches, new ones beside `known`, for which pairs take so many seconds.
+double patches_in(double seconds, double seconds_per_pair, double known) {
+  return std::sqrt(known * known + std::max(0.0, seconds) / seconds_per_pair);
+}
+
+// The accuracy that the usable memory allows.
+[[noreturn]] void refuse(const Request& request, const AccuracyStep& step, double patches) {
+  const double most = patches_that_fit(request);
+  const double reachable = step.total * std::min(1.0, std::pow(step.patches / most, mesh_order / 2));
+  throw MemoryError("--accuracy " + percent(*request.accuracy) + ": found that it takes about " +
+                    std::to_string(static_cast<long>(patches)) + " patches and " +
+                    gigabytes(memory_needed(static_cast<std::size_t>(patches), request)) + ", and " +
+                    gigabytes(usable_memory(request)) + " may be taken; expected about " + percent(reachable) +
+                    " or more: ask for that, or for an --interest");
+}
+
+struct Search {
+  const Setting& setting;
+  const Request& request;
+  Plan plan;
+  double start = wall_seconds();
+  double cpu_start = cpu_seconds();
+  std::vector<AccuracyStep> steps = {};
+
+  AccuracyStep step_of(const SolvedMesh& solved, PatchIndex known) const;
+  std::optional<MeshToSolve> next(SolvedMesh& solved);
+  std::size_t cuts_in_time(const AccuracyStep& step) const;
+};
+
+AccuracyStep Search::step_of(const SolvedMesh& solved, PatchIndex known) const {
+  AccuracyStep step = accuracy_of(solved);
+  step.new_patches -= known;
+  step.seconds = wall_seconds() - start;
+  step.cpu_seconds = cpu_seconds() - cpu_start;
+  return step;
+}
+
+// How many parents can be cut, each into sixteen new patches, in the time that is left.
+std::size_t Search::cuts_in_time(const AccuracyStep& step) const {
+  if (!plan.seconds) return std::numeric_limits<std::size_t>::max();
+  const double before = steps.size() > 1 ? steps[steps.size() - 2].seconds : 0;
+  const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
+  const double patches = patches_in((*plan.seconds - step.seconds) / margin, seconds_per_pair, step.patches);
+  return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
+}
+
+// The next mesh; none when the last one is good enough, or time is up.
+std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
+  const AccuracyStep& step = steps.back();
+  if (!solved.simulation.solution.converged) return std::nullopt;
+  // Without an accuracy the error is to be halved as long as there is time.
+  const double accuracy = plan.accuracy.value_or(step.total / 2);
+  if (margin * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+
+  std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
+  const double factor = mesh_factor(step, accuracy);
+  if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_in_time(step));
+  const int samples = plan.seconds ? plan.samples : samples_for(step, accuracy);
+  const bool more_samples = samples > plan.samples;
+  if (!more_samples && std::count(cut.begin(), cut.end(), 1) == 0) return std::nullopt;
+
+  FinerMesh finer = refine(solved.mesh, cut);
+  const auto most = static_cast<double>(patches_that_fit(request));
+  if (finer.mesh.patches.size() > most) {
+    if (plan.seconds) return std::nullopt;
+    refuse(request, step, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)));
+  }
+  plan.samples = samples;
+  plan.probes = std::max(plan.probes, samples / 2);
+  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}};
+  if (!more_samples) to_solve.known = std::move(solved.raw);
+  return to_solve;
+}
+
+}  // namespace
+
+SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
+  Search search{setting, request, plan};
+  if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
+  MeshToSolve to_solve{nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge)), {}, {}};
+  for (;;) {
+    require_memory(to_solve.mesh.patches.size(), request);
+    clock.finish(Stage::mesh);
+    const auto known = to_solve.known ? std::count_if(to_solve.place.begin(), to_solve.place.end(),
+                                                      [](PatchIndex p) { return p != no_patch; })
+                                      : 0;
+    SolvedMesh solved = solve_mesh(setting, search.plan, std::move(to_solve), clock);
+    search.steps.push_back(search.step_of(solved, static_cast<PatchIndex>(known)));
+    solved.simulation.accuracy = search.steps;
+    if (setting.with.look) setting.with.look(solved.simulation);
+    std::optional<MeshToSolve> next = search.next(solved);
+    if (!next) return solved;
+    to_solve = std::move(*next);
+  }
+}
+
+}  // namespace patchlight

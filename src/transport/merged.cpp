@@ -1,0 +1,79 @@
+#include "patchlight/transport/merged.h"
+
+#include "patchlight/base/parallel.h"
+
+#include "transport/narrow.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Partial sums are kept per stripe of parents; their number is fixed, so that the bits do not depend on the threads.
+constexpr PatchIndex stripes = 16;
+
+struct Effects {
+  const ExchangeAreas& S;
+  const FieldView& difference;
+  const FieldView& weight;
+
+  // The effect of the patches `from` on the patches `on`.
+  double of(const PatchRange& from, const PatchRange& on) const {
+    double effect = 0;
+    for (PatchIndex i = on.begin; i < on.end; ++i) {
+      for (Eigen::Index band = 0; band < difference.cols(); ++band) {
+        double sum = 0;
+        for (PatchIndex c = from.begin; c < from.end; ++c) sum += static_cast<double>(S.at(c, i)) * difference(c, band);
+        effect += weight(i, band) * sum * sum;
+      }
+    }
+    return effect;
+  }
+};
+
+}  // namespace
+
+ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& mesh) {
+  const ExchangeAreas& S = closed.exchange_areas;
+  assert(S.size() == mesh.patches.size());
+  ExchangeAreas sums(mesh.parents.size());
+  parallel_for(mesh.parents.size(), [&](std::size_t row) {
+    const auto G = static_cast<PatchIndex>(row);
+    const PatchRange g = mesh.patches_of(G);
+    for (PatchIndex H = 0; H < G; ++H) {
+      const PatchRange h = mesh.patches_of(H);
+      double sum = 0;
+      for (PatchIndex i = g.begin; i < g.end; ++i) {
+        for (PatchIndex j = h.begin; j < h.end; ++j) sum += static_cast<double>(S.at(j, i));
+      }
+      sums.set(H, G, narrow_toward_zero(sum));
+    }
+  });
+  // What narrowing took, and what the patches of a parent keep among themselves.
+  const Field rows = summed_by_parent(mesh, (row_sums(S) + closed.remainder).array());
+  Eigen::VectorXd remainder = rows.col(0).matrix() - row_sums(sums);
+  return {std::move(sums), std::move(remainder), closed.method};
+}
+
+Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh, const FieldView& difference,
+                                 const FieldView& weight) {
+  const PatchIndex count = mesh.parents.size();
+  const Effects effects{S, difference, weight};
+  std::vector<Eigen::VectorXd> partial(stripes, Eigen::VectorXd::Zero(count));
+  parallel_for(stripes, [&](std::size_t stripe) {
+    for (auto G = static_cast<PatchIndex>(stripe); G < count; G += stripes) {
+      const PatchRange g = mesh.patches_of(G);
+      for (PatchIndex H = 0; H < G; ++H) {
+        const PatchRange h = mesh.patches_of(H);
+        partial[stripe][G] += effects.of(g, h);
+        partial[stripe][H] += effects.of(h, g);
+      }
+    }
+  });
+  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
+  return partial[0];
+}
+
+}  // namespace patchlight

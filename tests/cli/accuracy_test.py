@@ -1,0 +1,206 @@
+"""`patchlight solve --accuracy`, `--time`, `--error-bars`: what is asked, what is stated, what is refused."""
+import json
+import math
+import re
+import struct
+import time
+import unittest
+
+from support import ROOM, ToolTest
+
+GOOD, USAGE, INPUT, NOT_REACHED, MEMORY = 0, 1, 2, 3, 4
+BARS = ("mesh", "form_factor", "solver", "total", "display")
+ARRAYS = ("error_mesh", "error_form_factor", "error_total", "display_error", "error_irradiance")
+# Both sides of the plate and the lamp's front take part, and the inner sides of the room.
+AREA = 6 * 4 + 2 * 1 + 0.25
+
+
+def faces_of(ply):
+    """The corners of every face of a binary PLY by `patchlight solve`."""
+    header, body = ply.split(b"end_header\n", 1)
+    vertices, faces = (int(re.search(rf"element {name} (\d+)".encode(), header)[1]) for name in ("vertex", "face"))
+    at = struct.Struct("<3d3B")
+    points = [at.unpack_from(body, k * at.size)[:3] for k in range(vertices)]
+    offset, found = vertices * at.size, []
+    for _ in range(faces):
+        count = body[offset]
+        found.append([points[k] for k in struct.unpack_from(f"<{count}i", body, offset + 1)])
+        offset += 1 + 4 * count
+    assert offset == len(body)
+    return found
+
+
+def minus(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def area_of(face):
+    return sum(math.hypot(*cross(minus(b, face[0]), minus(c, face[0]))) / 2 for b, c in zip(face[1:], face[2:]))
+
+
+class AccuracyTest(ToolTest):
+    def solve(self, *arguments, code=GOOD):
+        done = self.run_tool("solve", "room.obj", *arguments)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def report(self, *arguments, code=GOOD):
+        done = self.solve("--report", "report.json", *arguments, code=code)
+        return json.loads((self.folder / "report.json").read_text()), done
+
+    def body(self, name):
+        """All of a PLY but its header, which holds the command line."""
+        return (self.folder / name).read_bytes().split(b"end_header\n", 1)[1]
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()} - {"room.obj", "room.mtl"}
+
+    def test_values_that_are_refused(self):
+        for option, values, expected in (
+                ("--accuracy", ("0", "1", "100%", "-1%", "one", "", "1%%", "0.5 % %"), "1% or 0.01"),
+                ("--time", ("0s", "10", "-1s", "1d", "s", "", "nans"), "30s, 2min")):
+            for value in values:
+                done = self.solve("-o", "a.vtp", option, value, code=USAGE)
+                self.assertIn(f"{option}: found '{value}'", done.stderr)
+                self.assertIn(expected, done.stderr)
+        self.assertEqual(self.names(), set())
+
+    def test_options_that_leave_no_error_bars_are_refused(self):
+        for asked in (("--accuracy", "1%"), ("--time", "1s"), ("--error-bars",)):
+            for other in (("--on-demand", "--solver", "progressive"), ("--form-factors", "room.ff"), ("--no-closure",),
+                          ("--estimator", "area"), ("--solver", "progressive", "--max-rows", "5%")):
+                done = self.solve("-o", "a.vtp", *asked, *other, code=USAGE)
+                self.assertIn(asked[0], done.stderr)
+                self.assertIn(other[-2] if other[-1] == "5%" else other[0], done.stderr)
+                self.assertIn("exclude each other", done.stderr)
+        self.assertIn("--interest needs", self.solve("-o", "a.vtp", "--interest", "white", code=USAGE).stderr)
+        done = self.run_tool("relight", "room.ff", "-o", "a.vtp", "--accuracy", "1%")
+        self.assertEqual((done.returncode, "unknown option --accuracy" in done.stderr), (USAGE, True), done.stderr)
+        self.assertEqual(self.names(), set())
+
+    def test_an_unknown_interest_names_the_known_ones(self):
+        done = self.solve("-o", "a.vtp", "--accuracy", "5%", "--interest", "white", "--interest", "whyte", code=INPUT)
+        self.assertIn("'whyte'", done.stderr)
+        self.assertRegex(done.stderr, r"expected one of .*\blamp\b.*\bwhite\b")
+        self.assertEqual(self.names(), set())
+
+    def test_error_bars_are_stated_everywhere(self):
+        report, done = self.report("--patches", 400, "--error-bars", "-o", "a.vtp")
+        errors = report["relative_error"]
+        self.assertEqual(set(errors), set(BARS))
+        # The worst band may be another one for each: the total of one band is not above the hypotenuse of all.
+        parts = [errors[bar] for bar in BARS[:3]]
+        self.assertLessEqual(errors["total"], math.hypot(*parts) * (1 + 1e-12))
+        self.assertGreaterEqual(errors["total"], max(parts) * (1 - 1e-12))
+        self.assertEqual(len(report["accuracy"]), 1)
+        self.assertEqual(report["accuracy"][0]["patches"], report["mesh"]["patches"])
+        self.assertRegex(done.stdout, r"error of the patches' means about \S+ %: mesh \S+, form factors \S+, solver \S+; "
+                                      r"drawn with one value a patch \S+ %\n")
+        self.assertIn("error_bars", [cost["stage"].replace(" ", "_") for cost in report["costs"]])
+        written = (self.folder / "a.vtp").read_bytes()
+        for array in ARRAYS + ("error_solver",):
+            self.assertIn(f'Name="{array}"'.encode(), written)
+            self.assertIn(f'Name="unit_{array}"'.encode(), written)
+
+    def test_without_them_nothing_is_stated(self):
+        report, done = self.report("--patches", 200, "-o", "a.vtp")
+        self.assertEqual((report["relative_error"], report["accuracy"]), (None, []))
+        self.assertNotIn("error of the patches' means", done.stdout)
+        written = (self.folder / "a.vtp").read_bytes()
+        for array in ARRAYS:
+            self.assertNotIn(f'Name="{array}"'.encode(), written)
+
+    def test_percent_and_share_are_the_same_and_the_accuracy_is_met(self):
+        for number, accuracy in enumerate(("0.5%", "0.005")):
+            report, done = self.report("--accuracy", accuracy, "-v", "-o", f"{number}.ply")
+            steps = report["accuracy"]
+            self.assertEqual((report["request"]["accuracy"], report["request"]["patches"]), (0.005, None))
+            self.assertLessEqual(steps[-1]["total"], 0.005)
+            self.assertTrue(all(step["total"] > 0.005 for step in steps[:-1]))
+            self.assertEqual(steps[-1]["patches"], report["mesh"]["patches"])
+            self.assertEqual({bar: steps[-1][bar] for bar in BARS}, report["relative_error"])
+            self.assertGreater(len(steps), 1)
+            # A row for each mesh, each in a column of its own.
+            rows = [re.split(r"  +", line.strip()) for line in done.stdout.splitlines()]
+            first = rows.index(next(row for row in rows if row[0] == "patches"))
+            table = rows[first + 1:first + 1 + len(steps)]
+            self.assertEqual([int(row[0]) for row in table], [step["patches"] for step in steps])
+            self.assertEqual([int(row[1]) for row in table], [step["new_patches"] for step in steps])
+        self.assertEqual(self.body("0.ply"), self.body("1.ply"))
+
+    def test_any_number_of_threads_gives_the_same_bytes(self):
+        for threads in (1, 2):
+            self.solve("--accuracy", "0.5%", "--threads", threads, "-o", f"{threads}.ply")
+        self.assertEqual(self.body("1.ply"), self.body("2.ply"))
+
+    def test_refined_meshes_have_no_holes(self):
+        """Areas add up to the polygons', also where a corner hangs in the middle of a neighbour's edge."""
+        report, _ = self.report("--accuracy", "0.5%", "--sides", "both", "-o", "a.ply")
+        faces = faces_of((self.folder / "a.ply").read_bytes())
+        self.assertEqual(len(faces), report["mesh"]["patches"])
+        areas = [area_of(face) for face in faces]
+        both = 2 * (6 * 4 + 1 + 0.25)
+        # Corners are doubles of some 2 m: each area is right to 1e-15.
+        self.assertAlmostEqual(math.fsum(areas), both, delta=1e-15 * len(faces) * both)
+        # A corner hangs where it is the middle of an edge.
+        corners = {corner for face in faces for corner in face}
+        middles = {tuple((x + y) / 2 for x, y in zip(a, b)) for face in faces for a, b in zip(face, face[1:] + face[:1])}
+        self.assertGreater(len(corners & middles), 0)
+
+    def test_interest_saves_patches(self):
+        self.write("room.obj", ROOM.replace("f 13 14 15 16", "o plate\nf 13 14 15 16"))
+        everything, _ = self.report("--accuracy", "0.5%")
+        plate, done = self.report("--accuracy", "0.5%", "--interest", "plate")
+        self.assertEqual(plate["request"]["interest"], ["plate"])
+        self.assertLessEqual(plate["relative_error"]["total"], 0.005)
+        self.assertLess(plate["mesh"]["patches"], everything["mesh"]["patches"])
+        self.assertIn("error of the patches' means on plate about", done.stdout)
+
+    def test_time_ends_with_a_result(self):
+        begin = time.monotonic()
+        report, _ = self.report("--time", "1.5s", "-o", "a.vtp")
+        # No measure of speed: only that it does not go on and on.
+        self.assertLess(time.monotonic() - begin, 100)
+        self.assertEqual(report["request"]["time_s"], 1.5)
+        self.assertGreater(report["relative_error"]["total"], 0)
+        self.assertIn("a.vtp", self.names())
+
+    def test_an_accuracy_not_reached_in_time_is_exit_code_3_with_the_result(self):
+        report, done = self.report("--accuracy", "0.001%", "--time", "1s", "-o", "a.vtp", code=NOT_REACHED)
+        self.assertTrue(report["solution"]["converged"])
+        self.assertGreater(report["relative_error"]["total"], 1e-5)
+        found = re.search(r"warning: accuracy of 0.001 % NOT reached: the error is about (\S+) % after \S+ s; most of it "
+                          r"is from the (size of the patches|sampling of form factors). Give a longer --time", done.stderr)
+        self.assertIsNotNone(found, done.stderr)
+        self.assertAlmostEqual(float(found[1]) / 100 / report["relative_error"]["total"], 1, delta=0.05)
+        self.assertIn("a.vtp", self.names())
+
+    def test_what_is_not_solved_states_no_error(self):
+        done = self.solve("--set", "white.reflectance=1", "--set", "lamp.reflectance=1", "--error-bars", "--patches", 200,
+                          "-o", "a.vtp", code=NOT_REACHED)
+        self.assertIn("warning: not solved", done.stderr)
+        self.assertNotIn("error of the patches' means", done.stdout)
+
+    def test_an_accuracy_out_of_memory_is_exit_code_4_with_what_can_be_had(self):
+        done = self.solve("--accuracy", "0.05%", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
+        found = re.search(r"--accuracy 0.05%: found that it takes about (\d+) patches and (\S+) GB, and 0.08 GB may be "
+                          r"taken; expected about (\S+)% or more", done.stderr)
+        self.assertIsNotNone(found, done.stderr)
+        self.assertGreater(int(found[1]), 600)
+        self.assertGreater(float(found[2]), 0.08)
+        self.assertGreater(float(found[3]), 0.05)
+        self.assertEqual(self.names(), set())
+
+    def test_a_series_is_of_the_last_mesh(self):
+        report, _ = self.report("--accuracy", "0.5%", "--series", "a.pvd")
+        self.assertGreater(len(report["accuracy"]), 1)
+        frames = re.findall(r"<DataSet ", (self.folder / "a.pvd").read_text())
+        self.assertEqual(len(frames), len(report["solution"]["iterations"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,80 @@
+#include "patchlight/mesh/average.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/mesh/refine.h"
+#include "patchlight/solve/solve.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/dense.h"
+#include "patchlight/visibility/occluder.h"
+
+#include "problem_of.h"
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace patchlight::test {
+namespace {
+
+struct Solved {
+  PatchMesh mesh;
+  RadiosityProblem problem;
+  Field radiosity;
+};
+
+// Three unit squares that face each other and touch nowhere, the upper one a lamp: the light on them is smooth.
+Scene three_squares() {
+  Scene scene = empty_scene({grey(0.5), grey(0.5, 10)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)}, 1);
+  return with_quad(std::move(scene), {Point(1.5, 0, 0), Point(1.5, 0, 1), Point(1.5, 1, 1), Point(1.5, 1, 0)});
+}
+
+Solved solved_on(const Scene& scene, PatchMesh mesh) {
+  const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+  Assembly raw = assemble_exchange_areas(mesh, Occluder(scene));
+  const auto transport = dense_transport(keep_exchange_areas(std::move(raw.exchange_areas), "open"), area);
+  RadiosityProblem problem = problem_of(scene, mesh, area, false);
+  Field radiosity = solve(*transport, problem, {.relative_error = 1e-8}).radiosity;
+  return {std::move(mesh), std::move(problem), std::move(radiosity)};
+}
+
+// Each mesh cuts every patch of the one before into four.
+std::vector<Solved> solved_on_nested_meshes(const Scene& scene, int meshes) {
+  constexpr double half = 0.5 + 1e-9;
+  PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), half);
+  std::vector<Solved> all;
+  for (int k = 0; k < meshes; ++k) {
+    all.push_back(solved_on(scene, mesh));
+    mesh = refine(mesh);
+  }
+  return all;
+}
+
+double error_of_means(const Solved& solved, const Solved& reference) {
+  return relative_error(average_over(solved.mesh, reference.mesh, reference.radiosity), solved.radiosity,
+                        solved.problem);
+}
+
+double error_of_constants(const Solved& solved, const Solved& reference) {
+  return relative_error(reference.radiosity, average_over(reference.mesh, solved.mesh, solved.radiosity),
+                        reference.problem);
+}
+
+}  // namespace
+
+// Without shadow edges the means of patches converge with order 2, as the midpoint rule does, and a field that is
+// constant on each patch with order 1. Both against a mesh 16 and 64 times finer, whose own error would raise them by
+// less than 0.1.
+TEST(Orders, PatchMeansConvergeFasterThanTheConstantField) {
+  const std::vector<Solved> all = solved_on_nested_meshes(three_squares(), 5);
+  const Solved& reference = all[4];
+  const double of_means = std::log2(error_of_means(all[1], reference) / error_of_means(all[2], reference));
+  const double of_constants = std::log2(error_of_constants(all[1], reference) / error_of_constants(all[2], reference));
+  EXPECT_GE(of_means, 1.5);
+  EXPECT_LE(of_means, 2.3);
+  EXPECT_GE(of_constants, 0.9);
+  EXPECT_LE(of_constants, 1.3);
+}
+
+}  // namespace patchlight::test

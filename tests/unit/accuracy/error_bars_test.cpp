@@ -1,0 +1,70 @@
+#include "patchlight/accuracy/error_bars.h"
+
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+Request with_bars(std::size_t patches) {
+  Request request;
+  request.patches = patches;
+  request.error_bars = true;
+  return request;
+}
+
+// In a furnace B = 1 however large the patches, and closure leaves nothing of what samples have wrong in the row sums:
+// the bars have to know. What is left are the closure's and the solver's tolerance and the storage as floats.
+TEST(ErrorBars, VanishInAFurnace) {
+  Request request = with_bars(400);
+  request.tolerance = 1e-9;
+  const Simulation simulation = simulate(test::cube_room(0.5, 0.5), request);
+  ASSERT_TRUE(simulation.error_bars);
+  EXPECT_LT((simulation.solution.irradiance - 1).abs().maxCoeff(), 1e-6);
+  EXPECT_LT(simulation.error_bars->mesh.maxCoeff(), 1e-5);
+  EXPECT_LT(simulation.error_bars->solver.maxCoeff(), 1e-6);
+  EXPECT_LT(simulation.error_bars->display.maxCoeff(), 1e-5);
+}
+
+// They add up in quadrature, patch by patch and as a whole.
+TEST(ErrorBars, AddUpInQuadrature) {
+  const Simulation simulation = simulate(test::furnished_room(0.5), with_bars(600));
+  const ErrorBars& bars = *simulation.error_bars;
+  const Field squares = bars.mesh.square() + bars.form_factor.square() + bars.solver.square();
+  EXPECT_LT((bars.total().square() - squares).abs().maxCoeff(), 1e-14 * squares.maxCoeff());
+  EXPECT_GT(bars.mesh.minCoeff(), 0);
+  EXPECT_GT(bars.form_factor.maxCoeff(), 0);
+  ASSERT_EQ(simulation.accuracy.size(), 1U);
+  const AccuracyStep& step = simulation.accuracy[0];
+  // One band: the worst one is the same for all.
+  EXPECT_NEAR(step.total, std::hypot(step.mesh, step.form_factor, step.solver), 1e-12);
+  EXPECT_GT(step.display, step.mesh);
+}
+
+// ||rho bar||_A / ||B - E||_A, by hand: A = 1, 3; rho = .5, 1; bar = 2, 1; B - E = 3, 4.
+TEST(RelativeBar, IsRelativeToTheReflectedLight) {
+  const RadiosityProblem problem{Eigen::Array2d(0.5, 1), Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
+  Solution solution;
+  solution.radiosity = Eigen::Array2d(10, 4);
+  const Field bar = Eigen::Array2d(2, 1);
+  EXPECT_DOUBLE_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(1, 1)), std::sqrt((1.0 + 3) / (9 + 3 * 16)));
+  EXPECT_DOUBLE_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 1)), 0.25);
+  EXPECT_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 0)), 0);
+}
+
+// All is linear in the light.
+TEST(ErrorBars, ScaleWithTheLight) {
+  const Simulation one = simulate(test::furnished_room(0.5, 10), with_bars(400));
+  const Simulation bright = simulate(test::furnished_room(0.5, 80), with_bars(400));
+  // Eight is a power of two: the same bits.
+  EXPECT_TRUE((bright.error_bars->mesh == 8 * one.error_bars->mesh).all());
+  EXPECT_TRUE((bright.error_bars->form_factor == 8 * one.error_bars->form_factor).all());
+  EXPECT_EQ(bright.accuracy[0].total, one.accuracy[0].total);
+}
+
+}  // namespace
+}  // namespace patchlight

@@ -1,0 +1,112 @@
+#include "patchlight/accuracy/refinement.h"
+
+#include "support/direct_solution.h"
+#include "support/made_up_room.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+const Eigen::VectorXd effects = (Eigen::VectorXd(9) << 3, 0.5, 8, 1, 0, 2.5, 0.2, 4, 1).finished();
+
+// What is left of an effect when its parent is cut: the size of the patches halves.
+const double left_by_a_cut = std::pow(0.5, 2 * mesh_order);
+
+constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+
+double left_after(const std::vector<std::uint8_t>& marks) {
+  double left = 0;
+  for (Eigen::Index g = 0; g < effects.size(); ++g)
+    left += (marks[static_cast<std::size_t>(g)] != 0 ? left_by_a_cut : 1) * effects[g];
+  return left;
+}
+
+// The least number of parents, by trying all sets.
+int least_cuts(double wanted) {
+  int least = std::numeric_limits<int>::max();
+  for (unsigned set = 0; set < 1U << effects.size(); ++set) {
+    std::vector<std::uint8_t> marks;
+    for (Eigen::Index g = 0; g < effects.size(); ++g) marks.push_back(set >> g & 1U);
+    if (left_after(marks) <= wanted) least = std::min(least, std::popcount(set));
+  }
+  return least;
+}
+
+TEST(ParentsToCut, AreTheFewestThatDo) {
+  const double all = effects.sum();
+  for (const double factor : {1.01, 1.1, 1.2, 1.5, 1.8}) {
+    const std::vector<std::uint8_t> marks = parents_to_cut(effects, factor, no_limit);
+    const double wanted = all / (factor * factor);
+    EXPECT_LE(left_after(marks), wanted);
+    EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), least_cuts(wanted)) << factor;
+  }
+}
+
+TEST(ParentsToCut, AreNoneWhenNothingHasToFall) {
+  for (const double factor : {1.0, 0.5}) {
+    const std::vector<std::uint8_t> marks = parents_to_cut(effects, factor, no_limit);
+    EXPECT_EQ(std::count(marks.begin(), marks.end(), 0), effects.size());
+  }
+}
+
+// One cut of everything lets the error fall by 2^mesh_order at most: beyond, the fewest with nine tenths of the effect.
+TEST(ParentsToCut, HaveNineTenthsWhereCuttingAllWouldNotDo) {
+  const std::vector<std::uint8_t> marks = parents_to_cut(effects, 100, no_limit);
+  const double all = effects.sum();
+  const double wanted = all - 0.9 * all * (1 - left_by_a_cut);
+  EXPECT_LE(left_after(marks), wanted * (1 + 1e-15));
+  EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), least_cuts(wanted));
+  EXPECT_EQ(marks[4], 0);
+}
+
+TEST(ParentsToCut, AreTheMostEffectiveOnesWhenThereIsALimit) {
+  EXPECT_EQ(parents_to_cut(effects, 100, 3), (std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(parents_to_cut(effects, 100, 0), std::vector<std::uint8_t>(9, 0));
+}
+
+// <interest, B>_A = <psi, E>_A for the solution of B = E + R F B: the adjoint equation's reason to be. psi is solved to
+// 5 %: ||d(R psi)||_A <= 0.05 ||R (psi - interest)||_A, and psi is off by F of that, of no larger norm. What is of
+// interest reflects a third of what the others do, so that psi = interest + R F psi would show.
+TEST(Importance, IsReciprocal) {
+  constexpr PatchIndex size = 60;
+  test::Room room = test::made_up(size, 0.9);
+  RadiosityProblem& problem = room.problem;
+  problem.reflectance = Field::Constant(size, 1, 0.9);
+  problem.exitance = Field(size, 1);
+  Eigen::VectorXd interest(size);
+  for (PatchIndex i = 0; i < size; ++i) {
+    problem.exitance(i, 0) = 1 + std::sin(3.0 * i);
+    interest[i] = i % 3 == 0 ? 1 : 0;
+    if (i % 3 == 0) problem.reflectance(i, 0) = 0.3;
+    if (i % 3 == 1) problem.reflectance(i, 0) = 0.1;
+  }
+  const Eigen::VectorXd psi = importance(*room.transport, problem, interest);
+  const Eigen::ArrayXd A = problem.area.array();
+  const Eigen::ArrayXd B = test::direct_solution(*room.transport, problem).col(0);
+  const Eigen::ArrayXd E = problem.exitance.col(0);
+  const double seen = (A * interest.array() * B).sum();
+  const double by_importance = (A * psi.array() * E).sum();
+  const double off = 0.06 * area_norm(problem.reflectance.colwise() * (psi - interest).array(), problem.area)[0];
+  const double tolerance = off * area_norm(problem.exitance, problem.area)[0];
+  EXPECT_NEAR(by_importance, seen, tolerance);
+  // What is reflected is many times the tolerance.
+  EXPECT_GT(seen - (A * interest.array() * E).sum(), 5 * tolerance);
+}
+
+TEST(Importance, IsInterestWhereNothingReflects) {
+  test::Room room = test::made_up(20, 0);
+  Eigen::VectorXd interest = Eigen::VectorXd::Zero(20);
+  interest[3] = 1;
+  interest[7] = 1;
+  // Patches see those of interest directly: psi = interest + F R psi, and R = 0.
+  EXPECT_EQ(importance(*room.transport, room.problem, interest), interest);
+}
+
+}  // namespace
+}  // namespace patchlight
