@@ -53,7 +53,8 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& 
   const auto n = static_cast<double>(mesh.size());
   Request used = request;
   used.on_demand = plan.on_demand;
-  ExpectedCost cost{.patches = mesh.size(), .bytes = memory_needed(mesh.size(), used)};
+  ExpectedCost cost{
+      .patches = mesh.size(), .bytes = memory_needed(mesh.size(), used), .of_first_mesh = refines(request)};
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = request.threads > 0 ? request.threads : std::max(1, processors);
 

@@ -180,13 +180,19 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   return result;
 }
 
+NestedMesh first_mesh(const Scene& scene, const Plan& plan) {
+  if (plan.error_bars) return nest(tessellate(scene, plan.sides, 2 * plan.max_edge));
+  NestedMesh mesh;
+  mesh.patches = tessellate(scene, plan.sides, plan.max_edge);
+  return mesh;
+}
+
 SolvedMesh solve_mesh(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   MeshToSolve to_solve;
-  if (plan.error_bars) {
-    to_solve.mesh = nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge));
+  if (setting.with.mesh) {
+    to_solve.mesh.patches = setting.with.mesh();
   } else {
-    const MeshOf& mesh = setting.with.mesh;
-    to_solve.mesh.patches = mesh ? mesh() : tessellate(setting.scene, plan.sides, plan.max_edge);
+    to_solve.mesh = first_mesh(setting.scene, plan);
   }
   require_memory(to_solve.mesh.patches.size(), request);
   clock.finish(Stage::mesh);

@@ -41,7 +41,10 @@ struct SolvedMesh {
 /// steps throw.
 SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_solve, StageClock& clock);
 
-/// The same on the mesh that the plan says, nested when error bars are wanted.
+/// The mesh that the plan says, nested when error bars are wanted.
+NestedMesh first_mesh(const Scene& scene, const Plan& plan);
+
+/// Solves on first_mesh(), or on Steps::mesh.
 SolvedMesh solve_mesh(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock);
 
 /// One row of what accuracy has cost. Seconds and new patches are left open.

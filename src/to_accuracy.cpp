@@ -3,7 +3,6 @@
 #include "patchlight/accuracy/refinement.h"
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/mesh/refine.h"
 
 #include "memory.h"
@@ -158,7 +157,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   Search search{setting, request, plan};
   if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
-  MeshToSolve to_solve{nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge)), {}, {}};
+  MeshToSolve to_solve{first_mesh(setting.scene, plan), {}, {}};
   for (;;) {
     require_memory(to_solve.mesh.patches.size(), request);
     clock.finish(Stage::mesh);

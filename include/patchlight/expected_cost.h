@@ -16,6 +16,7 @@ struct ExpectedCost {
   double direct_light_seconds = 0;  ///< by luminaires, sun and sky
   double solve_seconds = 0;         ///< with closure
   int threads = 1;
+  bool of_first_mesh = false;  ///< patches are refined: the mesh to begin with alone
 
   /// Wall-clock seconds with all threads busy.
   double seconds() const { return (form_factor_seconds + direct_light_seconds + solve_seconds) / threads; }

@@ -3,7 +3,6 @@
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace patchlight::cli {
@@ -39,17 +38,14 @@ void require_error_bars_possible(const Request& request, const std::string& form
     if (request.interest.empty()) return;
     throw UsageError("--interest needs --accuracy, --time or --error-bars");
   }
-  const auto skips = [&request](Effect effect) {
-    return std::find(request.skip.begin(), request.skip.end(), effect) != request.skip.end();
-  };
-  const char* const other = request.on_demand                           ? "--on-demand"
-                            : !form_factors.empty()                     ? "--form-factors"
-                            : !request.close                            ? "--no-closure"
-                            : skips(Effect::closure)                    ? "--skip closure"
-                            : skips(Effect::interreflection)            ? "--skip interreflection"
-                            : request.estimator != Estimator::automatic ? "--estimator"
-                            : request.max_rows                          ? "--max-rows"
-                                                                        : nullptr;
+  const char* const other = request.on_demand                                 ? "--on-demand"
+                            : !form_factors.empty()                           ? "--form-factors"
+                            : !request.close                                  ? "--no-closure"
+                            : contains(request.skip, Effect::closure)         ? "--skip closure"
+                            : contains(request.skip, Effect::interreflection) ? "--skip interreflection"
+                            : request.estimator != Estimator::automatic       ? "--estimator"
+                            : request.max_rows                                ? "--max-rows"
+                                                                              : nullptr;
   if (other == nullptr) return;
   throw UsageError(std::string(other) + " and " + option + " exclude each other; give one of them");
 }

@@ -3,7 +3,6 @@
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,8 +22,11 @@ Effect effect_named(const std::string& option, const std::string& text) {
   return choice<Effect>(option, text, allowed);
 }
 
-bool contains(const std::vector<Effect>& effects, Effect effect) {
-  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+// An option with one of these effects that another option rules out.
+void require_without(const std::vector<Effect>& effects, Effect effect, const std::string& option,
+                     const std::string& other) {
+  if (!contains(effects, effect)) return;
+  throw UsageError(option + " " + name_of(effect) + " and " + other + " exclude each other; give one of them");
 }
 
 void add_effects(CLI::App& command, const std::string& option, const std::string& help, std::vector<Effect>& effects) {
@@ -51,24 +53,20 @@ void add_effect_options(CLI::App& command, Request& request) {
               request.skip);
 }
 
-void require_consistent_effects(const Request& request) {
-  for (const Effect effect : request.force) {
-    const std::string name = name_of(effect);
-    if (contains(request.skip, effect))
-      throw UsageError("--force " + name + " and --skip " + name + " exclude each other; give one of them");
+void require_consistent_effects(const Request& request, const std::string& form_factors) {
+  for (const Effect effect : request.force)
+    require_without(request.skip, effect, "--skip", "--force " + std::string(name_of(effect)));
+  const auto require_neither = [&request](Effect effect, const std::string& other) {
+    require_without(request.force, effect, "--force", other);
+    require_without(request.skip, effect, "--skip", other);
+  };
+  if (request.sides != Sides::automatic) {
+    require_neither(Effect::reach, "--sides");
+    require_neither(Effect::backs, "--sides");
   }
-  for (const Effect effect : {Effect::reach, Effect::backs}) {
-    if (request.sides == Sides::automatic) break;
-    const char* const option = contains(request.force, effect)  ? "--force "
-                               : contains(request.skip, effect) ? "--skip "
-                                                                : nullptr;
-    if (option != nullptr)
-      throw UsageError(option + std::string(name_of(effect)) + " and --sides exclude each other; give one of them");
-  }
-  if (!contains(request.force, Effect::closure)) return;
-  const char* const other = !request.close ? "--no-closure" : request.on_demand ? "--on-demand" : nullptr;
-  if (other != nullptr)
-    throw UsageError(std::string("--force closure and ") + other + " exclude each other; give one of them");
+  if (!form_factors.empty()) require_neither(Effect::occlusion, "--form-factors");
+  if (!request.close) require_without(request.force, Effect::closure, "--force", "--no-closure");
+  if (request.on_demand) require_without(request.force, Effect::closure, "--force", "--on-demand");
 }
 
 }  // namespace patchlight::cli

@@ -2,7 +2,6 @@
 
 #include "patchlight/base/parallel.h"
 #include "patchlight/expected_cost.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_plan.h"
 
@@ -10,6 +9,7 @@
 #include "cli/messages.h"
 #include "cli/text_table.h"
 #include "memory.h"
+#include "solve_mesh.h"
 
 #include <iomanip>
 #include <iostream>
@@ -38,7 +38,10 @@ std::string lines_of(const std::vector<Decision>& decisions) {
 }
 
 std::string cost_lines(const ExpectedCost& cost) {
-  return "expected: " + std::to_string(cost.patches) + " patches, " + rounded(cost.bytes / 1e9, 2) + " GB, about " +
+  const std::string first = cost.of_first_mesh ? "patches and shadow rays are chosen while solving; the first mesh "
+                                                 "alone is expected to take "
+                                               : "expected: ";
+  return first + std::to_string(cost.patches) + " patches, " + rounded(cost.bytes / 1e9, 2) + " GB, about " +
          rounded(cost.seconds(), 2) + " s on " + std::to_string(cost.threads) +
          (cost.threads == 1 ? " thread" : " threads") + " (an estimate, right to a factor of two or so)\n" +
          "processor seconds: form factors " + rounded(cost.form_factor_seconds, 2) + ", direct light " +
@@ -53,8 +56,8 @@ ExitCode plan(const PlanArguments& arguments) {
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_memory(scene, arguments.request);
   const Plan plan = make_plan(scene, arguments.request);
-  const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
-  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh);
+  const NestedMesh mesh = first_mesh(scene, plan);
+  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh.patches);
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);

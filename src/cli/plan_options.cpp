@@ -1,5 +1,6 @@
 #include "cli/plan_options.h"
 
+#include "cli/accuracy_options.h"
 #include "cli/add_option.h"
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
@@ -29,6 +30,7 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
     to.json = text;
   });
   add_patch_options(command, to.mesh);
+  add_accuracy_options(command, to.mesh.request);
   add_effect_options(command, to.mesh.request);
   add_sampling_options(command, to.mesh);
   add_machine_options(command, to.mesh.request);
@@ -42,7 +44,8 @@ PlanArguments finish_plan(const PlanOptions& options) {
   arguments.read = read_options(options.model);
   arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
   arguments.json = options.json;
-  require_consistent_effects(arguments.request);
+  require_consistent_effects(arguments.request, {});
+  require_error_bars_possible(arguments.request, {});
   for (const std::filesystem::path& model : arguments.models) {
     if (arguments.json.empty() || weakly_canonical(arguments.json) != weakly_canonical(model)) continue;
     throw UsageError("--json: '" + options.json + "' is a model; expected another file for the result");

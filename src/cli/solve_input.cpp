@@ -41,10 +41,14 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   request.samples = info.samples;
   request.seed = info.seed;
   request.estimator = info.estimator;
-  if (request.close || !is_closed(info)) return request;
+  if (!is_closed(info)) return request;
+  if (request.close && !contains(request.skip, Effect::closure)) {
+    request.force.push_back(Effect::closure);
+    return request;
+  }
   throw InputError(arguments.form_factors.string(),
                    "found form factors whose rows are closed (" + info.closure +
-                       "); expected them as computed, for --no-closure. Make them anew: patchlight form-factors MODEL "
+                       "); expected them as computed, without closure. Make them anew: patchlight form-factors MODEL "
                        "--raw -o FOLDER");
 }
 

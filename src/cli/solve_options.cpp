@@ -76,7 +76,7 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.form_factors = options.form_factors;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
   require_solver_of_rows(arguments);
-  require_consistent_effects(arguments.request);
+  require_consistent_effects(arguments.request, arguments.form_factors.string());
   require_error_bars_possible(arguments.request, arguments.form_factors.string());
   return arguments;
 }

@@ -235,6 +235,7 @@ std::size_t least_patches(const Scene& scene, const KeptSides& sides) {
 
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
   constexpr double close_enough = 0.005;
+  constexpr double same_edge = 1 + 1e-4;  // beyond that only faces of nearly the same size are told apart
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, sides, edge)); };
@@ -250,7 +251,7 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   double too_short = 0;
   //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
   double edge = std::min(0.5 * too_long, 4 * std::sqrt(kept_area(scene, sides) / wanted));
-  for (int guesses = 1; too_long > (1 + 1e-9) * too_short; ++guesses) {
+  for (int guesses = 1; too_long > same_edge * too_short; ++guesses) {
     const double number = count(edge);
     const double error = std::abs(number - wanted);
     if (error < best_error) best = edge, best_error = error;

@@ -19,6 +19,7 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
   json["decisions"] = decisions_part(plan.decisions);
   json["expected"] = {{"patches", cost.patches},
                       {"memory_bytes", cost.bytes},
+                      {"of_first_mesh", cost.of_first_mesh},
                       {"threads", cost.threads},
                       {"seconds", cost.seconds()},
                       {"form_factor_cpu_seconds", cost.form_factor_seconds},

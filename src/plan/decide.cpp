@@ -8,10 +8,6 @@
 namespace patchlight {
 namespace {
 
-bool contains(const std::vector<Effect>& effects, Effect effect) {
-  return std::find(effects.begin(), effects.end(), effect) != effects.end();
-}
-
 // The decision that the facts call for, or the one that the request asks for instead.
 Decision overruled(Decision by_facts, const Request& request) {
   const bool wanted =

@@ -1,5 +1,7 @@
 #include "patchlight/plan/effects.h"
 
+#include <algorithm>
+
 namespace patchlight {
 namespace {
 
@@ -44,6 +46,10 @@ const char* name_of(Effect effect) {
       return "glass";
   }
   return "";
+}
+
+bool contains(const std::vector<Effect>& effects, Effect effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
 std::string sentence(const Decision& decision) {

@@ -91,10 +91,9 @@ bool refines(const Request& request) { return request.accuracy || request.second
 KeptSides sides_for(const Scene& scene, const Request& request) {
   assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
   if (request.kept_sides) return *request.kept_sides;
-  const auto forced = [&](Effect effect) {
-    return std::find(request.force.begin(), request.force.end(), effect) != request.force.end();
-  };
-  return kept_sides(scene, request.sides, {.unreached = forced(Effect::reach), .turned_away = forced(Effect::backs)});
+  return kept_sides(
+      scene, request.sides,
+      {.unreached = contains(request.force, Effect::reach), .turned_away = contains(request.force, Effect::backs)});
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {

@@ -4,6 +4,7 @@ namespace patchlight {
 
 Simulation Bench::run(const SizedMesh& on, const Request& asked, const SolveWith& solve) const {
   Request of_mesh = asked;
+  of_mesh.force.push_back(Effect::interreflection);  // a matrix and a solver, even where no light is reflected
   of_mesh.patches.reset();
   of_mesh.max_edge = on.max_edge;
   return simulate(scene, of_mesh, observer, {.solve = solve, .mesh = [&on] { return on.mesh; }});

@@ -36,6 +36,15 @@ class PlanTest(ToolTest):
         self.assertRegex(done.stdout, r"expected: \d+ patches, [\d.]+ GB, about [\d.]+ s on \d+ thread")
         self.assertEqual(content(self.folder), before, "nothing is written, nothing is solved")
 
+    def test_with_an_accuracy_it_tells_the_first_mesh(self):
+        self.assertFalse(self.plan("--patches", "1000")["expected"]["of_first_mesh"])
+        done = self.run_tool("plan", "room.obj", "--patches", "1000", "--accuracy", "1%", "--json", "plan.json")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        self.assertIn("patches and shadow rays are chosen while solving", done.stdout)
+        expected = json.loads((self.folder / "plan.json").read_text())["expected"]
+        self.assertTrue(expected["of_first_mesh"])
+        self.assertLess(abs(expected["patches"] - 1000), 200)
+
     def test_facts_decide(self):
         plan = self.plan("--patches", "1000")
         self.assertEqual(list(plan["by_effect"]), EFFECTS)
@@ -64,6 +73,20 @@ class PlanTest(ToolTest):
         decision = report["plan"]["decisions"][0]
         self.assertEqual((decision["effect"], decision["simulate"], decision["forced"]), ("occlusion", False, True))
 
+    def test_closed_form_factors_stay_closed(self):
+        black = ("--set", "white.reflectance=0,0,0")
+        done = self.run_tool("form-factors", "room.obj", "--patches", "200", "-o", "room.ff")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", *black, "--report", "report.json")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        decisions = json.loads((self.folder / "report.json").read_text())["plan"]["decisions"]
+        by_effect = {decision["effect"]: decision for decision in decisions}
+        self.assertFalse(by_effect["interreflection"]["simulate"])
+        self.assertTrue(by_effect["closure"]["simulate"], "the rows of the folder are closed")
+        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", "--skip", "closure", "--report", "r.json")
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        self.assertIn("without closure", done.stderr)
+
     def test_an_empty_room_takes_no_shadow_rays_unless_forced(self):
         empty = ROOM.replace("f 13 14 15 16\n", "").replace("usemtl lamp\nf 9 12 11 10\n", "usemtl lamp\nf 5 8 7 6\n")
         self.write("room.obj", empty.replace("f 5 8 7 6\nf 1 5 6 2", "f 1 5 6 2"))
@@ -82,6 +105,11 @@ class PlanTest(ToolTest):
         self.assert_refused(["--force closure", "--on-demand"], *outputs, "--force", "closure", "--on-demand", "--solver",
                             "progressive")
         self.assert_refused(["--skip reach", "--sides"], *outputs, "--skip", "reach", "--sides", "both")
+        self.assert_refused(["--skip interreflection", "--accuracy"], *outputs, "--skip", "interreflection", "--accuracy",
+                            "1%")
+        self.assert_refused(["--skip closure", "--error-bars"], *outputs, "--skip", "closure", "--error-bars")
+        self.assert_refused(["--force occlusion", "--form-factors"], *outputs, "--force", "occlusion", "--form-factors",
+                            "room.ff")
         self.assert_refused(["shadows", "occlusion"], *outputs, "--skip", "shadows")
         self.assert_refused(["--skip", "mirrors"], *outputs, "--skip", "mirrors")
 

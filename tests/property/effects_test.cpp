@@ -4,7 +4,6 @@
 
 #include "support/effect_scenes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <utility>
@@ -24,28 +23,6 @@ constexpr double form_factor_error = 1.1e-3;
 
 // By so much an effect that matters has to differ for its test to be able to fail.
 constexpr double clear_difference = 0.02;
-
-Request coarse(double max_edge = 0.4) {
-  Request request;
-  request.max_edge = max_edge;
-  request.sides = Sides::front;
-  return request;
-}
-
-Request forcing(Effect effect, Request request) {
-  request.force.push_back(effect);
-  return request;
-}
-
-Request skipping(Effect effect, Request request) {
-  request.skip.push_back(effect);
-  return request;
-}
-
-const Decision& decision(const Simulation& simulation, Effect effect) {
-  return *std::find_if(simulation.plan.decisions.begin(), simulation.plan.decisions.end(),
-                       [effect](const Decision& decision) { return decision.effect == effect; });
-}
 
 // ||H_a - H_b||_A / ||H_b||_A, worst band.
 double difference(const Simulation& a, const Simulation& b) {

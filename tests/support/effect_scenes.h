@@ -1,10 +1,13 @@
 #pragma once
 
+#include "patchlight/simulate.h"
+
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <utility>
 
-// Scenes made for one effect each.
+// Scenes made for one effect each, and requests with and without it.
 namespace patchlight::test {
 
 /// An empty room of 4 x 3 x 2.5 m whose ceiling is the lamp: nothing can stand between two patches.
@@ -48,6 +51,29 @@ inline Scene with_daylight(Scene scene) {
   sky.horizontal_irradiance = Spectrum::Constant(1, 10);
   scene.sky = sky;
   return scene;
+}
+
+/// The front sides of a scene in patches of this size, metres.
+inline Request coarse(double max_edge = 0.4) {
+  Request request;
+  request.max_edge = max_edge;
+  request.sides = Sides::front;
+  return request;
+}
+
+inline Request forcing(Effect effect, Request request) {
+  request.force.push_back(effect);
+  return request;
+}
+
+inline Request skipping(Effect effect, Request request) {
+  request.skip.push_back(effect);
+  return request;
+}
+
+inline const Decision& decision(const Simulation& simulation, Effect effect) {
+  return *std::find_if(simulation.plan.decisions.begin(), simulation.plan.decisions.end(),
+                       [effect](const Decision& decision) { return decision.effect == effect; });
 }
 
 }  // namespace patchlight::test

@@ -28,6 +28,8 @@ std::vector<Effect> simulated_effects();
 /// The effect's name as on the command line.
 const char* name_of(Effect effect);
 
+bool contains(const std::vector<Effect>& effects, Effect effect);
+
 /// Whether an effect is simulated, and why.
 struct Decision {
   Effect effect = Effect::occlusion;
