@@ -235,7 +235,7 @@ std::size_t least_patches(const Scene& scene, const KeptSides& sides) {
 
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
   constexpr double close_enough = 0.005;
-  constexpr double same_edge = 1 + 1e-4;  // beyond that only faces of nearly the same size are told apart
+  constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, sides, edge)); };

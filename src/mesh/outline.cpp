@@ -14,12 +14,14 @@ Outline make_outline(const Scene& scene, PolygonIndex polygon, double max_edge) 
   // An edge of n max_edge has n parts, whatever the rounding of its length.
   constexpr double rounding = 1e-9;
   Outline outline{.corners = {}, .parts = {}, .normal = front_normal(scene, polygon)};
+  outline.corners.reserve(scene.polygons[polygon].corners.size());
   for (const Point& corner : corner_points(scene, polygon)) {
     if (outline.corners.empty() || corner != outline.corners.back()) outline.corners.push_back(corner);
   }
   while (outline.corners.size() > 1 && outline.corners.back() == outline.corners.front()) outline.corners.pop_back();
 
   const std::size_t n = outline.corners.size();
+  outline.parts.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double length = (outline.corners[(k + 1) % n] - outline.corners[k]).norm();
     outline.parts.push_back(static_cast<std::uint32_t>(std::max(1.0, std::ceil(length / max_edge - rounding))));
