@@ -7,6 +7,7 @@
 #include "patchlight/mesh/refine.h"
 
 #include "memory.h"
+#include "with_error_bars.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,24 @@ int samples_for(const AccuracyStep& step, double accuracy) {
   const double expected = step.form_factor * std::sqrt(step.patches / patches);
   const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
   return expected > share ? next_samples(step.samples, margin * expected / share) : step.samples;
+}
+
+// Whether the form factors' error is too large, most of it in light straight from the lamps: then it takes more rays
+// from them only. Cutting them has that effect, and leaves what is known of the other pairs.
+bool lamps_limit(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
+  const double of_lamps = solved.of_direct_light;
+  return margin * step.form_factor > share && 2 * of_lamps * of_lamps > step.form_factor * step.form_factor &&
+         4 * share_of_lamps(solved.simulation.problem) < most_lamps;
+}
+
+std::vector<std::uint8_t> with_lamps(std::vector<std::uint8_t> cut, const SolvedMesh& solved) {
+  const NestedMesh& mesh = solved.mesh;
+  const Field& exitance = solved.simulation.problem.exitance;
+  for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
+    if ((exitance.row(i) > 0).any()) cut[mesh.parent[i]] = 1;
+  }
+  return cut;
 }
 
 // The pairs of patches that have to be found.
@@ -136,7 +155,12 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
   const double factor = mesh_factor(step, accuracy);
   if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_in_time(step));
-  const int samples = plan.seconds ? plan.samples : samples_for(step, accuracy);
+  int samples = plan.samples;
+  if (lamps_limit(solved, step, accuracy)) {
+    cut = with_lamps(std::move(cut), solved);
+  } else if (!plan.seconds) {
+    samples = samples_for(step, accuracy);
+  }
   const bool more_samples = samples > plan.samples;
   if (!more_samples && std::count(cut.begin(), cut.end(), 1) == 0) return std::nullopt;
 
