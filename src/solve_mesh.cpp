@@ -19,13 +19,19 @@
 namespace patchlight {
 namespace {
 
-// Exchange areas before closure, of which known ones are taken over.
-Assembly assembly_of(const Setting& setting, const Plan& plan, MeshToSolve to_solve) {
+// Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
+Assembly assembly_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
   const PatchMesh& mesh = to_solve.mesh.patches;
   const AssemblyOptions options = assembly_options(plan);
   if (!to_solve.known) return assemble_exchange_areas(mesh, setting.occluder, options, setting.observer);
-  return assemble_exchange_areas(mesh, setting.occluder, options, {*to_solve.known, std::move(to_solve.place)},
-                                 setting.observer);
+  return assemble_exchange_areas(mesh, setting.occluder, options, {*to_solve.known, to_solve.place}, setting.observer);
+}
+
+LostShare lost_share_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
+  const auto& [mesh, place, known, lost] = to_solve;
+  if (!lost)
+    return measure_lost_share(mesh.patches, setting.occluder, plan.lost_share_rays, plan.seed, setting.observer);
+  return measure_lost_share(mesh.patches, setting.occluder, KnownShares{*lost, place}, plan.seed, setting.observer);
 }
 
 // Exchange areas by computation, unless they are known or computed on demand.
@@ -64,15 +70,16 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   //    demand; and the share of each patch's hemisphere from which no patch is seen.
   Exchange exchange;
   if (plan.error_bars) {
-    result.raw = assembly_of(setting, plan, std::move(to_solve));
-    exchange =
-        exchange_of(*result.raw, mesh, measure_lost_share(mesh, occluder, plan.lost_share_rays, plan.seed, observer));
+    result.raw = assembly_of(setting, plan, to_solve);
+    exchange = exchange_of(*result.raw, mesh, lost_share_of(setting, plan, to_solve));
+    to_solve.known.reset();
   } else {
     exchange = exchange_on(setting, plan, mesh);
   }
   const Eigen::VectorXd area = exchange.area;
   facts = facts_of(exchange);
-  if (!with.exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
+  if (!with.exchange && !plan.error_bars)
+    facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
   clock.finish(Stage::form_factors);
 
   // 2. Closure: each row sums up to what its patch sees.

@@ -26,6 +26,7 @@ struct MeshToSolve {
   NestedMesh mesh;
   std::vector<PatchIndex> place;  ///< per patch: the same one in the mesh whose exchange areas are known, or no_patch
   std::optional<Assembly> known;  ///< exchange areas of that mesh, before closure; none: all are new
+  std::optional<LostShare> lost;  ///< its lost shares; none: all are new
 };
 
 /// A solved mesh.

@@ -54,8 +54,9 @@ double allowed(double accuracy, double share, double others) {
   return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
 }
 
-// Errors are brought this much lower than they have to be, as they are estimates.
+// Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much lower.
 constexpr double margin = 1.25;
+constexpr double enough = 1.1;
 
 // By what factor the mesh error has to fall.
 double mesh_factor(const AccuracyStep& step, double accuracy) {
@@ -150,7 +151,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!solved.simulation.solution.converged) return std::nullopt;
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
-  if (margin * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+  if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
 
   std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
   const double factor = mesh_factor(step, accuracy);
@@ -172,7 +173,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   }
   plan.samples = samples;
   plan.probes = std::max(plan.probes, samples / 2);
-  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}};
+  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};
   if (!more_samples) to_solve.known = std::move(solved.raw);
   return to_solve;
 }
@@ -182,7 +183,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   Search search{setting, request, plan};
   if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
-  MeshToSolve to_solve{nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge)), {}, {}};
+  MeshToSolve to_solve{nest(tessellate(setting.scene, plan.sides, 2 * plan.max_edge)), {}, {}, {}};
   for (;;) {
     require_memory(to_solve.mesh.patches.size(), request);
     clock.finish(Stage::mesh);
