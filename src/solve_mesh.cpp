@@ -1,7 +1,5 @@
 #include "solve_mesh.h"
 
-#include "patchlight/accuracy/refinement.h"
-#include "patchlight/base/sampling.h"
 #include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/solve/energy.h"
@@ -11,9 +9,9 @@
 #include "patchlight/transport/ray_rate.h"
 
 #include "effects.h"
-#include "interest.h"
 #include "memory.h"
 #include "problem_of.h"
+#include "with_error_bars.h"
 
 #include <limits>
 #include <memory>
@@ -22,23 +20,19 @@
 namespace patchlight {
 namespace {
 
-// The same light on the parents, with the exchange areas of their patches summed up.
-Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
-                           const RadiosityProblem& problem) {
-  const RadiosityProblem coarse = problem_of_parents(mesh, problem);
-  SolverOptions options = plan.solver;
-  options.solver = Solver::cg;
-  options.max_rows.reset();
-  return solve(*dense_transport(std::move(of_parents), coarse.area), coarse, options).radiosity;
-}
-
-// Exchange areas before closure, of which known ones are taken over.
-Assembly assembly_of(const Setting& setting, const Plan& plan, MeshToSolve to_solve) {
+// Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
+Assembly assembly_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
   const PatchMesh& mesh = to_solve.mesh.patches;
   const AssemblyOptions options = assembly_options(plan);
   if (!to_solve.known) return assemble_exchange_areas(mesh, setting.occluder, options, setting.observer);
-  return assemble_exchange_areas(mesh, setting.occluder, options, {*to_solve.known, std::move(to_solve.place)},
-                                 setting.observer);
+  return assemble_exchange_areas(mesh, setting.occluder, options, {*to_solve.known, to_solve.place}, setting.observer);
+}
+
+LostShare lost_share_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
+  const auto& [mesh, place, known, lost] = to_solve;
+  if (!lost)
+    return measure_lost_share(mesh.patches, setting.occluder, plan.lost_share_rays, plan.seed, setting.observer);
+  return measure_lost_share(mesh.patches, setting.occluder, KnownShares{*lost, place}, plan.seed, setting.observer);
 }
 
 // Exchange areas by computation, unless they are known or computed on demand.
@@ -46,22 +40,6 @@ Exchange exchange_on(const Setting& setting, const Plan& plan, const PatchMesh& 
   if (setting.with.exchange) return setting.with.exchange(mesh);
   const auto find = plan.on_demand ? exchange_on_demand : trace_exchange;
   return find(mesh, setting.occluder, assembly_options(plan), plan.lost_share_rays, setting.observer);
-}
-
-// Lamps with so large a share of the patches are not traced a second time.
-constexpr double most_lamps = 0.125;
-
-// How far two independent values of the irradiance straight from the lamps are apart; nothing where these are too many.
-Field direct_difference(const Setting& setting, const Plan& plan, const Assembly& raw, const Simulation& simulation) {
-  const Field& exitance = simulation.problem.exitance;
-  const Eigen::VectorXd& area = simulation.problem.area;
-  const auto emits = (exitance > 0).rowwise().any();
-  if (static_cast<double>(emits.count()) > most_lamps * static_cast<double>(exitance.rows())) return {};
-  AssemblyOptions again = assembly_options(plan);
-  again.seed = hash({plan.seed, 1});
-  const auto transport = on_demand_transport(simulation.mesh, setting.occluder, again, area);
-  const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, setting.observer);
-  return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 
 TransportFacts facts_of(const Exchange& exchange) {
@@ -76,45 +54,6 @@ TransportFacts facts_of(const Exchange& exchange) {
 ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& observer) {
   return plan.close ? close_exchange(std::move(exchange), observer)
                     : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
-}
-
-// Error bars, and where finer patches would pay.
-SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowTransport& transport,
-                           ClosedExchangeAreas of_parents) {
-  Simulation& simulation = result.simulation;
-  const Plan& plan = simulation.plan;
-  const PatchMesh& mesh = simulation.mesh;
-  const ExchangeAreas& S = result.raw->exchange_areas;
-  const SolvedProblem solved{simulation.problem, simulation.solution, simulation.transport.lost.closed() && plan.close};
-  const Field coarse = radiosity_of_parents(std::move(of_parents), result.mesh, plan, solved.problem);
-  const Field from_larger = mesh_errors(result.mesh, transport, solved, coarse);
-  const Field in_gaps = gap_errors(mesh, S, solved);
-  const Field dark = dark_differences(simulation.transport.lost, solved);
-  const Field by_dark_parts = transport.apply(dark);
-  const Field sampled = form_factor_errors(mesh, *result.raw, transport, solved,
-                                           direct_difference(setting, plan, *result.raw, simulation));
-  const Field& of_lights = simulation.direct_standard_error;
-  const Field direct = of_lights.size() > 0 ? of_lights : Field::Zero(sampled.rows(), sampled.cols());
-  const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(simulation.transport.lost);
-  simulation.error_bars = {.mesh = (from_larger.square() + in_gaps.square() + by_dark_parts.square()).sqrt(),
-                           .form_factor = (sampled.square() + exposure.square() + direct.square()).sqrt(),
-                           .solver = solver_errors(solved),
-                           .display = display_errors(result.mesh, solved)};
-
-  result.interest = interest_of(setting.scene, mesh, plan.interest);
-  require_reflecting(setting.scene, simulation.problem, result.interest);
-  const bool all = result.interest.minCoeff() == 1;
-  const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
-  // The sources' effects as shares of the errors that they explain, and the errors of gaps, which are their own.
-  const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
-  const auto shared_out = [&](const Field& bar, const Field& difference) -> Eigen::VectorXd {
-    const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, {difference, weight});
-    const double sum = effects.sum();
-    return sum > 0 ? Eigen::VectorXd(squares(bar).sum() / sum * effects) : effects;
-  };
-  result.effects = shared_out(from_larger, differences_from_parents(result.mesh, solved)) +
-                   shared_out(by_dark_parts, dark) + squares(in_gaps);
-  return result;
 }
 
 }  // namespace
@@ -132,15 +71,16 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   //    demand; and the share of each patch's hemisphere from which no patch is seen.
   Exchange exchange;
   if (plan.error_bars) {
-    result.raw = assembly_of(setting, plan, std::move(to_solve));
-    exchange =
-        exchange_of(*result.raw, mesh, measure_lost_share(mesh, occluder, plan.lost_share_rays, plan.seed, observer));
+    result.raw = assembly_of(setting, plan, to_solve);
+    exchange = exchange_of(*result.raw, mesh, lost_share_of(setting, plan, to_solve));
+    to_solve.known.reset();
   } else {
     exchange = exchange_on(setting, plan, mesh);
   }
   const Eigen::VectorXd area = exchange.area;
   facts = facts_of(exchange);
-  if (!with.exchange) facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
+  if (!with.exchange && !plan.error_bars)
+    facts.bare_rays_per_second = bare_ray_rate(mesh, occluder, facts.counts.shadow_rays / 16);
   clock.finish(Stage::form_factors);
 
   // 2. Closure: each row sums up to what its patch sees.

@@ -26,6 +26,7 @@ struct MeshToSolve {
   NestedMesh mesh;
   std::vector<PatchIndex> place;  ///< per patch: the same one in the mesh whose exchange areas are known, or no_patch
   std::optional<Assembly> known;  ///< exchange areas of that mesh, before closure; none: all are new
+  std::optional<LostShare> lost;  ///< its lost shares; none: all are new
 };
 
 /// A solved mesh.
@@ -34,7 +35,8 @@ struct SolvedMesh {
   NestedMesh mesh;
   std::optional<Assembly> raw;  ///< with parents: exchange areas before closure
   Eigen::VectorXd interest;     ///< with parents: 1 for each patch whose error counts, else 0
-  Eigen::VectorXd effects;      ///< when patches are refined: effects_of_parents()
+  Eigen::VectorXd effects;      ///< with parents: effects_of_parents()
+  double of_direct_light = 0;   ///< with parents: what sampling errs in light straight from lamps, as relative_bar()
 };
 
 /// Form factors, closure, solution and, with parents, error bars, as the plan says. \throws Cancelled, and what the

@@ -6,6 +6,7 @@
 #include "patchlight/mesh/refine.h"
 
 #include "memory.h"
+#include "with_error_bars.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,8 +53,9 @@ double allowed(double accuracy, double share, double others) {
   return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
 }
 
-// Errors are brought this much lower than they have to be, as they are estimates.
+// Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much lower.
 constexpr double margin = 1.25;
+constexpr double enough = 1.1;
 
 // By what factor the mesh error has to fall.
 double mesh_factor(const AccuracyStep& step, double accuracy) {
@@ -69,6 +71,24 @@ int samples_for(const AccuracyStep& step, double accuracy) {
   const double expected = step.form_factor * std::sqrt(step.patches / patches);
   const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
   return expected > share ? next_samples(step.samples, margin * expected / share) : step.samples;
+}
+
+// Whether the form factors' error is too large, most of it in light straight from the lamps: then it takes more rays
+// from them only. Cutting them has that effect, and leaves what is known of the other pairs.
+bool lamps_limit(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
+  const double of_lamps = solved.of_direct_light;
+  return margin * step.form_factor > share && 2 * of_lamps * of_lamps > step.form_factor * step.form_factor &&
+         4 * share_of_lamps(solved.simulation.problem) < most_lamps;
+}
+
+std::vector<std::uint8_t> with_lamps(std::vector<std::uint8_t> cut, const SolvedMesh& solved) {
+  const NestedMesh& mesh = solved.mesh;
+  const Field& exitance = solved.simulation.problem.exitance;
+  for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
+    if ((exitance.row(i) > 0).any()) cut[mesh.parent[i]] = 1;
+  }
+  return cut;
 }
 
 // The pairs of patches that have to be found.
@@ -130,12 +150,17 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!solved.simulation.solution.converged) return std::nullopt;
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
-  if (margin * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+  if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
 
   std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
   const double factor = mesh_factor(step, accuracy);
   if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_in_time(step));
-  const int samples = plan.seconds ? plan.samples : samples_for(step, accuracy);
+  int samples = plan.samples;
+  if (lamps_limit(solved, step, accuracy)) {
+    cut = with_lamps(std::move(cut), solved);
+  } else if (!plan.seconds) {
+    samples = samples_for(step, accuracy);
+  }
   const bool more_samples = samples > plan.samples;
   if (!more_samples && std::count(cut.begin(), cut.end(), 1) == 0) return std::nullopt;
 
@@ -147,7 +172,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   }
   plan.samples = samples;
   plan.probes = std::max(plan.probes, samples / 2);
-  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}};
+  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};
   if (!more_samples) to_solve.known = std::move(solved.raw);
   return to_solve;
 }
@@ -157,7 +182,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   Search search{setting, request, plan};
   if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
-  MeshToSolve to_solve{first_mesh(setting.scene, plan), {}, {}};
+  MeshToSolve to_solve{first_mesh(setting.scene, plan), {}, {}, {}};
   for (;;) {
     require_memory(to_solve.mesh.patches.size(), request);
     clock.finish(Stage::mesh);

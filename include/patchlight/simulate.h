@@ -28,7 +28,7 @@ struct TransportFacts {
   Eigen::VectorXd row_sum;      ///< after; empty as well
   LostShare lost;
   AssemblyCounts counts;            ///< zero with rows on demand
-  double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when too few rays were traced, or none
+  double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when few rays were traced, or with error bars
   SamplingError error;              ///< of the sampled exchange areas, before closure
   std::string closure;              ///< which method closed the rows
 };

@@ -71,10 +71,9 @@ Field followed(const RowTransport& transport, RadiosityProblem of_irradiance) {
 }  // namespace
 
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                         const SolvedProblem& solved, const FieldView& direct_difference) {
-  const auto& [problem, solution, closed] = solved;
-  const bool direct_is_known = direct_difference.size() > 0;
-  const Field B = direct_is_known ? Field(solution.radiosity - problem.exitance) : solution.radiosity;
+                         const SolvedProblem& solved, const FieldView& B) {
+  const RadiosityProblem& problem = solved.problem;
+  const bool closed = solved.closed;
   const Eigen::Index bands = B.cols();
   const Eigen::ArrayXd A = problem.area.array();
   // 1. D B and D 1.
@@ -95,10 +94,14 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
     const Field e = followed(transport, {reflectance, irradiance, problem.area});
     squares.col(band) = e.square().rowwise().sum() / draws;
   }
-  if (!direct_is_known) return form_factor_scale * squares.sqrt();
-  // 4. Of two independent values each is off by a root of one half of their difference.
-  const Field direct = followed(transport, {problem.reflectance, direct_difference / std::sqrt(2.0), problem.area});
-  return form_factor_scale * (squares + means_around(mesh, direct).square()).sqrt();
+  return form_factor_scale * squares.sqrt();
+}
+
+Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
+                          const FieldView& difference) {
+  // Of two independent values each is off by a root of one half of their difference.
+  const Field error = followed(transport, {problem.reflectance, difference / std::sqrt(2.0), problem.area});
+  return form_factor_scale * means_around(mesh, error);
 }
 
 }  // namespace patchlight

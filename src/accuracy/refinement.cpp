@@ -58,7 +58,7 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double 
   if (factor <= 1) return marks;
   double left = all;
   // A mesh that hardly differs costs nearly as much as one that does.
-  const std::size_t least = order.size() / 20;
+  const std::size_t least = order.size() / 8;
   std::size_t cut = 0;
   for (const std::size_t parent : order) {
     const double effect = effects[static_cast<Eigen::Index>(parent)];

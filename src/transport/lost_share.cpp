@@ -7,9 +7,11 @@
 #include "transport/patch_frame.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -40,6 +42,7 @@ struct Observatory {
   double extent;
 
   std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays) const;
+  Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
@@ -60,14 +63,13 @@ std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int gr
 }
 
 // For each group of rays as many from its starting point, evenly around the horizon.
-std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, const std::vector<Ray>& groups) {
+std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vector<Ray> groups) {
   const Eigen::Matrix3d frame = patch_frame(mesh, patch);
-  std::vector<Ray> rays = groups;
-  for (std::size_t k = 0; k < rays.size(); ++k) {
+  for (std::size_t k = 0; k < groups.size(); ++k) {
     const double azimuth = 2 * std::numbers::pi * static_cast<double>(k % rays_per_point) / rays_per_point;
-    rays[k].direction = (frame * Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope)).normalized();
+    groups[k].direction = (frame * Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope)).normalized();
   }
-  return rays;
+  return groups;
 }
 
 std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& rays) const {
@@ -102,43 +104,46 @@ std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& r
   return sights;
 }
 
-// A point is covered when every ray from it meets a back or a face that lies against the patch.
-Shares shares_of_groups(const std::vector<Sight>& sights, const std::vector<Sight>& grazing) {
+int count(std::span<const Sight> among, Sight sight) {
+  return static_cast<int>(std::count(among.begin(), among.end(), sight));
+}
+
+int unseen(std::span<const Sight> sights) { return count(sights, Sight::back) + count(sights, Sight::contact); }
+
+// What groups of rays from one point each tell. A point is covered when every ray from it meets a back or a face that
+// lies against the patch.
+Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& rays) const {
+  const std::vector<Sight> sights = look(patch, rays);
   int covered = 0;
   int exposed = 0;
   int escaped = 0;
   int at_backs = 0;
   int dark = 0;
   for (std::size_t first = 0; first < sights.size(); first += rays_per_point) {
-    const auto count = [&](const std::vector<Sight>& among, Sight sight) {
-      const auto begin = among.begin() + static_cast<std::ptrdiff_t>(first);
-      return static_cast<int>(std::count(begin, begin + rays_per_point, sight));
-    };
-    const auto unseen = [&](const auto& among) { return count(among, Sight::back) + count(among, Sight::contact); };
-    if (unseen(sights) == rays_per_point && unseen(grazing) == rays_per_point) {
-      ++covered;
-      continue;
+    const auto group = std::span(sights).subspan(first, rays_per_point);
+    if (unseen(group) == rays_per_point) {
+      const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
+      if (unseen(look(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}))) == rays_per_point) {
+        ++covered;
+        continue;
+      }
     }
     ++exposed;
-    escaped += count(sights, Sight::nothing);
-    at_backs += count(sights, Sight::back);
-    dark += 2 * count(sights, Sight::back) > rays_per_point ? 1 : 0;
+    escaped += count(group, Sight::nothing);
+    at_backs += count(group, Sight::back);
+    dark += 2 * count(group, Sight::back) > rays_per_point ? 1 : 0;
   }
-  const double rays = std::max(1, exposed * rays_per_point);
-  return {escaped / rays, at_backs / rays, static_cast<double>(covered) / (covered + exposed),
+  const double of_rays = std::max(1, exposed * rays_per_point);
+  return {escaped / of_rays, at_backs / of_rays, static_cast<double>(covered) / (covered + exposed),
           static_cast<double>(dark) / std::max(1, exposed)};
 }
 
 Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const auto sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
-  const auto count = [&](Sight sight) { return std::count(sights.begin(), sights.end(), sight); };
-  if (count(Sight::back) + count(Sight::contact) == 0) {
-    return {static_cast<double>(count(Sight::nothing)) / rays, 0, 0, 0};
-  }
+  const std::vector<Sight> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
+  if (unseen(sights) == 0) return {static_cast<double>(count(sights, Sight::nothing)) / rays, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
-  const auto groups = hemisphere_rays(mesh, patch, rays, rays_per_point, seed);
-  return shares_of_groups(look(patch, groups), look(patch, grazing_rays(mesh, patch, groups)));
+  return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed));
 }
 
 }  // namespace
@@ -147,16 +152,29 @@ Eigen::VectorXd expected_row_sum(const LostShare& lost) { return 1 - lost.escape
 
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer) {
+  LostShare none;
+  none.rays_per_patch = rays_per_patch;
+  const std::vector<PatchIndex> nowhere(mesh.size(), no_patch);
+  return measure_lost_share(mesh, occluder, KnownShares{none, nowhere}, seed, observer);
+}
+
+LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, const KnownShares& known,
+                             std::uint64_t seed, const Observer& observer) {
+  const auto& [before, place] = known;
+  assert(place.size() == mesh.size());
   Box box;
   for (const Point& vertex : mesh.vertices) box.extend(vertex);
   const Observatory observatory{mesh, occluder, box.diagonal().norm()};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
-  LostShare lost{zero, zero, zero, rays_per_patch, zero};
+  LostShare lost{zero, zero, zero, before.rays_per_patch, zero};
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
-    const Shares shares = observatory.measure(i, rays_per_patch, hash({seed, keys[i], 1}));
+    const PatchIndex b = place[i];
+    const Shares shares = b == no_patch
+                              ? observatory.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
+                              : Shares{before.escaped[b], before.at_backs[b], before.covered[b], before.dark[b]};
     lost.escaped[i] = shares.escaped;
     lost.at_backs[i] = shares.at_backs;
     lost.covered[i] = shares.covered;

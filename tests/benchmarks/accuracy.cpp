@@ -33,9 +33,9 @@ struct Setting {
   double cpu_seconds = 0;
 };
 
-// At least so many patches, evenly, and then half as many again where they pay, as far as form factors do not limit.
+// At least so many patches, evenly, and then up to three times as many where they pay.
 Simulation finest(const Scene& scene, std::size_t patches) {
-  const double most = 1.5 * static_cast<double>(patches);
+  const double most = 3 * static_cast<double>(patches);
   Request request;
   request.sides = Sides::front;
   request.samples = 64;

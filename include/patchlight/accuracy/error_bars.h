@@ -35,13 +35,17 @@ struct SolvedProblem {
   bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
 };
 
-/// What the sampling of form factors does to the irradiance: the root mean square over random draws of the entries'
-/// errors (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In a closed scene the draws
-/// are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens of
-/// applications. `raw` has the entries' errors. Where the irradiance straight from the lamps was found a second time,
-/// with other samples, `direct_difference` is how far both are apart, and the draws are of the rest of the light only.
+/// What the sampling of form factors does to the irradiance by the light `B`, radiosity in W/m^2: the root mean square
+/// over random draws of the entries' errors (random_errors()), each followed through all reflections,
+/// e = A^-1 D B + F R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums.
+/// docs/accuracy.md. Costs some tens of applications. `raw` has the entries' errors.
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                         const SolvedProblem& solved, const FieldView& direct_difference);
+                         const SolvedProblem& solved, const FieldView& B);
+
+/// The same of light straight from the lamps, where that was found a second time, with other samples: `difference`, in
+/// W/m^2, is how far both are apart.
+Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
+                          const FieldView& difference);
 
 /// What the share of a patch that is exposed, when it is not all of it, may be off, as a relative error of its
 /// irradiance; stratified points find a straight edge with a variance of their number to the power of -3/2.

@@ -31,7 +31,7 @@ Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& 
                                    const Eigen::VectorXd& weight);
 
 /// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
-/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; a twentieth of all at least,
+/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; an eighth of all at least,
 /// unless nothing has to fall, none without an effect, and `most` at most.
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most);
 

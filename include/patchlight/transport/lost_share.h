@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 namespace patchlight {
 
@@ -31,6 +32,17 @@ Eigen::VectorXd expected_row_sum(const LostShare& lost);
 /// cracks between polygons and faces that lie against each other do not count as openings. \throws Cancelled.
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer = {});
+
+/// What is known of some patches already, from another mesh of the same scene.
+struct KnownShares {
+  const LostShare& lost;
+  const std::vector<PatchIndex>&
+      place;  ///< of each patch of the new mesh: the same patch in the other one, or no_patch
+};
+
+/// The same bits, with as many rays, but without tracing those of patches that are known.
+LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, const KnownShares& known,
+                             std::uint64_t seed, const Observer& observer = {});
 
 /// The area in m^2 that takes part in the exchange of light: what is not covered. It is never below what the exchange
 /// areas S_ij, given by their row sums in m^2, show to be seen of the patch, nor below 1e-6 of it.

@@ -1,6 +1,8 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "patchlight/simulate.h"
+#include "patchlight/transport/closure.h"
+#include "patchlight/transport/dense.h"
 
 #include "support/scenes.h"
 
@@ -54,6 +56,19 @@ TEST(RelativeBar, IsRelativeToTheReflectedLight) {
   EXPECT_DOUBLE_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(1, 1)), std::sqrt((1.0 + 3) / (9 + 3 * 16)));
   EXPECT_DOUBLE_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 1)), 0.25);
   EXPECT_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 0)), 0);
+}
+
+// Of two independent values, each a standard deviation sigma off, the difference has sqrt(2) sigma; where nothing
+// reflects, that is all.
+TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
+  const Scene scene = test::cube_room(0, 1);
+  const Simulation simulation = simulate(scene, with_bars(100));
+  const Eigen::Index n = simulation.problem.area.size();
+  const auto transport =
+      dense_transport(keep_exchange_areas(ExchangeAreas(simulation.mesh.size()), ""), simulation.problem.area);
+  const Field difference = Field::Constant(n, simulation.problem.exitance.cols(), -0.3);
+  const Field bars = direct_light_errors(simulation.mesh, *transport, simulation.problem, difference);
+  EXPECT_LT((bars - form_factor_scale * 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
 }
 
 // All is linear in the light.

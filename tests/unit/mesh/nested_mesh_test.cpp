@@ -80,6 +80,29 @@ TEST(NestedMesh, StaysConsistentWhenItIsRefined) {
   }
 }
 
+// Parents that were cut before are small, but not as small faces of a model are: they are cut again.
+TEST(NestedMesh, TheSamePlaceCanBeCutAgainAndAgain) {
+  NestedMesh mesh = nest(mesh_of(large_and_small(), 2));
+  double smallest = 1;
+  for (int round = 0; round < 6; ++round) {
+    std::vector<std::uint8_t> marks(mesh.parents.size(), 0);
+    marks[0] = 1;
+    ASSERT_EQ(mesh.parents.polygon[0], 0U);
+    mesh = refine(mesh, marks).mesh;
+    expect_consistent(mesh);
+    double on_floor = 16;
+    int on_small_face = 0;
+    for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
+      if (mesh.patches.polygon[i] == 0) on_floor = std::min(on_floor, mesh.patches.area[i]);
+      on_small_face += mesh.patches.polygon[i] == 1 ? 1 : 0;
+    }
+    // Sides are powers of two: exact.
+    EXPECT_EQ(on_floor, smallest / 4);
+    EXPECT_EQ(on_small_face, 1);
+    smallest = on_floor;
+  }
+}
+
 // The law that lets exchange areas be taken over: a patch that has a place before is the same, to the last bit.
 TEST(NestedMesh, PatchesWithAPlaceAreTheSameAsBefore) {
   const Scene scene = test::furnished_room(0.5);

@@ -36,5 +36,23 @@ TEST(LostShare, FindsTheCoveredShareAnywhere) {
   }
 }
 
+// What is known is not measured again: here it is made up.
+TEST(LostShare, OfKnownPatchesIsTakenOver) {
+  const Scene scene = test::furnished_room(0.5);
+  const Occluder occluder(scene);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 1);
+  LostShare before = measure_lost_share(mesh, occluder, 64, 1);
+  std::vector<PatchIndex> place(mesh.size(), no_patch);
+  EXPECT_EQ(measure_lost_share(mesh, occluder, KnownShares{before, place}, 1).escaped, before.escaped);
+  before.escaped[3] = before.at_backs[3] = before.covered[3] = before.dark[3] = 0.25;
+  place[5] = 3;
+  const LostShare taken_over = measure_lost_share(mesh, occluder, KnownShares{before, place}, 1);
+  EXPECT_EQ(taken_over.rays_per_patch, 64);
+  for (const auto share : {&LostShare::escaped, &LostShare::at_backs, &LostShare::covered, &LostShare::dark}) {
+    EXPECT_EQ((taken_over.*share)[5], 0.25);
+    EXPECT_NE((taken_over.*share)[3], 0.25);
+  }
+}
+
 }  // namespace
 }  // namespace patchlight

@@ -1,0 +1,123 @@
+#include "with_error_bars.h"
+
+#include "patchlight/accuracy/refinement.h"
+#include "patchlight/base/sampling.h"
+#include "patchlight/transport/dense.h"
+#include "patchlight/transport/merged.h"
+#include "patchlight/transport/on_demand.h"
+
+#include "effects.h"
+#include "interest.h"
+
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// The same light on the parents, with the exchange areas of their patches summed up.
+Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
+                           const RadiosityProblem& problem) {
+  const RadiosityProblem coarse = problem_of_parents(mesh, problem);
+  SolverOptions options = plan.solver;
+  options.solver = Solver::cg;
+  options.max_rows.reset();
+  return solve(*dense_transport(std::move(of_parents), coarse.area), coarse, options).radiosity;
+}
+
+// How far two independent values of the irradiance straight from the lamps are apart.
+Field direct_difference(const Setting& setting, const Simulation& simulation, const Assembly& raw) {
+  const Field& exitance = simulation.problem.exitance;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  AssemblyOptions again = assembly_options(simulation.plan);
+  again.seed = hash({simulation.plan.seed, 1});
+  const auto transport = on_demand_transport(simulation.mesh, setting.occluder, again, area);
+  const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, setting.observer);
+  return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
+}
+
+// What the sampling of form factors errs, apart for the light straight from lamps where that was found twice.
+struct SamplingBars {
+  Field direct;
+  Field other;
+};
+
+SamplingBars sampling_bars(const Setting& setting, const Simulation& simulation, const Assembly& raw,
+                           const RowTransport& transport, const SolvedProblem& solved) {
+  const Field& exitance = solved.problem.exitance;
+  const Field& B = solved.solution.radiosity;
+  if (share_of_lamps(solved.problem) > most_lamps)
+    return {Field::Zero(B.rows(), B.cols()), form_factor_errors(simulation.mesh, raw, transport, solved, B)};
+  const Field difference = direct_difference(setting, simulation, raw);
+  return {direct_light_errors(simulation.mesh, transport, solved.problem, difference),
+          form_factor_errors(simulation.mesh, raw, transport, solved, B - exitance)};
+}
+
+// What the size of the patches errs, and where from.
+struct MeshBars {
+  Field from_larger;    // of sources that are not even
+  Field in_gaps;        // of gaps that are narrower than their patches
+  Field dark;           // radiosity that patches lose where they reach into solids
+  Field by_dark_parts;  // and what that does to the irradiance
+};
+
+MeshBars mesh_bars(const SolvedMesh& result, const RowTransport& transport, const SolvedProblem& solved,
+                   ClosedExchangeAreas of_parents) {
+  const Simulation& simulation = result.simulation;
+  const Field coarse = radiosity_of_parents(std::move(of_parents), result.mesh, simulation.plan, solved.problem);
+  Field dark = dark_differences(simulation.transport.lost, solved);
+  Field by_dark_parts = transport.apply(dark);
+  return {mesh_errors(result.mesh, transport, solved, coarse),
+          gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
+}
+
+// The sources' effects as shares of the errors that they explain, and the errors of gaps, which are their own.
+Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
+                           const MeshBars& bars) {
+  const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
+  const auto shared_out = [&](const Field& bar, const Field& difference) -> Eigen::VectorXd {
+    const ExchangeAreas& S = result.raw->exchange_areas;
+    const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, {difference, weight});
+    const double sum = effects.sum();
+    return sum > 0 ? Eigen::VectorXd(squares(bar).sum() / sum * effects) : effects;
+  };
+  return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
+         shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps);
+}
+
+}  // namespace
+
+double share_of_lamps(const RadiosityProblem& problem) {
+  return static_cast<double>((problem.exitance > 0).rowwise().any().count()) /
+         static_cast<double>(problem.exitance.rows());
+}
+
+SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowTransport& transport,
+                           ClosedExchangeAreas of_parents) {
+  Simulation& simulation = result.simulation;
+  const PatchMesh& mesh = simulation.mesh;
+  const LostShare& lost = simulation.transport.lost;
+  const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.close};
+
+  // 1. What patches, samples and solver err.
+  const MeshBars of_mesh = mesh_bars(result, transport, solved, std::move(of_parents));
+  const SamplingBars sampled = sampling_bars(setting, simulation, *result.raw, transport, solved);
+  const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(lost);
+  Field squares = sampled.direct.square() + sampled.other.square() + exposure.square();
+  if (has_point_or_daylight(setting.scene)) squares += simulation.direct_standard_error.square();
+  simulation.error_bars = {
+      .mesh = (of_mesh.from_larger.square() + of_mesh.in_gaps.square() + of_mesh.by_dark_parts.square()).sqrt(),
+      .form_factor = squares.sqrt(),
+      .solver = solver_errors(solved),
+      .display = display_errors(result.mesh, solved)};
+
+  // 2. Where that matters.
+  result.interest = interest_of(setting.scene, mesh, simulation.plan.interest);
+  require_reflecting(setting.scene, simulation.problem, result.interest);
+  result.of_direct_light = relative_bar(sampled.direct, simulation.problem, simulation.solution, result.interest);
+  const bool all = result.interest.minCoeff() == 1;
+  const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
+  result.effects = effects_of(result, solved, weight, of_mesh);
+  return result;
+}
+
+}  // namespace patchlight
