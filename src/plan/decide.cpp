@@ -120,9 +120,9 @@ Decision daylight(Effect effect, const EffectFacts& facts, const char* rays) {
 }
 
 Decision sun(const EffectFacts& facts) {
-  if (!facts.sun) return {Effect::sun, false, "the scene has none", "no rays towards it"};
-  if (facts.sun->altitude > 0) return daylight(Effect::sun, facts, "64 shadow rays per patch");
-  return {Effect::sun, false, "it is " + number(-facts.sun->altitude) + " degrees below the horizon",
+  if (!facts.sun_altitude) return {Effect::sun, false, "the scene has none", "no rays towards it"};
+  if (*facts.sun_altitude > 0) return daylight(Effect::sun, facts, "64 shadow rays per patch");
+  return {Effect::sun, false, "it is " + number(-*facts.sun_altitude) + " degrees below the horizon",
           "no rays towards it"};
 }
 
@@ -162,7 +162,7 @@ bool is_there(const Decision& decision, const EffectFacts& facts) {
     case Effect::luminaires:
       return facts.luminaires > 0;
     case Effect::sun:
-      return facts.sun && facts.sun->altitude > 0;
+      return facts.sun_altitude && *facts.sun_altitude > 0;
     case Effect::sky:
       return facts.sky;
     case Effect::colour:

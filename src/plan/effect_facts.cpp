@@ -110,9 +110,9 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   facts.sky = scene.sky.has_value();
   if (scene.sun) {
     const double sine = std::clamp(scene.sun->direction.dot(scene.up), -1.0, 1.0);
-    facts.sun = SunFacts{.altitude = std::asin(sine) * 180 / std::numbers::pi};
+    facts.sun_altitude = std::asin(sine) * 180 / std::numbers::pi;
   }
-  if (facts.sun || facts.sky) facts.sees_out = some_side_sees_out(scene, kept);
+  if (scene.sun || scene.sky) facts.sees_out = some_side_sees_out(scene, kept);
   return facts;
 }
 

@@ -9,11 +9,6 @@
 
 namespace patchlight {
 
-/// The sun of a scene.
-struct SunFacts {
-  double altitude = 0;  ///< degrees above the horizon
-};
-
 /// The facts of a scene that decide which effects are simulated.
 struct EffectFacts {
   std::size_t polygons = 0;
@@ -29,7 +24,7 @@ struct EffectFacts {
   std::size_t turned_away = 0;  ///< sides that look into the dark outside of a closed solid
   std::size_t lamps = 0;        ///< polygons that emit
   std::size_t luminaires = 0;
-  std::optional<SunFacts> sun;
+  std::optional<double> sun_altitude;  ///< degrees above the horizon; nothing where there is no sun
   bool sky = false;
   std::size_t openings = 0;  ///< clear faces
   bool sees_out = true;      ///< some kept side does not face the inside of a closed solid

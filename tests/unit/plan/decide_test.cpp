@@ -94,17 +94,17 @@ TEST(Decide, LightsOnlyWhereTheyAre) {
   EffectFacts facts = usual_facts();
   for (const Effect light : {Effect::luminaires, Effect::sun, Effect::sky}) EXPECT_FALSE(is_on(facts, light));
   facts.luminaires = 2;
-  facts.sun = SunFacts{.altitude = 30};
+  facts.sun_altitude = 30;
   facts.sky = true;
   for (const Effect light : {Effect::luminaires, Effect::sun, Effect::sky}) EXPECT_TRUE(is_on(facts, light));
-  facts.sun = SunFacts{.altitude = -1};
+  facts.sun_altitude = -1;
   EXPECT_FALSE(is_on(facts, Effect::sun));
   EXPECT_TRUE(is_on(facts, Effect::sky)) << "it glows after sunset";
 }
 
 TEST(Decide, DaylightOnlyWhereSomethingSeesOut) {
   EffectFacts facts = usual_facts();
-  facts.sun = SunFacts{.altitude = 30};
+  facts.sun_altitude = 30;
   facts.sky = true;
   facts.sees_out = false;
   EXPECT_FALSE(is_on(facts, Effect::sun));
