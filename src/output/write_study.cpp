@@ -29,7 +29,8 @@ constexpr const char* facts_file = "study.json";
 constexpr const char* table_file = "study.csv";
 
 // The stages that a setting consists of.
-constexpr Stage stages[] = {Stage::mesh, Stage::form_factors, Stage::closure, Stage::solve, Stage::error_bars};
+constexpr Stage stages[] = {Stage::plan,    Stage::mesh,  Stage::form_factors,
+                            Stage::closure, Stage::solve, Stage::error_bars};
 
 // "form_factors"
 std::string key_of(Stage stage) {

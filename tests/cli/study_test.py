@@ -8,10 +8,11 @@ from support import ToolTest, content
 GOOD, USAGE, NOT_CONVERGED, MEMORY, OUTPUT = 0, 1, 3, 4, 6
 PLOTS = ["display_error_by_cpu_second", "error_by_cpu_second", "error_by_memory", "estimators_by_cpu_second"]
 FILES = sorted([f"{name}.{kind}" for name in PLOTS for kind in ("png", "svg")] + ["study.csv", "study.json"])
-COLUMNS = ["sweep", "patches", "estimator", "samples", "tolerance", "seconds", "cpu_seconds", "mesh_seconds",
-           "form_factors_seconds", "closure_seconds", "solve_seconds", "error_bars_seconds", "mesh_cpu_seconds",
-           "form_factors_cpu_seconds", "closure_cpu_seconds", "solve_cpu_seconds", "error_bars_cpu_seconds", "matrix_bytes", "error",
-           "display_error", "own_error", "order", "on_time_front", "on_memory_front"]
+COLUMNS = ["sweep", "patches", "estimator", "samples", "tolerance", "seconds", "cpu_seconds", "plan_seconds",
+           "mesh_seconds", "form_factors_seconds", "closure_seconds", "solve_seconds", "error_bars_seconds",
+           "plan_cpu_seconds", "mesh_cpu_seconds", "form_factors_cpu_seconds", "closure_cpu_seconds",
+           "solve_cpu_seconds", "error_bars_cpu_seconds", "matrix_bytes", "error", "display_error",
+           "own_error", "order", "on_time_front", "on_memory_front"]
 
 
 class StudyTest(ToolTest):

@@ -57,7 +57,7 @@ struct Plan {
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};
   bool close = true;
-  bool on_demand = false;
+  bool on_demand = false;  ///< as asked for, or as the rows of the lamps are enough
   bool standard_errors = false;
   bool error_bars = false;
   std::optional<double> accuracy;
