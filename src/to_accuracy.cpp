@@ -54,7 +54,8 @@ double allowed(double accuracy, double share, double others) {
   return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
 }
 
-// Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much lower.
+// Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much
+// lower.
 constexpr double margin = 1.25;
 constexpr double enough = 1.1;
 
