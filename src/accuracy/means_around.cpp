@@ -5,7 +5,7 @@
 
 namespace patchlight {
 
-Field means_around(const PatchMesh& mesh, const FieldView& values) {
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
   std::vector<std::vector<PatchIndex>> at_vertex(mesh.vertices.size());
   const auto corners_of = [&](PatchIndex i) {
     return std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
@@ -16,15 +16,15 @@ Field means_around(const PatchMesh& mesh, const FieldView& values) {
   Field means(values.rows(), values.cols());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     Field sum = Field::Zero(1, values.cols());
-    double count = 0;
+    double areas = 0;
     for (const std::uint32_t vertex : corners_of(i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
         if (mesh.polygon[j] != mesh.polygon[i]) continue;
-        sum += values.row(j).square();
-        ++count;
+        sum += area[j] * values.row(j).square();
+        areas += area[j];
       }
     }
-    means.row(i) = (sum / count).sqrt();
+    means.row(i) = (sum / areas).sqrt();
   }
   return means;
 }

@@ -3,9 +3,12 @@
 #include "patchlight/base/field.h"
 #include "patchlight/mesh/patch_mesh.h"
 
+#include <Eigen/Core>
+
 namespace patchlight {
 
-/// Root mean squares over the patches of the same polygon side that share a vertex with a patch, itself among them.
-Field means_around(const PatchMesh& mesh, const FieldView& values);
+/// Root mean squares, by the areas given in m^2, over the patches of the same polygon side that share a vertex with a
+/// patch, itself among them.
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
 
 }  // namespace patchlight

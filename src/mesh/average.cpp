@@ -114,6 +114,24 @@ std::vector<std::vector<PatchIndex>> patches_at_vertices(const PatchMesh& mesh) 
   return at;
 }
 
+// Around the mean.
+struct Bounds {
+  double least;
+  double most;
+};
+
+// As much of a slope as keeps the corners of patch i within bounds.
+Eigen::Vector3d limited(const Eigen::Vector3d& slope, const PatchMesh& mesh, PatchIndex i, const Bounds& bounds) {
+  double share = 1;
+  const PatchCorners corners = mesh.corner_points(i);
+  for (int k = 0; k < corners.count; ++k) {
+    const double rise = slope.dot(corners.points[static_cast<std::size_t>(k)] - mesh.centroid[i]);
+    if (rise > bounds.most) share = std::min(share, bounds.most / rise);
+    if (rise < bounds.least) share = std::min(share, bounds.least / rise);
+  }
+  return share * slope;
+}
+
 }  // namespace
 
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
@@ -139,20 +157,27 @@ SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
   SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
   parallel_for(mesh.size(), [&](std::size_t row) {
     const auto i = static_cast<PatchIndex>(row);
+    const auto corners = std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
     // Least squares over the patches around; without a slope across the patch.
     Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
-    const auto corners = std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
+    Field least = values.row(i);
+    Field most = values.row(i);
     for (const std::uint32_t vertex : corners) {
       for (const PatchIndex j : at_vertex[vertex]) {
         if (mesh.polygon[j] != mesh.polygon[i]) continue;
         const Vector way = mesh.centroid[j] - mesh.centroid[i];
         moments += way * way.transpose();
         right += way * (values.row(j) - values.row(i)).matrix();
+        least = least.min(values.row(j));
+        most = most.max(values.row(j));
       }
     }
     const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
-    for (Eigen::Index c = 0; c < values.cols(); ++c) field.slopes.row(i).segment(3 * c, 3) = slope.col(c).transpose();
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const Bounds bounds{least(0, c) - values(i, c), most(0, c) - values(i, c)};
+      field.slopes.row(i).segment(3 * c, 3) = limited(slope.col(c), mesh, i, bounds).transpose();
+    }
   });
   return field;
 }

@@ -55,6 +55,18 @@ TEST(AskedAccuracyOf, ALowerOneTakesFinerPatchesAndGivesLowerErrors) {
   EXPECT_LT(error_against(reference, fine).relative, error_against(reference, coarse).relative);
 }
 
+// Noise of light straight from lamps does not fall with the number of receiving patches: it takes more rays from the
+// lamps, and those only.
+TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
+  const Scene scene = varied_room("colours");
+  const auto lamps = [](const Simulation& s) { return (s.problem.exitance > 0).rowwise().any().count(); };
+  const Simulation coarse = simulate(scene, asked(0.06));
+  const Simulation fine = simulate(scene, asked(0.01));
+  EXPECT_GE(lamps(fine), 4 * lamps(coarse));
+  EXPECT_EQ(fine.plan.samples, coarse.plan.samples);
+  EXPECT_LT(fine.accuracy.back().form_factor, coarse.accuracy.back().form_factor / 2);
+}
+
 // The floor does not depend on how far light gets into the gap above the lamp: fewer patches do than for all surfaces.
 TEST(AskedAccuracyOf, TakesFewerPatchesForWhatIsOfInterest) {
   const Scene scene = varied_room("blocks");

@@ -19,7 +19,8 @@ struct SlopedField {
 };
 
 /// A field with the slopes that the means of the patches around show, by least squares; patches around are those of the
-/// same polygon side that share a corner.
+/// same polygon side that share a corner. No corner gets a value beyond those of the patches around (Barth and
+/// Jespersen, AIAA 89-0366): what is not negative stays so.
 SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values);
 
 /// The same means of a field that is linear on every patch of `other`. So they do not depend on how the patches of both

@@ -100,6 +100,20 @@ TEST(Average, KeepsPolygonsAndSidesApart) {
   }
 }
 
+// A step from 0 to 1 stays between both: no slope leads beyond.
+TEST_P(AverageInEveryShape, SlopesLeadNowhereBeyondWhatIsAround) {
+  const Scene& scene = GetParam().scene;
+  const KeptSides sides = tiny::both_sides(scene);
+  const PatchMesh mesh = tessellate(scene, sides, 0.05);
+  const PatchMesh other = tessellate(scene, sides, 0.17);
+  const double middle = (scene.vertices[0].x() + scene.vertices[2].x()) / 2;
+  Field step(other.size(), 1);
+  for (PatchIndex k = 0; k < other.size(); ++k) step(k, 0) = other.centroid[k].x() < middle ? 0 : 1;
+  const Field means = average_over(mesh, other, with_slopes(other, step));
+  EXPECT_GE(means.minCoeff(), -tolerance(GetParam()));
+  EXPECT_LE(means.maxCoeff(), 1 + tolerance(GetParam()));
+}
+
 TEST(Average, DoesNotDependOnTheNumberOfThreads) {
   const Scene scene = tiny::in_triangles(tiny::box({4, 3, 2.5}));
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.4);
