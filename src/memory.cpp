@@ -16,7 +16,8 @@ namespace {
 // The exchange areas, in float, half of a symmetric matrix. The rest is measured: what the program and its libraries
 // take, and the mesh, the fields and the results per patch.
 constexpr double bytes_per_pair = 2;
-constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
+constexpr double bytes_per_error = 0.5;   // standard errors, where they are wanted: one byte for two entries
+constexpr double bytes_of_parents = 0.7;  // with error bars: the matrix of the parents while it is summed up
 constexpr double bytes_while_refining =
     5.5;  // another matrix before closure, and at the end of a mesh that of the next
 constexpr double bytes_per_patch = 1500;
@@ -29,7 +30,7 @@ constexpr double usable_share = 0.8;
 double bytes_of_a_pair(const Request& request) {
   if (request.on_demand) return 0;
   if (refines(request)) return bytes_per_pair + bytes_while_refining;
-  if (request.error_bars) return 2 * bytes_per_pair + bytes_per_error;
+  if (request.error_bars) return 2 * bytes_per_pair + bytes_per_error + bytes_of_parents;
   return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
 }
 

@@ -104,15 +104,26 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
   return std::sqrt(known * known + std::max(0.0, seconds) / seconds_per_pair);
 }
 
-// The accuracy that the usable memory allows.
-[[noreturn]] void refuse(const Request& request, const AccuracyStep& step, double patches) {
-  const double most = patches_that_fit(request);
-  const double reachable = step.total * std::min(1.0, std::pow(step.patches / most, mesh_order / 2));
+// What the usable memory allows is told, as far as it can be known.
+[[noreturn]] void refuse(const Request& request, double patches, double reachable) {
   throw MemoryError("--accuracy " + percent(*request.accuracy) + ": found that it takes about " +
                     std::to_string(static_cast<long>(patches)) + " patches and " +
                     gigabytes(memory_needed(static_cast<std::size_t>(patches), request)) + ", and " +
                     gigabytes(usable_memory(request)) + " may be taken; expected about " + percent(reachable) +
                     " or more: ask for that, or for an --interest");
+}
+
+// Refuses what would not fit even if the error fell as the number of patches grows: it falls more slowly, the more so
+// on fine meshes.
+void require_within_reach(const Request& request, const AccuracyStep& step, double factor) {
+  const double most = patches_that_fit(request);
+  if (step.patches * factor > most)
+    refuse(request, patches_for(step.patches, factor), step.total * step.patches / most);
+}
+
+// How many parents can be cut, each into sixteen new patches, before there are so many.
+std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
+  return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
 struct Search {
@@ -125,7 +136,7 @@ struct Search {
 
   AccuracyStep step_of(const SolvedMesh& solved, PatchIndex known) const;
   std::optional<MeshToSolve> next(SolvedMesh& solved);
-  std::size_t cuts_in_time(const AccuracyStep& step) const;
+  double patches_in_time() const;
 };
 
 AccuracyStep Search::step_of(const SolvedMesh& solved, PatchIndex known) const {
@@ -136,13 +147,13 @@ AccuracyStep Search::step_of(const SolvedMesh& solved, PatchIndex known) const {
   return step;
 }
 
-// How many parents can be cut, each into sixteen new patches, in the time that is left.
-std::size_t Search::cuts_in_time(const AccuracyStep& step) const {
-  if (!plan.seconds) return std::numeric_limits<std::size_t>::max();
+// The largest number of patches in the time that is left.
+double Search::patches_in_time() const {
+  if (!plan.seconds) return std::numeric_limits<double>::infinity();
+  const AccuracyStep& step = steps.back();
   const double before = steps.size() > 1 ? steps[steps.size() - 2].seconds : 0;
   const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
-  const double patches = patches_in((*plan.seconds - step.seconds) / margin, seconds_per_pair, step.patches);
-  return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
+  return patches_in((*plan.seconds - step.seconds) / margin, seconds_per_pair, step.patches);
 }
 
 // The next mesh; none when the last one is good enough, or time is up.
@@ -153,24 +164,28 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const double accuracy = plan.accuracy.value_or(step.total / 2);
   if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
 
-  std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
+  // 1. Parents to cut for the mesh error; lamps, or more samples, for that of the form factors.
   const double factor = mesh_factor(step, accuracy);
-  if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_in_time(step));
+  if (!plan.seconds) require_within_reach(request, step, factor);
+  const double most = patches_that_fit(request);
+  std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
+  if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_up_to(std::min(most, patches_in_time()), step));
   int samples = plan.samples;
   if (lamps_limit(solved, step, accuracy)) {
     cut = with_lamps(std::move(cut), solved);
   } else if (!plan.seconds) {
     samples = samples_for(step, accuracy);
   }
-  const bool more_samples = samples > plan.samples;
-  if (!more_samples && std::count(cut.begin(), cut.end(), 1) == 0) return std::nullopt;
 
+  // 2. The mesh that this makes, if it fits.
+  const bool more_samples = samples > plan.samples;
+  const bool finer_mesh = std::count(cut.begin(), cut.end(), 1) > 0;
   FinerMesh finer = refine(solved.mesh, cut);
-  const auto most = static_cast<double>(patches_that_fit(request));
-  if (finer.mesh.patches.size() > most) {
+  if (finer.mesh.patches.size() > most || (factor > 1 && !finer_mesh && cuts_up_to(most, step) == 0)) {
     if (plan.seconds) return std::nullopt;
-    refuse(request, step, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)));
+    refuse(request, patches_for(step.patches, factor), step.total);
   }
+  if (!more_samples && !finer_mesh) return std::nullopt;
   plan.samples = samples;
   plan.probes = std::max(plan.probes, samples / 2);
   MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};

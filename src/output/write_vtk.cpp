@@ -17,7 +17,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 21> units = {
+constexpr std::array<std::array<const char*, 2>, 22> units = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -38,10 +38,13 @@ constexpr std::array<std::array<const char*, 2>, 21> units = {
      {"error_total", "W/(m^2 sr)"},
      {"display_error", "W/(m^2 sr)"},
      {"error_irradiance", "W/m^2"},
+     {"error_direct_irradiance", "W/m^2"},
      {"radiance_smooth", "W/(m^2 sr)"}}};
 
 // How far the radiance may be off, by where it comes from; of the solver alone where that is all that is known.
 void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
+  const Field& of_lights = simulation.direct_standard_error;
+  if (of_lights.size() > 0) cell_data.AddArray(floats("error_direct_irradiance", of_lights));
   if (!simulation.error_bars) {
     const Field& of_solver = simulation.solution.error;
     if (of_solver.size() > 0) cell_data.AddArray(floats("error_solver", of_solver / std::numbers::pi));

@@ -131,6 +131,14 @@ TEST(WriteVtk, TheSolversBoundStandsAlone) {
   EXPECT_EQ(number(polygons, "relative_error_total"), -1);
 }
 
+TEST(WriteVtk, WithLightsThatAreNoPatchesTheirErrorIsThere) {
+  Simulation simulation = tiny_simulation();
+  EXPECT_EQ(written_and_read(tiny_scene(), simulation)->GetCellData()->GetArray("error_direct_irradiance"), nullptr);
+  simulation.direct_standard_error = 0.01 * simulation.solution.direct_irradiance;
+  const auto polygons = written_and_read(tiny_scene(), simulation);
+  expect_floats(polygons->GetCellData()->GetArray("error_direct_irradiance"), simulation.direct_standard_error);
+}
+
 TEST(WriteVtk, ValuesComeBackAsFloats) {
   const Simulation simulation = tiny_simulation();
   const auto polygons = written_and_read(tiny_scene(), simulation);
