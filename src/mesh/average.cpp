@@ -2,6 +2,8 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "mesh/patches_at_vertices.h"
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
@@ -104,16 +106,6 @@ Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index colum
   return means;
 }
 
-// The patches of the same polygon side at each vertex.
-std::vector<std::vector<PatchIndex>> patches_at_vertices(const PatchMesh& mesh) {
-  std::vector<std::vector<PatchIndex>> at(mesh.vertices.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const auto count = static_cast<std::size_t>(mesh.corner_points(i).count);
-    for (std::size_t k = 0; k < count; ++k) at[mesh.corners[i][k]].push_back(i);
-  }
-  return at;
-}
-
 // Around the mean.
 struct Bounds {
   double least;
@@ -157,15 +149,14 @@ SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
   SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
   parallel_for(mesh.size(), [&](std::size_t row) {
     const auto i = static_cast<PatchIndex>(row);
-    const auto corners = std::span(mesh.corners[i]).first(static_cast<std::size_t>(mesh.corner_points(i).count));
     // Least squares over the patches around; without a slope across the patch.
     Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
     Field least = values.row(i);
     Field most = values.row(i);
-    for (const std::uint32_t vertex : corners) {
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.polygon[j] != mesh.polygon[i]) continue;
+        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
         const Vector way = mesh.centroid[j] - mesh.centroid[i];
         moments += way * way.transpose();
         right += way * (values.row(j) - values.row(i)).matrix();
