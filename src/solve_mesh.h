@@ -36,7 +36,7 @@ struct SolvedMesh {
   std::optional<Assembly> raw;  ///< with parents: exchange areas before closure
   Eigen::VectorXd interest;     ///< with parents: 1 for each patch whose error counts, else 0
   Eigen::VectorXd effects;      ///< with parents: effects_of_parents()
-  double of_direct_light = 0;   ///< with parents: what sampling errs in light straight from lamps, as relative_bar()
+  Eigen::VectorXd noise;        ///< with parents: noise_of_parents()
 };
 
 /// Form factors, closure, solution and, with parents, error bars, as the plan says. \throws Cancelled, and what the

@@ -74,22 +74,33 @@ int samples_for(const AccuracyStep& step, double accuracy) {
   return expected > share ? next_samples(step.samples, margin * expected / share) : step.samples;
 }
 
-// Whether the form factors' error is too large, most of it in light straight from the lamps: then it takes more rays
-// from them only. Cutting them has that effect, and leaves what is known of the other pairs.
-bool lamps_limit(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
-  const double of_lamps = solved.of_direct_light;
-  return margin * step.form_factor > share && 2 * of_lamps * of_lamps > step.form_factor * step.form_factor &&
-         4 * share_of_lamps(solved.simulation.problem) < most_lamps;
+// By what factor the form factors' error has to fall.
+double form_factor_factor(const AccuracyStep& step, double accuracy) {
+  return margin * step.form_factor / allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
 }
 
-std::vector<std::uint8_t> with_lamps(std::vector<std::uint8_t> cut, const SolvedMesh& solved) {
-  const NestedMesh& mesh = solved.mesh;
-  const Field& exitance = solved.simulation.problem.exitance;
-  for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
-    if ((exitance.row(i) > 0).any()) cut[mesh.parent[i]] = 1;
+// Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
+// of all other pairs. So many, as a share of all, are few.
+constexpr double few = 0.25;
+
+// Lamps are not cut into more patches than can be traced twice.
+Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
+  Eigen::VectorXd noise = solved.noise;
+  const RadiosityProblem& problem = solved.simulation.problem;
+  if (4 * share_of_lamps(problem) < most_lamps) return noise;
+  for (PatchIndex i = 0; i < solved.mesh.patches.size(); ++i) {
+    if ((problem.exitance.row(i) > 0).any()) noise[solved.mesh.parent[i]] = 0;
   }
-  return cut;
+  return noise;
+}
+
+std::vector<std::uint8_t> either(std::vector<std::uint8_t> marks, const std::vector<std::uint8_t>& others) {
+  for (std::size_t k = 0; k < marks.size(); ++k) marks[k] |= others[k];
+  return marks;
+}
+
+std::size_t count(const std::vector<std::uint8_t>& marks) {
+  return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
 }
 
 // The pairs of patches that have to be found.
@@ -164,22 +175,26 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const double accuracy = plan.accuracy.value_or(step.total / 2);
   if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
 
-  // 1. Parents to cut for the mesh error; lamps, or more samples, for that of the form factors.
+  // 1. Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as
+  //    one that does; and those that make the noise, or more samples.
   const double factor = mesh_factor(step, accuracy);
   if (!plan.seconds) require_within_reach(request, step, factor);
+  const std::size_t parents = solved.mesh.parents.size();
   const double most = patches_that_fit(request);
-  std::vector<std::uint8_t> cut(solved.mesh.parents.size(), 0);
-  if (factor > 1) cut = parents_to_cut(solved.effects, factor, cuts_up_to(std::min(most, patches_in_time()), step));
+  const std::size_t most_cuts = cuts_up_to(std::min(most, patches_in_time()), step);
+  std::vector<std::uint8_t> cut = parents_to_cut(solved.effects, factor, {parents / 8, most_cuts});
+  const std::vector<std::uint8_t> noisy =
+      parents_to_cut(noise_to_cut(solved), form_factor_factor(step, accuracy), {0, most_cuts});
   int samples = plan.samples;
-  if (lamps_limit(solved, step, accuracy)) {
-    cut = with_lamps(std::move(cut), solved);
+  if (count(noisy) > 0 && static_cast<double>(count(noisy)) <= few * static_cast<double>(parents)) {
+    cut = either(std::move(cut), noisy);
   } else if (!plan.seconds) {
     samples = samples_for(step, accuracy);
   }
 
   // 2. The mesh that this makes, if it fits.
   const bool more_samples = samples > plan.samples;
-  const bool finer_mesh = std::count(cut.begin(), cut.end(), 1) > 0;
+  const bool finer_mesh = count(cut) > 0;
   FinerMesh finer = refine(solved.mesh, cut);
   if (finer.mesh.patches.size() > most || (factor > 1 && !finer_mesh && cuts_up_to(most, step) == 0)) {
     if (plan.seconds) return std::nullopt;

@@ -35,21 +35,16 @@ Field direct_difference(const Setting& setting, const Simulation& simulation, co
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 
-// What the sampling of form factors errs, apart for the light straight from lamps where that was found twice.
-struct SamplingBars {
-  Field direct;
-  Field other;
-};
-
-SamplingBars sampling_bars(const Setting& setting, const Simulation& simulation, const Assembly& raw,
-                           const RowTransport& transport, const SolvedProblem& solved) {
-  const Field& exitance = solved.problem.exitance;
+// What the sampling of form factors errs. Light straight from the lamps is found twice, unless lamps are too many.
+Field sampling_errors(const Setting& setting, const Simulation& simulation, const Assembly& raw,
+                      const RowTransport& transport, const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;
   if (share_of_lamps(solved.problem) > most_lamps)
-    return {Field::Zero(B.rows(), B.cols()), form_factor_errors(simulation.mesh, raw, transport, solved, B)};
+    return form_factor_errors(simulation.mesh, raw, transport, solved, B);
   const Field difference = direct_difference(setting, simulation, raw);
-  return {direct_light_errors(simulation.mesh, transport, solved.problem, difference),
-          form_factor_errors(simulation.mesh, raw, transport, solved, B - exitance)};
+  const Field direct = direct_light_errors(simulation.mesh, transport, solved.problem, difference);
+  const Field other = form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
+  return (direct.square() + other.square()).sqrt();
 }
 
 // What the size of the patches errs, and where from.
@@ -100,9 +95,9 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
 
   // 1. What patches, samples and solver err.
   const MeshBars of_mesh = mesh_bars(result, transport, solved, std::move(of_parents));
-  const SamplingBars sampled = sampling_bars(setting, simulation, *result.raw, transport, solved);
+  const Field sampled = sampling_errors(setting, simulation, *result.raw, transport, solved);
   const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(lost);
-  Field squares = sampled.direct.square() + sampled.other.square() + exposure.square();
+  Field squares = sampled.square() + exposure.square();
   if (has_point_or_daylight(setting.scene)) squares += simulation.direct_standard_error.square();
   simulation.error_bars = {
       .mesh = (of_mesh.from_larger.square() + of_mesh.in_gaps.square() + of_mesh.by_dark_parts.square()).sqrt(),
@@ -113,10 +108,11 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   // 2. Where that matters.
   result.interest = interest_of(setting.scene, mesh, simulation.plan.interest);
   require_reflecting(setting.scene, simulation.problem, result.interest);
-  result.of_direct_light = relative_bar(sampled.direct, simulation.problem, simulation.solution, result.interest);
   const bool all = result.interest.minCoeff() == 1;
   const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
   result.effects = effects_of(result, solved, weight, of_mesh);
+  const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
+  result.noise = noise_of_parents(errors, result.mesh, solved, weight);
   return result;
 }
 

@@ -24,6 +24,11 @@ Field squared_reflectance(const SolvedProblem& solved) {
   return problem.reflectance.square().rowwise() * inverse.transpose();
 }
 
+// w_i^2 rho_i^2 / (A_i ||B - E||_A^2)
+Field weight_of_squares(const SolvedProblem& solved, const Eigen::VectorXd& weight) {
+  return squared_reflectance(solved).colwise() * (weight.array().square() / solved.problem.area.array());
+}
+
 }  // namespace
 
 Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved) {
@@ -33,10 +38,15 @@ Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solv
 
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
                                    const EffectsOf& of) {
-  // A_i (rho_i / A_i sum_c S_ic difference_c)^2 / ||B - E||_A^2
-  const Field of_patch =
-      squared_reflectance(solved).colwise() * (of.weight.array().square() / solved.problem.area.array());
-  return effects_of_parts(raw, mesh, of.difference, of_patch);
+  // A_i w_i^2 (rho_i / A_i sum_c S_ic difference_c)^2 / ||B - E||_A^2
+  return effects_of_parts(raw, mesh, of.difference, weight_of_squares(solved, of.weight));
+}
+
+Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
+                                 const Eigen::VectorXd& weight) {
+  const Field B = solved.solution.radiosity;
+  const Field noise = B.square() * by_variances(errors, weight_of_squares(solved, weight));
+  return summed_by_parent(mesh, noise.rowwise().sum()).col(0).matrix();
 }
 
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
@@ -46,7 +56,7 @@ Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& 
   return summed_by_parent(mesh, squares.rowwise().maxCoeff()).col(0).matrix();
 }
 
-std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most) {
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, const CutLimits& limits) {
   std::vector<std::size_t> order(static_cast<std::size_t>(effects.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -57,12 +67,10 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double 
   std::vector<std::uint8_t> marks(order.size(), 0);
   if (factor <= 1) return marks;
   double left = all;
-  // A mesh that hardly differs costs nearly as much as one that does.
-  const std::size_t least = order.size() / 8;
   std::size_t cut = 0;
   for (const std::size_t parent : order) {
     const double effect = effects[static_cast<Eigen::Index>(parent)];
-    if ((left <= wanted && cut >= least) || cut == most || effect == 0) break;
+    if ((left <= wanted && cut >= limits.least) || cut == limits.most || effect == 0) break;
     left -= effect * (1 - left_by_a_cut);
     marks[parent] = 1;
     ++cut;

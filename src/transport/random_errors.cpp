@@ -33,6 +33,7 @@ struct Drawer {
 
   double standard_error(PatchIndex i, PatchIndex j) const;
   void add_row(PatchIndex j, const FieldView& x, Field& sum) const;
+  void add_variances(PatchIndex j, const FieldView& x, Field& sum) const;
 };
 
 double Drawer::standard_error(PatchIndex i, PatchIndex j) const {
@@ -67,25 +68,49 @@ void Drawer::add_row(PatchIndex j, const FieldView& x, Field& sum) const {
   }
 }
 
-}  // namespace
+// The same of the variances.
+void Drawer::add_variances(PatchIndex j, const FieldView& x, Field& sum) const {
+  for (PatchIndex i = 0; i < j; ++i) {
+    const double sigma = standard_error(i, j);
+    if (sigma == 0) continue;
+    sum.row(i) += sigma * sigma * x.row(j);
+    sum.row(j) += sigma * sigma * x.row(i);
+  }
+}
 
-Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed) {
-  const auto& [mesh, area, errors, sampling] = of;
-  assert(x.rows() == static_cast<Eigen::Index>(errors.size()) && draws >= 1 && draws <= 32);
-  const Drawer drawer{mesh,
-                      area,
-                      errors,
-                      standard_error(sampling.visible),
-                      standard_error(sampling.occluded),
-                      hash({seed, 0x64726177})};
-  std::vector<Field> partial(stripes, Field::Zero(x.rows(), x.cols() * draws));
+// What add(j, sum) adds for all rows j, in `columns` columns.
+template <typename Add>
+Field sum_over_rows(std::size_t size, Eigen::Index columns, Add add) {
+  std::vector<Field> partial(stripes, Field::Zero(static_cast<Eigen::Index>(size), columns));
   parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto j = static_cast<PatchIndex>(stripe); j < errors.size(); j += stripes) {
-      drawer.add_row(j, x, partial[stripe]);
-    }
+    for (auto j = static_cast<PatchIndex>(stripe); j < size; j += stripes) add(j, partial[stripe]);
   });
   for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
   return partial[0];
+}
+
+Drawer drawer_of(const ErrorsOfEntries& of, std::uint64_t seed) {
+  return {of.mesh,
+          of.area,
+          of.errors,
+          standard_error(of.sampling.visible),
+          standard_error(of.sampling.occluded),
+          hash({seed, 0x64726177})};
+}
+
+}  // namespace
+
+Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed) {
+  assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()) && draws >= 1 && draws <= 32);
+  const Drawer drawer = drawer_of(of, seed);
+  return sum_over_rows(of.errors.size(), x.cols() * draws,
+                       [&](PatchIndex j, Field& sum) { drawer.add_row(j, x, sum); });
+}
+
+Field by_variances(const ErrorsOfEntries& of, const FieldView& x) {
+  assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()));
+  const Drawer drawer = drawer_of(of, 0);
+  return sum_over_rows(of.errors.size(), x.cols(), [&](PatchIndex j, Field& sum) { drawer.add_variances(j, x, sum); });
 }
 
 }  // namespace patchlight

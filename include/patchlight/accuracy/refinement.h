@@ -2,11 +2,13 @@
 
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/random_errors.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace patchlight {
@@ -26,14 +28,26 @@ Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solv
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
                                    const EffectsOf& of);
 
+/// The same of sampling errors: per parent the sum over its patches c and all patches i of
+/// A_i w_i^2 (rho_i sigma_ic B_c / A_i)^2, relative to ||B - E||_A^2, all bands. A source that is cut into more patches
+/// is sampled more.
+Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
+                                 const Eigen::VectorXd& weight);
+
 /// The squares of bars on the irradiance as relative_bar() adds them up, per parent, worst band.
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
                                    const Eigen::VectorXd& weight);
 
+/// How many parents may be cut.
+struct CutLimits {
+  std::size_t least = 0;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+};
+
 /// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
-/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; an eighth of all at least,
-/// unless nothing has to fall, none without an effect, and `most` at most.
-std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, std::size_t most);
+/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; within the limits, but none
+/// without an effect, and none when nothing has to fall.
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, const CutLimits& limits);
 
 /// How much a change of each patch's irradiance matters to the light on the patches of `interest` (1 or 0 per patch):
 /// the solution of the adjoint equation psi = interest + F R psi, worst band. As S is

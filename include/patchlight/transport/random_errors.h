@@ -25,4 +25,8 @@ struct ErrorsOfEntries {
 /// O(size^2). The same bits for any number of threads.
 Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed);
 
+/// Their variances as a matrix: sum_j sigma_ij^2 x_j, m^4 times the unit of x. O(size^2). The same bits for any number
+/// of threads.
+Field by_variances(const ErrorsOfEntries& of, const FieldView& x);
+
 }  // namespace patchlight

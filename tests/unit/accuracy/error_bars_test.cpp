@@ -1,5 +1,6 @@
 #include "patchlight/accuracy/error_bars.h"
 
+#include "patchlight/accuracy/refinement.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/closure.h"
 #include "patchlight/transport/dense.h"
@@ -69,6 +70,32 @@ TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
   const Field difference = Field::Constant(n, simulation.problem.exitance.cols(), -0.3);
   const Field bars = direct_light_errors(simulation.mesh, *transport, simulation.problem, difference);
   EXPECT_LT((bars - form_factor_scale * 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
+}
+
+// Theorem: sources' shares of the noise sum up to what all receivers expect of it. With independent errors sigma_ij,
+// sum_i w_i E (D B)_i^2 = sum_i w_i sum_j sigma_ij^2 B_j^2, and sigma is symmetric.
+TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
+  const Scene scene = test::furnished_room(0.5);
+  const Simulation simulation = simulate(scene, with_bars(300));
+  NestedMesh mesh;
+  mesh.patches = mesh.parents = simulation.mesh;
+  for (PatchIndex i = 0; i <= simulation.mesh.size(); ++i) mesh.first_patch.push_back(i);
+  mesh.parent.assign(mesh.first_patch.begin(), mesh.first_patch.end() - 1);
+  const Assembly raw = assemble_exchange_areas(simulation.mesh, Occluder(scene), {.keep_errors = true});
+  const RadiosityProblem& problem = simulation.problem;
+  const ErrorsOfEntries errors{simulation.mesh, problem.area, raw.entry_errors, raw.error};
+  const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(problem.area.size(), 0, 1);
+  const Eigen::VectorXd noise = noise_of_parents(errors, mesh, {problem, simulation.solution}, weight);
+
+  const Field& B = simulation.solution.radiosity;
+  const Field expected = by_variances(errors, B.square());
+  const Eigen::ArrayXd reflected = area_norm(B - problem.exitance, problem.area).square();
+  const Eigen::ArrayXd w = weight.array().square() / problem.area.array();
+  double sum = 0;
+  for (Eigen::Index band = 0; band < B.cols(); ++band)
+    sum += (w * problem.reflectance.col(band).square() * expected.col(band)).sum() / reflected[band];
+  EXPECT_GT(sum, 0);
+  EXPECT_NEAR(noise.sum() / sum, 1, 1e-12);
 }
 
 // All is linear in the light.

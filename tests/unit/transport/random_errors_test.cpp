@@ -93,6 +93,19 @@ TEST(RandomErrors, HaveTheVarianceOfTheEntries) {
   }
 }
 
+TEST(ByVariances, IsTheProductWithTheSquares) {
+  const Entries entries = cube(EntryKind::estimated);
+  Field x(24, 2);
+  x << values(24, 0), values(24, 1);
+  Eigen::MatrixXd variances(24, 24);
+  for (PatchIndex i = 0; i < 24; ++i) {
+    for (PatchIndex j = 0; j < 24; ++j) variances(i, j) = std::pow(entries.errors.standard_error(i, j), 2);
+  }
+  const Field expected = (variances * x.matrix()).array();
+  EXPECT_GT(expected.minCoeff(), 0);
+  EXPECT_LT((by_variances(view(entries), x) / expected - 1).abs().maxCoeff(), 24 * 1e-16 * 4);
+}
+
 // Two patches of 1 m^2, 3 m apart: U = 1 / (9 pi), the value from centroid to centroid.
 TEST(RandomErrors, OfProbesThatAgreedFollowFromTheAudit) {
   using namespace test;
