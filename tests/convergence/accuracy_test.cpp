@@ -56,13 +56,14 @@ TEST(AskedAccuracyOf, ALowerOneTakesFinerPatchesAndGivesLowerErrors) {
 }
 
 // Noise of light straight from lamps does not fall with the number of receiving patches: it takes more rays from the
-// lamps, and those only.
+// lamps, and those only. Lamps are evenly bright but for what they reflect: for the mesh error alone they would not be
+// cut. When half of their patches are, in four, there are two and a half times as many.
 TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
   const Scene scene = varied_room("colours");
   const auto lamps = [](const Simulation& s) { return (s.problem.exitance > 0).rowwise().any().count(); };
   const Simulation coarse = simulate(scene, asked(0.06));
   const Simulation fine = simulate(scene, asked(0.01));
-  EXPECT_GE(lamps(fine), 4 * lamps(coarse));
+  EXPECT_GE(2 * lamps(fine), 5 * lamps(coarse));
   EXPECT_EQ(fine.plan.samples, coarse.plan.samples);
   // By how much depends on the patches that it begins with: to 0.57 to 0.81 for longest edges of 0.4 to 0.6 m.
   EXPECT_LT(fine.accuracy.back().form_factor, coarse.accuracy.back().form_factor);
