@@ -229,7 +229,8 @@ def multiply(a, b):
 
 
 def determinant(m):
-    return sum(m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]) for i in range(3))
+    (a, b, c), (d, e, f), (g, h, i) = (row[:3] for row in m)
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
 def step_matrix(option, words):
