@@ -58,7 +58,7 @@ def squares(rows, bounds, scale, corner):
 
 def legend(bounds, top, title):
     yield element("text", title, x=0, y=top + 12, font_size=12)
-    labels = ["below " + f"{bounds[0]:g}"] + [f"{bound:g}" for bound in bounds]
+    labels = [f"< {bounds[0]:g}"] + [f"{bound:g}" for bound in bounds]
     for k, label in enumerate(labels):
         yield element("rect", x=56 * k, y=top + 20, width=56, height=12, fill=COLORS[k])
         yield element("text", label, x=56 * k, y=top + 44, font_size=10)

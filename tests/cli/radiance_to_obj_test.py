@@ -1,0 +1,138 @@
+"""scripts/radiance_to_obj.py: transformations, materials, glass, naming what is lost, refusing what cannot be read."""
+import math
+import pathlib
+import subprocess
+import sys
+import unittest
+
+from support import ToolTest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "radiance_to_obj.py"
+
+MATERIALS = """# a comment
+void plastic wall 0 0 5 .5 .25 .125 0 0
+void plastic shiny
+0
+0
+5 .5 .5 .5 .1 .05
+void glass pane 0 0 3 .654 .654 .654
+void trans sheet 0 0 7 .8 .8 .8 0 0 .5 .25
+void light lamp 0 0 3 5 6 7
+void dielectric water 0 0 5 1 1 1 1.33 0
+void alias paint wall
+"""
+PART = "lamp polygon triangle 0 0 9  0 0 0  1 0 0  0 2 0  # its front looks up\n"
+SCENE = r"""
+paint polygon floor 0 0 12 0 0 0  4 0 0  4 3 0  0 3 0
+shiny polygon shelf 0 0 9 0 0 1  1 0 1  0 1 1
+pane polygon window 0 0 9 0 0 1  1 0 1  0 0 2
+sheet polygon blind 0 0 9 0 1 1  1 1 1  0 1 2
+water sphere drop 0 0 4 0 0 0 1
+!xform -n moved -rz 90 -s 2 -t 10 0 0 \
+  parts/part.rad
+!xform -n mirrored -m wall -mx parts/part.rad
+"""
+
+
+class RadianceTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("materials.mat", MATERIALS)
+        self.write("scene.rad", SCENE)
+        (self.folder / "parts").mkdir()
+        self.write("parts/part.rad", PART)
+
+    def convert(self, *files):
+        command = [sys.executable, str(SCRIPT), "out.obj", *files]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=600, check=False)
+
+    def faces(self):
+        """Corners and material by name."""
+        vertices, faces = [], {}
+        for line in (self.folder / "out.obj").read_text().splitlines():
+            key, *words = line.split()
+            if key == "v":
+                vertices.append([float(word) for word in words])
+            elif key == "o":
+                name = words[0]
+            elif key == "usemtl":
+                material = words[0]
+            elif key == "f":
+                faces[name] = [vertices[int(word) - 1] for word in words], material
+        return faces
+
+    def converted(self):
+        done = self.convert("materials.mat", "scene.rad")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def assert_corners(self, found, expected):
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            for x, y in zip(a, b):
+                self.assertAlmostEqual(x, y, places=7)
+
+    def test_steps_of_xform_apply_in_their_order(self):
+        self.converted()
+        corners, material = self.faces()["moved.triangle"]
+        # Turned x to y and y to -x, then twice as large, then moved.
+        self.assert_corners(corners, [[10, 0, 0], [10, 2, 0], [6, 0, 0]])
+        self.assertEqual(material, "lamp")
+
+    def test_a_mirrored_part_keeps_its_front_and_takes_the_material_of_xform(self):
+        self.converted()
+        corners, material = self.faces()["mirrored.triangle"]
+        self.assert_corners(corners, [[0, 2, 0], [-1, 0, 0], [0, 0, 0]])
+        self.assertEqual(material, "wall")
+
+    def test_materials(self):
+        done = self.converted()
+        text = (self.folder / "out.mtl").read_text()
+        self.assertIn("newmtl paint\nKd 0.5 0.25 0.125\n", text)
+        # 0.5 of what is not reflected by the gloss, and the gloss: 0.5 * 0.9 + 0.1.
+        self.assertIn("newmtl shiny\nKd 0.55 0.55 0.55\n", text)
+        # Half of 0.8 is let through, a quarter of it straight.
+        self.assertIn("newmtl sheet\nKd 0.4 0.4 0.4\n", text)
+        self.assertIn("--set sheet.transmittance=0.1\n", done.stdout)
+        self.assertIn("newmtl lamp\nKd 0 0 0\nKe 5 6 7\n", text)
+
+    def test_a_pane_lets_through_what_goes_through_both_faces(self):
+        """Added up: r is reflected where the light meets a face, t is left after a way through the glass."""
+        r, t = (0.52 / 2.52)**2, 0.654
+        through = sum((1 - r)**2 * t * (r * t)**(2 * k) for k in range(40))
+        back = r + sum((1 - r)**2 * r * t**2 * (r * t)**(2 * k) for k in range(40))
+        done = self.converted()
+        (line,) = (line for line in done.stdout.splitlines() if line.startswith("--set pane."))
+        self.assertTrue(math.isclose(float(line.split("=")[1]), through, abs_tol=5e-5), line)
+        self.assertIn(f"newmtl pane\nKd {back:.9g} ", (self.folder / "out.mtl").read_text())
+
+    def test_what_is_lost_is_named(self):
+        self.assertEqual(self.converted().stderr.splitlines(), [
+            "shiny: its gloss (plastic) becomes matt", "sheet: the light it lets through scattered is lost",
+            "left out, of the kind sphere: 1 (drop)"])
+
+    def test_what_cannot_be_read_is_refused_with_file_and_line(self):
+        for text, message in (
+                ("\nnone polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:2: the material none of polygon p is not defined"),
+                ("water polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:1: the material water of polygon p is of the kind"),
+                ("wall polygon p 0 0 9 0 0 0 1 0 0\n0 x 0", "bad.rad:2: found 'x' where a number is expected"),
+                ("wall polygon p 0 0 8 0 0 0 1 0 0 0 1", "bad.rad:1: polygon p has 8 numbers"),
+                ("wall polygon p 0 0 9 0 0 0 1", "bad.rad:1: the file ends where a number is expected"),
+                ("void plastic q 0 0 3 1 1 1", "bad.rad:1: plastic q has 3 numbers, 5 are expected"),
+                ("\n!genbox wall box 1 1 1", "bad.rad:2: only !xform is understood"),
+                ("!xform -a 3 -t 1 0 0 part.rad", "bad.rad:1: '-a' of xform is not understood"),
+                ("!xform -t 1 0 0 absent.rad", "absent.rad: cannot be read")):
+            self.write("bad.rad", text + "\n")
+            done = self.convert("materials.mat", "bad.rad")
+            self.assertEqual(done.returncode, 1, text)
+            self.assertTrue(done.stderr.startswith("error: " + message), done.stderr)
+
+    def test_the_tool_reads_what_comes_out(self):
+        self.converted()
+        done = self.run_tool("check", "out.obj", "--set", "pane.transmittance=0.6")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("6 polygons", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
