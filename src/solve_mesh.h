@@ -37,6 +37,7 @@ struct SolvedMesh {
   Eigen::VectorXd interest;     ///< with parents: 1 for each patch whose error counts, else 0
   Eigen::VectorXd effects;      ///< with parents: effects_of_parents()
   Eigen::VectorXd noise;        ///< with parents: noise_of_parents()
+  double noise_bar = 0;         ///< with parents: what shadow rays err, as relative_bar()
 };
 
 /// Form factors, closure, solution and, with parents, error bars, as the plan says. \throws Cancelled, and what the

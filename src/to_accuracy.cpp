@@ -44,8 +44,8 @@ double patches_for(double patches, double factor) { return patches * std::pow(st
 int next_samples(int samples, double factor) {
   const double needed = samples * factor * factor;
   int next = samples;
-  while (next < needed && 2 * next <= most_samples) next *= 2;
-  return next;
+  while (next < needed && next < most_samples) next = std::min(2 * next, most_samples);
+  return std::max(samples, next);
 }
 
 // What one error may be when the others are as they are: what they leave, but no less than its share.
@@ -63,20 +63,27 @@ double mesh_factor(const AccuracyStep& step, double accuracy) {
   return margin * step.mesh / allowed(accuracy, share_of_mesh, std::hypot(step.form_factor, step.solver));
 }
 
-// The form factors' error falls as one over the root of samples and patches: samples for those that the mesh will need.
-// As long as that is far off, the usual number does.
-int samples_for(const AccuracyStep& step, double accuracy) {
+// What shadow rays err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
+// to do with their samples.
+double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double noise = solved.noise_bar;
+  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - noise * noise));
+  return allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver, beside));
+}
+
+// By what factor it has to fall.
+double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  return margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
+}
+
+// It falls as one over the root of samples and patches: samples for those patches that the mesh will need. As long as
+// that is far off, the usual number does.
+int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
   constexpr double far_off = 1.5;
   if (mesh_factor(step, accuracy) > far_off) return step.samples;
   const double patches = patches_for(step.patches, mesh_factor(step, accuracy));
-  const double expected = step.form_factor * std::sqrt(step.patches / patches);
-  const double share = allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
-  return expected > share ? next_samples(step.samples, margin * expected / share) : step.samples;
-}
-
-// By what factor the form factors' error has to fall.
-double form_factor_factor(const AccuracyStep& step, double accuracy) {
-  return margin * step.form_factor / allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver));
+  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
+  return factor > margin ? next_samples(step.samples, factor) : step.samples;
 }
 
 // Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
@@ -124,18 +131,31 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
                     " or more: ask for that, or for an --interest");
 }
 
-// Refuses what would not fit even if the error fell as the number of patches grows: it falls more slowly, the more so
-// on fine meshes.
-void require_within_reach(const Request& request, const AccuracyStep& step, double factor) {
+// Once three meshes have told how the error falls with the number of patches: refuses what would take far more than
+// fits.
+void require_within_reach(const Request& request, const std::vector<AccuracyStep>& steps) {
+  constexpr double far_more = 2;
+  if (steps.size() < 3) return;
+  const AccuracyStep& before = steps[steps.size() - 3];
+  const AccuracyStep& last = steps.back();
+  const double finer = static_cast<double>(last.patches) / before.patches;
+  const double order = finer > 1 ? std::log(before.total / last.total) / std::log(finer) : 1;
+  const double at_least = std::max(order, mesh_order / 2);
   const double most = patches_that_fit(request);
-  if (step.patches * factor > most)
-    refuse(request, patches_for(step.patches, factor), step.total * step.patches / most);
+  const double needed = last.patches * std::pow(last.total / *request.accuracy, 1 / at_least);
+  if (needed > far_more * most) refuse(request, needed, last.total * std::pow(last.patches / most, at_least));
 }
 
 // How many parents can be cut, each into sixteen new patches, before there are so many.
 std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
+
+// What the next mesh is made by.
+struct Refinement {
+  std::vector<std::uint8_t> cut;  // per parent
+  int samples = 0;
+};
 
 struct Search {
   const Setting& setting;
@@ -147,6 +167,7 @@ struct Search {
 
   AccuracyStep step_of(const SolvedMesh& solved, PatchIndex known) const;
   std::optional<MeshToSolve> next(SolvedMesh& solved);
+  Refinement refinement(const SolvedMesh& solved, double accuracy) const;
   double patches_in_time() const;
 };
 
@@ -167,6 +188,22 @@ double Search::patches_in_time() const {
   return patches_in((*plan.seconds - step.seconds) / margin, seconds_per_pair, step.patches);
 }
 
+// Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
+// that does; and those that make the noise, if they are few or nothing else is left. Else more samples.
+Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
+  const AccuracyStep& step = steps.back();
+  const std::size_t parents = solved.mesh.parents.size();
+  const std::size_t most = cuts_up_to(std::min(patches_that_fit(request), patches_in_time()), step);
+  std::vector<std::uint8_t> cut =
+      parents_to_cut(solved.effects, {mesh_factor(step, accuracy), mesh_error_left, parents / 8, most});
+  const std::vector<std::uint8_t> noisy =
+      parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
+  const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
+  if (count(noisy) > 0 && (are_few || plan.seconds || plan.samples >= most_samples))
+    return {either(std::move(cut), noisy), plan.samples};
+  return {std::move(cut), plan.seconds ? plan.samples : samples_for(solved, step, accuracy)};
+}
+
 // The next mesh; none when the last one is good enough, or time is up.
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const AccuracyStep& step = steps.back();
@@ -174,35 +211,21 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
   if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+  if (!plan.seconds && step.total > accuracy) require_within_reach(request, steps);
 
-  // 1. Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as
-  //    one that does; and those that make the noise, or more samples.
-  const double factor = mesh_factor(step, accuracy);
-  if (!plan.seconds) require_within_reach(request, step, factor);
-  const std::size_t parents = solved.mesh.parents.size();
+  const Refinement by = refinement(solved, accuracy);
+  const bool more_samples = by.samples > plan.samples;
+  const bool finer_mesh = count(by.cut) > 0;
+  FinerMesh finer = refine(solved.mesh, by.cut);
   const double most = patches_that_fit(request);
-  const std::size_t most_cuts = cuts_up_to(std::min(most, patches_in_time()), step);
-  std::vector<std::uint8_t> cut = parents_to_cut(solved.effects, factor, {parents / 8, most_cuts});
-  const std::vector<std::uint8_t> noisy =
-      parents_to_cut(noise_to_cut(solved), form_factor_factor(step, accuracy), {0, most_cuts});
-  int samples = plan.samples;
-  if (count(noisy) > 0 && static_cast<double>(count(noisy)) <= few * static_cast<double>(parents)) {
-    cut = either(std::move(cut), noisy);
-  } else if (!plan.seconds) {
-    samples = samples_for(step, accuracy);
-  }
-
-  // 2. The mesh that this makes, if it fits.
-  const bool more_samples = samples > plan.samples;
-  const bool finer_mesh = count(cut) > 0;
-  FinerMesh finer = refine(solved.mesh, cut);
-  if (finer.mesh.patches.size() > most || (factor > 1 && !finer_mesh && cuts_up_to(most, step) == 0)) {
-    if (plan.seconds) return std::nullopt;
-    refuse(request, patches_for(step.patches, factor), step.total);
+  const double factor = mesh_factor(step, accuracy);
+  if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
+    if (plan.seconds || step.total <= accuracy) return std::nullopt;
+    refuse(request, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
   }
   if (!more_samples && !finer_mesh) return std::nullopt;
-  plan.samples = samples;
-  plan.probes = std::max(plan.probes, samples / 2);
+  plan.samples = by.samples;
+  plan.probes = std::max(plan.probes, by.samples / 2);
   MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};
   if (!more_samples) to_solve.known = std::move(solved.raw);
   return to_solve;

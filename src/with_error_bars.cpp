@@ -112,6 +112,7 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
   result.effects = effects_of(result, solved, weight, of_mesh);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
+  result.noise_bar = relative_bar(sampled, simulation.problem, simulation.solution, result.interest);
   result.noise = noise_of_parents(errors, result.mesh, solved, weight);
   return result;
 }

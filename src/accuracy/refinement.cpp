@@ -10,9 +10,6 @@
 namespace patchlight {
 namespace {
 
-// What is left of a parent's squared effect when it is cut: halving the patches' size gains a factor of 2^mesh_order.
-const double left_by_a_cut = std::pow(2.0, -2 * mesh_order);
-
 // Where one cut of everything does not do, those with this share of the effect are cut.
 constexpr double bulk = 0.9;
 
@@ -56,22 +53,22 @@ Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& 
   return summed_by_parent(mesh, squares.rowwise().maxCoeff()).col(0).matrix();
 }
 
-std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, const CutLimits& limits) {
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const CutGoal& goal) {
   std::vector<std::size_t> order(static_cast<std::size_t>(effects.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return effects[static_cast<Eigen::Index>(a)] > effects[static_cast<Eigen::Index>(b)];
   });
   const double all = effects.sum();
-  const double wanted = std::max(all / (factor * factor), all * (1 - bulk * (1 - left_by_a_cut)));
+  const double wanted = std::max(all / (goal.factor * goal.factor), all * (1 - bulk * (1 - goal.left)));
   std::vector<std::uint8_t> marks(order.size(), 0);
-  if (factor <= 1) return marks;
+  if (goal.factor <= 1) return marks;
   double left = all;
   std::size_t cut = 0;
   for (const std::size_t parent : order) {
     const double effect = effects[static_cast<Eigen::Index>(parent)];
-    if ((left <= wanted && cut >= limits.least) || cut == limits.most || effect == 0) break;
-    left -= effect * (1 - left_by_a_cut);
+    if ((left <= wanted && cut >= goal.least) || cut == goal.most || effect == 0) break;
+    left -= effect * (1 - goal.left);
     marks[parent] = 1;
     ++cut;
   }

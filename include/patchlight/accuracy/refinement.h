@@ -6,6 +6,7 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -38,16 +39,24 @@ Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
                                    const Eigen::VectorXd& weight);
 
-/// How many parents may be cut.
-struct CutLimits {
-  std::size_t least = 0;
+/// What is left of the squared mesh error of a parent that is cut: halving the patches' size gains 2^mesh_order.
+inline const double mesh_error_left = std::pow(2.0, -2 * mesh_order);
+
+/// And of its squared sampling error, with four times the samples.
+inline constexpr double noise_left = 0.25;
+
+/// What cutting parents is to achieve.
+struct CutGoal {
+  double factor = 1;              ///< by which the error has to fall
+  double left = mesh_error_left;  ///< of the squared effect of a parent that is cut
+  std::size_t least = 0;          ///< parents that are cut, if any
   std::size_t most = std::numeric_limits<std::size_t>::max();
 };
 
-/// The least number of parents that have to be cut for the error to fall by `factor`, the most effective first: marks
-/// per parent. Where cutting all would not suffice, those with nine tenths of the effect; within the limits, but none
-/// without an effect, and none when nothing has to fall.
-std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, double factor, const CutLimits& limits);
+/// The least number of parents that have to be cut for the error to fall, the most effective first: marks per parent.
+/// Where cutting all would not suffice, those with nine tenths of the effect; within the limits, but none without an
+/// effect, and none when nothing has to fall.
+std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const CutGoal& goal);
 
 /// How much a change of each patch's irradiance matters to the light on the patches of `interest` (1 or 0 per patch):
 /// the solution of the adjoint equation psi = interest + F R psi, worst band. As S is

@@ -39,7 +39,7 @@ int least_cuts(double wanted) {
 TEST(ParentsToCut, AreTheFewestThatDo) {
   const double all = effects.sum();
   for (const double factor : {1.01, 1.1, 1.2, 1.5, 1.8}) {
-    const std::vector<std::uint8_t> marks = parents_to_cut(effects, factor, {});
+    const std::vector<std::uint8_t> marks = parents_to_cut(effects, {.factor = factor});
     const double wanted = all / (factor * factor);
     EXPECT_LE(left_after(marks), wanted);
     EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), least_cuts(wanted)) << factor;
@@ -48,14 +48,14 @@ TEST(ParentsToCut, AreTheFewestThatDo) {
 
 TEST(ParentsToCut, AreNoneWhenNothingHasToFall) {
   for (const double factor : {1.0, 0.5}) {
-    const std::vector<std::uint8_t> marks = parents_to_cut(effects, factor, {});
+    const std::vector<std::uint8_t> marks = parents_to_cut(effects, {.factor = factor});
     EXPECT_EQ(std::count(marks.begin(), marks.end(), 0), effects.size());
   }
 }
 
 // One cut of everything lets the error fall by 2^mesh_order at most: beyond, the fewest with nine tenths of the effect.
 TEST(ParentsToCut, HaveNineTenthsWhereCuttingAllWouldNotDo) {
-  const std::vector<std::uint8_t> marks = parents_to_cut(effects, 100, {});
+  const std::vector<std::uint8_t> marks = parents_to_cut(effects, {.factor = 100});
   const double all = effects.sum();
   const double wanted = all - 0.9 * all * (1 - left_by_a_cut);
   EXPECT_LE(left_after(marks), wanted * (1 + 1e-15));
@@ -64,8 +64,27 @@ TEST(ParentsToCut, HaveNineTenthsWhereCuttingAllWouldNotDo) {
 }
 
 TEST(ParentsToCut, AreTheMostEffectiveOnesWhenThereIsALimit) {
-  EXPECT_EQ(parents_to_cut(effects, 100, {0, 3}), (std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 1, 0}));
-  EXPECT_EQ(parents_to_cut(effects, 100, {0, 0}), std::vector<std::uint8_t>(9, 0));
+  EXPECT_EQ(parents_to_cut(effects, {.factor = 100, .most = 3}),
+            (std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(parents_to_cut(effects, {.factor = 100, .most = 0}), std::vector<std::uint8_t>(9, 0));
+}
+
+// The error would fall enough with the first alone; a parent without an effect is not cut to make up the number.
+TEST(ParentsToCut, AreAtLeastSoMany) {
+  EXPECT_EQ(parents_to_cut(effects, {.factor = 1.01, .least = 3}),
+            (std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(parents_to_cut(effects, {.factor = 1.01, .least = 9}),
+            (std::vector<std::uint8_t>{1, 1, 1, 1, 0, 1, 1, 1, 1}));
+}
+
+// What a cut leaves of noise is more than of a mesh error: it takes more cuts.
+TEST(ParentsToCut, DependOnWhatACutLeaves) {
+  // Four fifths of the largest effect are a little more than what has to fall.
+  const double factor = 0.999 * std::sqrt(1 / (1 - 0.8 * 8 / effects.sum()));
+  EXPECT_EQ(parents_to_cut(effects, {.factor = factor, .left = 0.2}),
+            (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(parents_to_cut(effects, {.factor = factor, .left = 0.25}),
+            (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 0, 0, 1, 0}));
 }
 
 // <interest, B>_A = <psi, E>_A for the solution of B = E + R F B: the adjoint equation's reason to be. psi is solved to
