@@ -133,7 +133,8 @@ target = [1.3, -16.3, 0.6]
 field_of_view = 75
 END
       files=("$out/duplex-daylight.toml")
-      options=(--patches 8000 --on-demand --solver progressive --max-rows 2% --points-output "$out/duplex-daylight.csv")
+      options=(--patches 8000 --on-demand --solver progressive --max-rows 2%
+        --points-output "$out/duplex-daylight.csv")
       ;;
     ies)
       cat >"$out/ies.toml" <<END
