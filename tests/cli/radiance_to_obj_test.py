@@ -108,13 +108,14 @@ class RadianceTest(ToolTest):
 
     def test_what_is_lost_is_named(self):
         self.assertEqual(self.converted().stderr.splitlines(), [
-            "shiny: its gloss (plastic) becomes matt", "sheet: the light it lets through scattered is lost",
+            "shiny: its gloss (plastic) becomes matt",
+            "sheet: the light it lets through scattered is lost",
             "left out, of the kind sphere: 1 (drop)"])
 
     def test_what_cannot_be_read_is_refused_with_file_and_line(self):
         for text, message in (
-                ("\nnone polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:2: the material none of polygon p is not defined"),
-                ("water polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:1: the material water of polygon p is of the kind"),
+                ("\nnone polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:2: the material none of polygon p is not"),
+                ("water polygon p 0 0 9 0 0 0 1 0 0 0 1 0", "bad.rad:1: the material water of polygon p is of"),
                 ("wall polygon p 0 0 9 0 0 0 1 0 0\n0 x 0", "bad.rad:2: found 'x' where a number is expected"),
                 ("wall polygon p 0 0 8 0 0 0 1 0 0 0 1", "bad.rad:1: polygon p has 8 numbers"),
                 ("wall polygon p 0 0 9 0 0 0 1", "bad.rad:1: the file ends where a number is expected"),
