@@ -107,6 +107,14 @@ Occluder::Blockers blockers_of(const Plan& plan) {
   return is_forced(plan, Effect::occlusion) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
 }
 
+Scene scene_for_sensors(Scene scene, const Plan& plan) {
+  if (is_skipped_by_force(plan, Effect::luminaires)) scene.luminaires.clear();
+  if (is_skipped_by_force(plan, Effect::sun)) scene.sun.reset();
+  if (is_skipped_by_force(plan, Effect::sky)) scene.sky.reset();
+  if (is_skipped_by_force(plan, Effect::colour)) scene = with_spectra(std::move(scene), without_colour);
+  return scene;
+}
+
 Scene scene_as_planned(Scene scene, const Plan& plan) {
   if (!simulates(plan, Effect::luminaires)) scene.luminaires.clear();
   if (!simulates(plan, Effect::sun)) scene.sun.reset();

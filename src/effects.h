@@ -20,6 +20,9 @@ Occluder::Blockers blockers_of(const Plan& plan);
 /// every spectrum is replaced by its luminance (light/photometry.h), the same in all bands.
 Scene scene_as_planned(Scene scene, const Plan& plan);
 
+/// The scene as sensors see it, which may stand where no patch is: only what is skipped by force gives no light.
+Scene scene_for_sensors(Scene scene, const Plan& plan);
+
 /// Irradiance of patches by luminaires, sun and sky; where one band stands for all it is found once. \throws Cancelled.
 DirectIrradiance direct_irradiance_as_planned(const Setting& setting, const Plan& plan, const PatchMesh& mesh);
 

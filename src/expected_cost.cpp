@@ -21,12 +21,13 @@ constexpr double products_of_solver = 15;
 constexpr double seconds_per_entry = 1.1e-10;
 
 // The share of all rows that are those of lamps, by area.
-double share_of_lamps(const Scene& scene, const PatchMesh& mesh) {
+double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   double lamps = 0;
   double all = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     all += mesh.area[i];
-    if (emits(scene, mesh.polygon[i], mesh.side[i])) lamps += mesh.area[i];
+    const bool of_front = plan.sides.emit_from_back && emits(scene, mesh.polygon[i], Side::front);
+    if (of_front || emits(scene, mesh.polygon[i], mesh.side[i])) lamps += mesh.area[i];
   }
   return all > 0 ? lamps / all : 0;
 }
@@ -36,7 +37,7 @@ double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& m
   const Occluder occluder(scene, blockers_of(plan), find_coverings(scene, plan.sides));
   const double of_matrix = expected_assembly_seconds(mesh, occluder, assembly_options(plan));
   const bool lamps_alone = plan.on_demand && !simulates(plan, Effect::interreflection);
-  return lamps_alone ? 2 * of_matrix * share_of_lamps(scene, mesh) : of_matrix;
+  return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 
 double rays_per_patch(const Scene& scene, const Plan& plan) {
@@ -51,10 +52,9 @@ double rays_per_patch(const Scene& scene, const Plan& plan) {
 
 ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, const PatchMesh& mesh) {
   const auto n = static_cast<double>(mesh.size());
-  Request used = request;
-  used.on_demand = plan.on_demand;
-  ExpectedCost cost{
-      .patches = mesh.size(), .bytes = memory_needed(mesh.size(), used), .of_first_mesh = refines(request)};
+  ExpectedCost cost{.patches = mesh.size(),
+                    .bytes = memory_needed(mesh.size(), as_planned(request, plan)),
+                    .of_first_mesh = refines(request)};
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = request.threads > 0 ? request.threads : std::max(1, processors);
 

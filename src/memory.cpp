@@ -92,6 +92,11 @@ void require_memory(std::size_t patches, const Request& request) {
                     (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);
 }
 
+Request as_planned(Request request, const Plan& plan) {
+  request.on_demand = plan.on_demand;
+  return request;
+}
+
 void require_memory(const Scene& scene, const Request& request) {
   if (request.max_edge) {
     const double largest = *request.max_edge * *request.max_edge;

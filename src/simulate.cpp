@@ -23,12 +23,13 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
 
   // 1. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
   //    how form factors and radiosities are found.
-  require_memory(scene, request);
   require_names(scene, request.interest);
   Plan plan = make_plan(scene, request);
   assert(!with.exchange || (!request.on_demand && !plan.error_bars));
   assert(!with.mesh || !plan.error_bars);
   if (with.exchange) plan.on_demand = false;
+  const Request planned = as_planned(request, plan);
+  require_memory(scene, planned);
   const Scene lit = scene_as_planned(scene, plan);
   clock.finish(Stage::plan);
 
@@ -45,8 +46,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
   //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.
   const Setting setting{lit, coverings, occluder, with, observer};
-  Simulation result = refines(request) ? solve_to_accuracy(setting, request, plan, clock).simulation
-                                       : solve_mesh(setting, request, plan, clock).simulation;
+  Simulation result = refines(request) ? solve_to_accuracy(setting, planned, plan, clock).simulation
+                                       : solve_mesh(setting, planned, plan, clock).simulation;
   result.costs = clock.costs();
   return result;
 }

@@ -8,6 +8,7 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
+#include "interest.h"
 #include "memory.h"
 #include "solve_mesh.h"
 
@@ -54,9 +55,12 @@ ExitCode plan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.threads);
   const Scene scene = read_scene(arguments.models, arguments.read);
-  require_memory(scene, arguments.request);
+  require_names(scene, arguments.request.interest);
   const Plan plan = make_plan(scene, arguments.request);
+  const Request planned = as_planned(arguments.request, plan);
+  require_memory(scene, planned);
   const NestedMesh mesh = first_mesh(scene, plan);
+  require_memory(mesh.patches.size(), planned);
   const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh.patches);
 
   const WritingGuard guard;

@@ -45,7 +45,7 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
 }
 
 Readings read_sensors(const Scene& whole, const Simulation& simulation, const Observer& observer) {
-  const Scene scene = scene_as_planned(whole, simulation.plan);
+  const Scene scene = scene_for_sensors(whole, simulation.plan);
   // Without interreflection sensors see what lamps send, and nothing that is reflected.
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;

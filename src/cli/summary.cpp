@@ -203,8 +203,10 @@ std::string explain_not_accurate(const Simulation& simulation) {
   std::string text = "accuracy of " + percent(*simulation.plan.accuracy, 3) + " % NOT reached: the error is about " +
                      percent(step.total) + " % after " + rounded(step.seconds) + " s; most of it is from the " +
                      (by_mesh ? "size of the patches" : "sampling of form factors") + ". ";
-  if (simulation.plan.seconds) return text + "Give a longer --time";
-  return text + (by_mesh ? "Begin with more --patches" : "Begin with more --samples");
+  if (simulation.plan.seconds) return text + "Give a longer --time, or more --memory if it ended before";
+  return text + (by_mesh
+                     ? "Begin with more --patches"
+                     : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
 }
 
 std::string explain_not_converged(const Simulation& simulation) {

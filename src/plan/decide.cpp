@@ -157,8 +157,8 @@ std::vector<Decision> not_simulated(const EffectFacts& facts) {
 }
 
 // An effect of which the scene has nothing can neither be forced nor skipped.
-bool is_there(const Decision& decision, const EffectFacts& facts) {
-  switch (decision.effect) {
+bool is_there(Effect effect, const EffectFacts& facts) {
+  switch (effect) {
     case Effect::luminaires:
       return facts.luminaires > 0;
     case Effect::sun:
@@ -188,11 +188,24 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
                                      sun(facts),
                                      sky(facts)};
   for (Decision& decision : decisions) {
-    if (is_there(decision, facts)) decision = overruled(std::move(decision), request);
+    if (is_there(decision.effect, facts)) decision = overruled(std::move(decision), request);
   }
   decisions.push_back(closure(request, decisions[1].simulate));
   for (Decision& decision : not_simulated(facts)) decisions.push_back(std::move(decision));
   return decisions;
+}
+
+std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request) {
+  std::vector<std::string> notes;
+  const auto add = [&](const char* option, const std::vector<Effect>& effects) {
+    for (const Effect effect : effects) {
+      if (!is_there(effect, facts))
+        notes.push_back(std::string(option) + " " + name_of(effect) + " changes nothing: the scene has nothing of it");
+    }
+  };
+  add("--force", request.force);
+  add("--skip", request.skip);
+  return notes;
 }
 
 }  // namespace patchlight

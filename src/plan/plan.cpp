@@ -71,6 +71,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
   Plan plan = plan_form_factors(scene, request);
   const EffectFacts facts = survey_effects(scene, plan.sides);
   plan.decisions = decide(facts, request);
+  for (std::string& note : notes_on_overruling(facts, request)) plan.notes.push_back(std::move(note));
   require_light(scene, facts, plan);
   plan.close = simulates(plan, Effect::closure);
   plan.on_demand = request.on_demand || takes_lamps_alone(plan);

@@ -7,20 +7,32 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
+#include <variant>
 
 namespace patchlight {
 namespace {
 
-// A point just before every side that emits, and that of every luminaire.
+// Points just before every side that emits, in its middle and at its corners, and those of every luminaire: a lamp may
+// stick through a wall.
 std::vector<Point> points_of_lamps(const Scene& scene) {
   const double extent = bounds(scene).diagonal().norm();
   std::vector<Point> points;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     for (const Side side : {Side::front, Side::back}) {
-      if (emits(scene, p, side)) points.push_back(point_before(scene, p, side, extent));
+      if (!emits(scene, p, side)) continue;
+      points.push_back(point_before(scene, p, side, extent));
+      for (const Point& corner : corners_before(scene, p, side, extent)) points.push_back(corner);
     }
   }
-  for (const Luminaire& luminaire : scene.luminaires) points.push_back(luminaire.position);
+  for (const Luminaire& luminaire : scene.luminaires) {
+    points.push_back(luminaire.position);
+    const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light);
+    if (sphere == nullptr) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double radius : {-sphere->radius, sphere->radius})
+        points.push_back(luminaire.position + radius * Vector::Unit(axis));
+    }
+  }
   return points;
 }
 
@@ -94,8 +106,6 @@ SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vect
   for (const Solid& solid : solids) {
     for (const PolygonIndex p : solid.polygons)
       mask[at(p, inner_side(solid, shells, p) == Side::front ? Side::back : Side::front)] = 1;
-    // Light of luminaires gets out through clear faces.
-    if (solid.has_opening) continue;
     const SideMask beside = sides_beside(scene, solid.box);
     for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= beside[k];
   }
@@ -124,11 +134,13 @@ struct Lit {
   bool outside = false;
 };
 
-Lit lit_sides(const Solid& solid, const std::vector<Point>& lamps, bool daylight) {
+// Light of luminaires gets out through clear faces, that of patches does not.
+Lit lit_sides(const Scene& scene, const Solid& solid, const std::vector<Point>& lamps, bool daylight) {
   const auto held = static_cast<std::size_t>(
       std::count_if(lamps.begin(), lamps.end(), [&](const Point& lamp) { return holds(solid, lamp); }));
   const bool from_outside = daylight || held < lamps.size();
-  return {held > 0 || (from_outside && solid.has_opening), held == 0 || from_outside};
+  const bool gets_out = solid.has_opening && !scene.luminaires.empty();
+  return {held > 0 || (from_outside && solid.has_opening), held == 0 || from_outside || gets_out};
 }
 
 KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) {
@@ -141,7 +153,7 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   Count count;
   std::vector<Solid> dark, around_all_lamps;
   for (Solid& solid : closed_solids(scene, shells)) {
-    const Lit lit = lit_sides(solid, lamps, daylight);
+    const Lit lit = lit_sides(scene, solid, lamps, daylight);
     if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
       count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     }

@@ -3,6 +3,7 @@
 #include "patchlight/scene/triangulate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -66,14 +67,25 @@ Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double e
   return (side == Side::front ? offset : -offset) * extent * front_normal(scene, polygon);
 }
 
+// No vertex lies before a face as seen from inside. What has its corners in a solid lies in it as a whole only then.
+bool is_convex(const Solid& solid) {
+  const double tolerance = offset * solid.box.diagonal().norm();
+  const double outward = solid.fronts_face_inside ? -1 : 1;
+  return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const std::array<Point, 3>& of) {
+    const Vector normal = outward * (of[1] - of[0]).cross(of[2] - of[0]).normalized();
+    return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const std::array<Point, 3>& other) {
+      return std::all_of(other.begin(), other.end(),
+                         [&](const Point& vertex) { return normal.dot(vertex - of[0]) < tolerance; });
+    });
+  });
+}
+
 bool lies_within(const Scene& scene, PolygonIndex polygon, Side side, const Solid& solid) {
   const double extent = solid.box.diagonal().norm();
   const Vector step = step_before(scene, polygon, side, extent);
-  const std::vector<Point> corners = corner_points(scene, polygon);
-  const Point middle = inner_point(corners);
-  return holds(solid, middle + step) && std::all_of(corners.begin(), corners.end(), [&](const Point& corner) {
-           return holds(solid, corner + inset * (middle - corner) + step);
-         });
+  const std::vector<Point> corners = corners_before(scene, polygon, side, extent);
+  return holds(solid, inner_point(corner_points(scene, polygon)) + step) &&
+         std::all_of(corners.begin(), corners.end(), [&](const Point& corner) { return holds(solid, corner); });
 }
 
 // Indices of the solids, those with the largest boxes first.
@@ -124,6 +136,14 @@ Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double e
   return inner_point(corner_points(scene, polygon)) + step_before(scene, polygon, side, extent);
 }
 
+std::vector<Point> corners_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
+  std::vector<Point> corners = corner_points(scene, polygon);
+  const Point middle = inner_point(corners);
+  const Vector step = step_before(scene, polygon, side, extent);
+  for (Point& corner : corners) corner += inset * (middle - corner) + step;
+  return corners;
+}
+
 std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids) {
   std::vector<std::uint8_t> within(2 * scene.polygons.size(), 0);
   for (const Solid& solid : solids) {
@@ -140,6 +160,10 @@ std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells,
   double tests = 0;
   for (const std::size_t k : largest_first(solids)) {
     const Solid& solid = solids[k];
+    const auto triangles = static_cast<double>(solid.triangles.size());
+    tests += triangles * triangles;
+    if (tests > most_tests) return within;
+    if (!is_convex(solid)) continue;
     for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
       if (++tests > most_tests) return within;
       if (!solid.box.contains(boxes[p]) || shells.shell[p] == shells.shell[solid.polygons.front()]) continue;

@@ -31,6 +31,9 @@ bool holds(const Solid& solid, const Point& point);
 /// largest triangle, inside the polygon even when that is not convex.
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
 
+/// Its corners in that space, a little nearer to the middle, as corners may touch a wall.
+std::vector<Point> corners_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
+
 /// At 2 * polygon + side 1 when the side belongs to one of these solids and faces its inside.
 std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
 

@@ -102,6 +102,12 @@ class SceneFileTest(ToolTest):
             self.assertAlmostEqual(float(row["daylight_factor_percent"]), expected, delta=0.05 + 3 * error)
             self.assertLess(error, 0.2)
 
+    def test_a_sensor_outside_sees_the_sky_that_no_patch_sees(self):
+        rows = self.readings('up = "z"\n[[model]]\nfile = "room.obj"\n[sky]\nkind = "uniform"\nirradiance = 10\n'
+                             '[[sensors]]\npoints = [[0, 0, 50, 0, 0, 1]]\n', "--sides", "front", "--patches", 100)
+        # Nothing is above it.
+        self.assertAlmostEqual(float(rows[0]["E_r"]), 10, delta=0.01 + 3 * float(rows[0]["SE_r"]))
+
     def test_a_lamp_beside_the_sky_leaves_no_daylight_factor(self):
         rows = self.readings('[[model]]\nfile = "ground.obj"\n[sky]\nkind = "overcast"\nilluminance = 10000\n'
                              '[[luminaire]]\nkind = "point"\nposition = [0, 0, 3]\nlumens = 1\n'

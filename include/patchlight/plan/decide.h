@@ -4,6 +4,7 @@
 #include "patchlight/plan/effects.h"
 #include "patchlight/plan/plan.h"
 
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -13,5 +14,8 @@ namespace patchlight {
 /// Request::force and Request::skip overrule the facts, as long as there is something to simulate: a sun that is not
 /// there cannot be forced.
 std::vector<Decision> decide(const EffectFacts& facts, const Request& request);
+
+/// A note on every effect that is to be forced or skipped and of which the scene has nothing.
+std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request);
 
 }  // namespace patchlight

@@ -252,6 +252,36 @@ TEST(KeptSides, WhatReachesOutOfADarkRoomStays) {
   EXPECT_EQ(sides_of(automatic(with_lamp(std::move(scene), {5, 5, 0})), 20), both_sides);
 }
 
+// A dark solid with the outline of an E, 3 m high. The corners and the middle of a floor lie within its arms; between
+// the arms a lamp shines on it.
+TEST(KeptSides, WhatLiesWithinADarkSolidInPartsStays) {
+  const std::vector<Point> outline = {{0, 0, 0}, {9, 0, 0}, {9, 6, 0}, {8, 6, 0}, {8, 1, 0}, {7, 1, 0},
+                                      {7, 6, 0}, {2, 6, 0}, {2, 1, 0}, {1, 1, 0}, {1, 6, 0}, {0, 6, 0}};
+  const Vector low(0, 0, -0.5), high(0, 0, 2.5);
+  Scene scene = empty_scene();
+  std::vector<Point> top, bottom;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point& a = outline[k];
+    const Point& b = outline[(k + 1) % outline.size()];
+    scene = with_polygon(std::move(scene), {a + low, b + low, b + high, a + high});
+    top.push_back(a + high);
+    bottom.insert(bottom.begin(), a + low);
+  }
+  scene = with_polygon(with_polygon(std::move(scene), top), bottom);
+  scene = with_polygon(std::move(scene), {{0.5, 3, 0}, {8.5, 3, 0}, {8.5, 5, 0}, {0.5, 5, 0}});
+  scene = with_lamp(std::move(scene), {1.5, 4, 2});
+  const KeptSides kept = automatic(scene);
+  EXPECT_EQ(kept.dark_solids.size(), 1U);
+  EXPECT_EQ(sides_of(kept, 14), both_sides);
+}
+
+// A lamp that sticks through the wall of a room lights both sides of it.
+TEST(KeptSides, ALampThroughAWallLightsBothSides) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward);
+  scene = with_polygon(std::move(scene), {{0.2, 0, 0}, {1.4, 0, 0}, {1.4, 0.1, 0}, {0.2, 0.1, 0}}, lamp);
+  expect_all(automatic(scene), 0, 6, both_sides);
+}
+
 TEST(KeptSides, WithoutALampNothingIsLeftOutButTheInsides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward);
   scene = with_polygon(std::move(scene), {{1, 1, 0}, {1.5, 1, 0}, {1, 1, 1}});
