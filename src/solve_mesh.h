@@ -35,9 +35,10 @@ struct SolvedMesh {
   NestedMesh mesh;
   std::optional<Assembly> raw;  ///< with parents: exchange areas before closure
   Eigen::VectorXd interest;     ///< with parents: 1 for each patch whose error counts, else 0
-  Eigen::VectorXd effects;      ///< with parents: effects_of_parents()
+  Eigen::VectorXd effects;      ///< with parents: effects_of_parents(), and of what light_bar is of
   Eigen::VectorXd noise;        ///< with parents: noise_of_parents()
-  double noise_bar = 0;         ///< with parents: what shadow rays err, as relative_bar()
+  double noise_bar = 0;         ///< with parents: what shadow rays between patches err, as relative_bar()
+  double light_bar = 0;         ///< with parents: and those towards luminaires, sun and sky
 };
 
 /// Form factors, closure, solution and, with parents, error bars, as the plan says. \throws Cancelled, and what the

@@ -58,9 +58,12 @@ double allowed(double accuracy, double share, double others) {
 constexpr double margin = 1.25;
 constexpr double enough = 1.1;
 
-// By what factor the mesh error has to fall.
-double mesh_factor(const AccuracyStep& step, double accuracy) {
-  return margin * step.mesh / allowed(accuracy, share_of_mesh, std::hypot(step.form_factor, step.solver));
+// By what factor the mesh error has to fall, and that of shadow rays towards luminaires, sun and sky, which are as
+// many for every patch.
+double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double lights = solved.light_bar;
+  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
+  return margin * std::hypot(step.mesh, lights) / allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
 }
 
 // What shadow rays err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
@@ -80,8 +83,8 @@ double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double a
 // that is far off, the usual number does.
 int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
   constexpr double far_off = 1.5;
-  if (mesh_factor(step, accuracy) > far_off) return step.samples;
-  const double patches = patches_for(step.patches, mesh_factor(step, accuracy));
+  if (mesh_factor(solved, step, accuracy) > far_off) return step.samples;
+  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
   const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
   return factor > margin ? next_samples(step.samples, factor) : step.samples;
 }
@@ -195,7 +198,7 @@ Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
   const std::size_t parents = solved.mesh.parents.size();
   const std::size_t most = cuts_up_to(std::min(patches_that_fit(request), patches_in_time()), step);
   std::vector<std::uint8_t> cut =
-      parents_to_cut(solved.effects, {mesh_factor(step, accuracy), mesh_error_left, parents / 8, most});
+      parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
       parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
@@ -218,7 +221,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const bool finer_mesh = count(by.cut) > 0;
   FinerMesh finer = refine(solved.mesh, by.cut);
   const double most = patches_that_fit(request);
-  const double factor = mesh_factor(step, accuracy);
+  const double factor = mesh_factor(solved, step, accuracy);
   if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
     if (plan.seconds || step.total <= accuracy) return std::nullopt;
     refuse(request, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);

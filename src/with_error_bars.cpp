@@ -111,6 +111,12 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   const bool all = result.interest.minCoeff() == 1;
   const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
   result.effects = effects_of(result, solved, weight, of_mesh);
+  if (has_point_or_daylight(setting.scene)) {
+    // The edge of the sun's light crosses fewer patches, by area, when these are finer.
+    const Field& of_lights = simulation.direct_standard_error;
+    result.effects += squares_of_parents(result.mesh, solved, of_lights, weight);
+    result.light_bar = relative_bar(of_lights, simulation.problem, simulation.solution, result.interest);
+  }
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   result.noise_bar = relative_bar(sampled, simulation.problem, simulation.solution, result.interest);
   result.noise = noise_of_parents(errors, result.mesh, solved, weight);

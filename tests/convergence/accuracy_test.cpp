@@ -2,9 +2,13 @@
 #include "patchlight/simulate.h"
 
 #include "support/finer_reference.h"
+#include "support/scenes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <string>
+#include <utility>
 
 namespace patchlight::test {
 namespace {
@@ -67,6 +71,27 @@ TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
   EXPECT_EQ(fine.plan.samples, coarse.plan.samples);
   // By how much depends on the patches that it begins with: to 0.57 to 0.81 for longest edges of 0.4 to 0.6 m.
   EXPECT_LT(fine.accuracy.back().form_factor, coarse.accuracy.back().form_factor);
+}
+
+// A sheet above a floor, the sun above both: patches on the shadow's edge, x = 1.7 m, are smaller than those beside.
+TEST(AskedAccuracyOf, CutsPatchesAlongTheEdgeOfTheSun) {
+  Scene scene = empty_scene({grey(0.5), grey(0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(-1, -1, 1), Point(-1, 5, 1), Point(1.7, 5, 1), Point(1.7, -1, 1)}, 1);
+  scene.sun = Sun{Vector::UnitZ(), Spectrum::Constant(1, 800)};
+  const Simulation simulation = simulate(scene, asked(0.005));
+  EXPECT_LE(simulation.accuracy.back().total, 0.005);
+  double largest_on_edge = 0;
+  double largest_beside = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (simulation.mesh.polygon[i] != 0) continue;
+    const double area = simulation.mesh.area[i];
+    const bool on_edge = std::abs(simulation.mesh.centroid[i].x() - 1.7) < std::sqrt(area) / 2;
+    double& largest = on_edge ? largest_on_edge : largest_beside;
+    largest = std::max(largest, area);
+  }
+  EXPECT_GT(largest_on_edge, 0);
+  EXPECT_LE(4 * largest_on_edge, largest_beside);
 }
 
 // The floor does not depend on how far light gets into the gap above the lamp: fewer patches do than for all surfaces.
