@@ -60,7 +60,8 @@ ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& 
 
 SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_solve, StageClock& clock) {
   const auto& [scene, coverings, occluder, with, observer] = setting;
-  SolvedMesh result{.mesh = to_solve.mesh};
+  SolvedMesh result;
+  result.mesh = to_solve.mesh;
   Simulation& simulation = result.simulation;
   TransportFacts& facts = simulation.transport;
   simulation.plan = plan;

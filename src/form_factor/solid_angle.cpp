@@ -58,38 +58,45 @@ Fan solid_angles_of(const Point& from, std::span<const Point> polygon) {
 
 }  // namespace
 
-PolygonSample sample_solid_angle(const Point& from, const Vector& normal, std::span<const Point> polygon, double u,
-                                 double v) {
-  // 1. What is above the horizon, as a fan of triangles with their solid angles.
-  const std::vector<Point> seen = clip_to_half_space(polygon, from, normal);
-  if (seen.empty()) return {};
-  const Fan fan = solid_angles_of(from, seen);
+SeenPoint sample_seen_point(const Point& from, std::span<const Point> polygon, double u, double v) {
+  const Fan fan = solid_angles_of(from, polygon);
   if (!(fan.total > 0)) return {};
 
-  // 2. One of the triangles, by solid angle; u is stretched to be used again.
+  // 1. One of the triangles, by solid angle; u is stretched to be used again.
   double rest = u * fan.total;
   std::size_t k = 0;
   while (k + 1 < fan.solid_angles.size() && rest >= fan.solid_angles[k]) rest -= fan.solid_angles[k++];
   const double stretched = std::clamp(rest / fan.solid_angles[k], 0.0, 1.0);
-  const Point& a = seen[0];
-  const Point& b = seen[k + 1];
-  const Point& c = seen[k + 2];
+  const Point& a = polygon[0];
+  const Point& b = polygon[k + 1];
+  const Point& c = polygon[k + 2];
+  const Vector plane_normal = (b - a).cross(c - a);
 
-  // 3. A small triangle as if it were plane: its solid angle hardly varies over it.
-  Point point;
+  // 2. A small triangle as if it were plane: by area, which counts for cos / d^2 of the solid angle.
   if (fan.solid_angles[k] < smallest_solid_angle) {
     const double root = std::sqrt(stretched);
-    point = a + root * (1 - v) * (b - a) + root * v * (c - a);
-  } else {
-    const Vector direction = spherical_triangle_direction((a - from).normalized(), (b - from).normalized(),
-                                                          (c - from).normalized(), fan.solid_angles[k], stretched, v);
-    const Vector plane_normal = (b - a).cross(c - a);
-    point = from + plane_normal.dot(a - from) / plane_normal.dot(direction) * direction;
-    // From a point on an edge or in the plane itself the spherical triangle has no angle: any point of it will do.
-    if (!point.allFinite()) point = (a + b + c) / 3;
+    const Point point = a + root * (1 - v) * (b - a) + root * v * (c - a);
+    const Vector way = from - point;
+    const double weight = plane_normal.dot(way) / (2 * std::pow(way.norm(), 3)) / fan.solid_angles[k];
+    return {point, fan.total, weight};
   }
-  const double cosine = normal.dot((point - from).normalized());
-  return {point, std::max(0.0, cosine) * fan.total / std::numbers::pi};
+  const Vector direction = spherical_triangle_direction((a - from).normalized(), (b - from).normalized(),
+                                                        (c - from).normalized(), fan.solid_angles[k], stretched, v);
+  const Point point = from + plane_normal.dot(a - from) / plane_normal.dot(direction) * direction;
+  // From a point on an edge or in the plane itself the spherical triangle has no angle: any point of it will do.
+  if (!point.allFinite()) return {(a + b + c) / 3, fan.total, 1};
+  return {point, fan.total, 1};
+}
+
+PolygonSample sample_solid_angle(const Point& from, const Vector& normal, std::span<const Point> polygon, double u,
+                                 double v) {
+  const std::vector<Point> above_horizon = clip_to_half_space(polygon, from, normal);
+  if (above_horizon.empty()) return {};
+  // In a small triangle the weight of the point hardly varies: left out.
+  const SeenPoint seen = sample_seen_point(from, above_horizon, u, v);
+  if (!(seen.solid_angle > 0)) return {};
+  const double cosine = normal.dot((seen.point - from).normalized());
+  return {seen.point, std::max(0.0, cosine) * seen.solid_angle / std::numbers::pi};
 }
 
 }  // namespace patchlight

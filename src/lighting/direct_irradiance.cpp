@@ -3,6 +3,7 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
+#include "lighting/luminaire_irradiance.h"
 #include "lighting/receiver.h"
 #include "lighting/sky_irradiance.h"
 
@@ -22,9 +23,10 @@ constexpr std::uint32_t replicates = 4;
 constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
-// Something that gives light: an estimate of the mean irradiance of a receiver.
+// Something that gives light: an estimate of the mean irradiance of a receiver. It takes as many of a scramble's points
+// as it is told for rays.
 struct Source {
-  std::function<Spectrum(const Receiver&, SamplePoints)> mean;
+  std::function<Spectrum(const Receiver&, SamplePoints, std::size_t)> mean;
   std::uint32_t samples = 0;
   bool has_extent = false;
 };
@@ -54,20 +56,29 @@ Spectrum mean_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at,
   return sum / static_cast<double>(exposed);
 }
 
+Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint32_t samples) {
+  const ArrivalAt arrival_at = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
+    return from_luminaire(luminaire, lighting.up, at, uv);
+  };
+  const bool has_extent = std::holds_alternative<SphericalLamp>(luminaire.light);
+  const auto mean = [&lighting, &luminaire, arrival_at, has_extent](const Receiver& receiver, SamplePoints points,
+                                                                    std::size_t rays) {
+    if (has_extent || receiver.is_point()) return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
+    return luminaire_irradiance(lighting, luminaire, receiver, {points.first(rays), points});
+  };
+  return {mean, samples, has_extent};
+}
+
 std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
   std::vector<Source> sources;
   const auto add = [&](const ArrivalAt& arrival_at, int samples, bool has_extent) {
-    const auto mean = [&lighting, arrival_at](const Receiver& receiver, SamplePoints points) {
-      return mean_of_arrivals(lighting, arrival_at, receiver, points);
+    const auto mean = [&lighting, arrival_at](const Receiver& receiver, SamplePoints points, std::size_t rays) {
+      return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
     };
     sources.push_back({mean, static_cast<std::uint32_t>(samples), has_extent});
   };
-  for (const Luminaire& luminaire : lighting.luminaires) {
-    const auto arrival = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
-      return from_luminaire(luminaire, lighting.up, at, uv);
-    };
-    add(arrival, options.lamp_samples, std::holds_alternative<SphericalLamp>(luminaire.light));
-  }
+  for (const Luminaire& luminaire : lighting.luminaires)
+    sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
   if (lighting.sun) {
     add([&lighting](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); },
         options.sun_samples, false);
@@ -75,8 +86,8 @@ std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& 
   if (lighting.sky) {
     // With openings a sample takes two rays.
     const int rays = lighting.openings.empty() ? 1 : 2;
-    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points) {
-      return sky_irradiance(lighting, receiver, points);
+    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t count) {
+      return sky_irradiance(lighting, receiver, points.first(count));
     };
     sources.push_back({mean, static_cast<std::uint32_t>(options.sky_samples / rays), true});
   }
@@ -109,12 +120,12 @@ Estimator estimator_for(const Lighting& lighting, const LightingOptions& options
 
 Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
   const auto set = [&](std::uint32_t k) { return SamplePoints(points[(key + k * step) % scrambles]); };
-  if (receiver.is_point && !source.has_extent) return {source.mean(receiver, set(0).first(1)), Spectrum::Zero(bands)};
+  if (receiver.is_point() && !source.has_extent) return {source.mean(receiver, set(0), 1), Spectrum::Zero(bands)};
   const std::size_t each = std::max<std::size_t>(1, source.samples / replicates);
   Spectrum sum = Spectrum::Zero(bands);
   Spectrum squares = sum;
   for (std::uint32_t k = 0; k < replicates; ++k) {
-    const Spectrum one = source.mean(receiver, set(k).first(each));
+    const Spectrum one = source.mean(receiver, set(k), each);
     sum += one;
     squares += one.square();
   }
@@ -154,7 +165,8 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
     const auto place = [&mesh, i](double u, double v) {
       return SurfacePoint{square_to_quad(mesh.corner_points(i).points, u, v), mesh.normal[i], mesh.polygon[i]};
     };
-    receivers.push_back({place, mesh.side[i], false});
+    const PatchCorners corners = mesh.corner_points(i);
+    receivers.push_back({place, mesh.side[i], {corners.points.begin(), corners.points.begin() + corners.count}});
   }
   return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
 }
@@ -163,7 +175,7 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const Sur
                                    const LightingOptions& options, const Observer& observer) {
   std::vector<Receiver> receivers;
   for (const SurfacePoint& point : points) {
-    receivers.push_back({[&point](double, double) { return point; }, Side::front, true});
+    receivers.push_back({[&point](double, double) { return point; }, Side::front, {}});
   }
   return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
 }

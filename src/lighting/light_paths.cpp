@@ -75,6 +75,10 @@ Point LightPaths::beyond(const Point& from, const Vector& direction) const {
   return from + reach * direction;
 }
 
+bool LightPaths::is_covered_in_part(PolygonIndex polygon, Side side) const {
+  return opaque_.is_covered_in_part(polygon, side);
+}
+
 bool LightPaths::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
   return opaque_.is_covered_in_part(polygon, side) && opaque_.is_covered(polygon, side, place);
 }

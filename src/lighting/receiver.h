@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace patchlight {
 
@@ -14,8 +15,10 @@ using SamplePoints = std::span<const std::array<double, 4>>;
 /// A patch or a point that receives light: a place of it for each point of the unit square.
 struct Receiver {
   std::function<SurfacePoint(double, double)> place;
-  Side side = Side::front;  ///< of the places' polygon
-  bool is_point = false;
+  Side side = Side::front;     ///< of the places' polygon
+  std::vector<Point> corners;  ///< of a patch, counter-clockwise from its front; none: a point
+
+  bool is_point() const { return corners.empty(); }
 };
 
 /// True when another polygon lies over this place of the receiver.

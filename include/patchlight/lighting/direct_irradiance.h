@@ -24,7 +24,8 @@ struct DirectIrradiance {
 };
 
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
-/// over patch and source, one shadow ray each. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
+/// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
+/// the patch. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
 /// \throws Cancelled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});

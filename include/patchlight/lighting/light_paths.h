@@ -39,6 +39,8 @@ class LightPaths {
 
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
+  /// True when that is so anywhere on the side.
+  bool is_covered_in_part(PolygonIndex polygon, Side side) const;
 
  private:
   Passage through_openings(const Segment& segment) const;

@@ -199,6 +199,69 @@ TEST(DirectIrradiance, OfASunBelowTheHorizonIsNothing) {
   EXPECT_EQ(at(scene, {Point(0, 0, -1), -Vector::UnitZ()}).irradiance(0, 0), 0);
 }
 
+// A closed box, and an isotropic luminaire of 1 W/sr that is 5 cm below its ceiling.
+Scene box_with_luminaire_at_the_ceiling() {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 5, 3), true);
+  Luminaire lamp;
+  lamp.position = Point(1.3, 2.1, 2.95);
+  lamp.light = PointLight{one_band(1)};
+  scene.luminaires = {lamp};
+  return scene;
+}
+
+double flux_onto(const PatchMesh& mesh, const DirectIrradiance& direct) {
+  double flux = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) flux += mesh.area[i] * direct.irradiance(i, 0);
+  return flux;
+}
+
+TEST(DirectIrradiance, OfALuminaireCloseToTheCeilingIsAllOfItsFlux) {
+  // Solid angles around a point add up to 4 pi. Nothing is in the way, so that all rays count the same: rounding, for
+  // any seed and for the fewest rays.
+  const Scene scene = box_with_luminaire_at_the_ceiling();
+  const PatchMesh mesh = fronts(scene, 0.7);
+  ASSERT_GT(mesh.size(), 150U);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const int samples : {4, 64}) {
+      const DirectIrradiance direct =
+          direct_irradiance(lighting_of(scene), mesh, {.lamp_samples = samples, .seed = seed});
+      EXPECT_NEAR(flux_onto(mesh, direct), 4 * pi, 1e-9);
+      // The root of what rounding leaves of a variance.
+      EXPECT_LT((direct.standard_error / direct.irradiance).maxCoeff(), 1e-6);
+    }
+  }
+}
+
+TEST(DirectIrradiance, OfALuminaireCloseToACoveredPatchIsOfThePartOverWhichNothingLies) {
+  // A plate covers a part of the ceiling: both get what they do as one, and the fluxes still add up to 4 pi when the
+  // ceiling's irradiance counts for the part of it that is not covered. 1024 rays for the patches which the plate's
+  // edges cut: within 1 %.
+  Scene scene = box_with_luminaire_at_the_ceiling();
+  scene = with_quad(std::move(scene), {Point(1, 1, 3), Point(1, 3, 3), Point(2, 3, 3), Point(2, 1, 3)});
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  const PatchMesh mesh = tessellate(scene, sides, 10);
+  ASSERT_EQ(mesh.size(), 7U);
+  const DirectIrradiance direct =
+      direct_irradiance(lighting_of(scene, find_coverings(scene, sides)), mesh, {.lamp_samples = 1024});
+  double flux = flux_onto(mesh, direct);
+  for (PatchIndex i = 0; i < 6; ++i) {
+    if (mesh.normal[i].z() < -0.5) flux -= 2 * direct.irradiance(i, 0);
+  }
+  EXPECT_NEAR(flux, 4 * pi, 0.01 * 4 * pi);
+}
+
+TEST(DirectIrradiance, OfALuminaireInThePlaneOfAPatchIsNothing) {
+  Scene scene = box_with_luminaire_at_the_ceiling();
+  scene.luminaires[0].position.z() = 3;
+  const PatchMesh mesh = fronts(scene, 0.7);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (mesh.normal[i].z() < -0.5) {
+      EXPECT_EQ(direct.irradiance(i, 0), 0);
+    }
+  }
+}
+
 TEST(DirectIrradiance, OfThePartOverWhichNothingLies) {
   // A rug over a third of a floor of one patch: the rest has all of the sun's irradiance, and so has its mean.
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(3, 0, 0), Point(3, 1, 0), Point(0, 1, 0)});
