@@ -160,8 +160,8 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
 
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, const KnownShares& known,
                              std::uint64_t seed, const Observer& observer) {
-  const auto& [before, place] = known;
-  assert(place.size() == mesh.size());
+  const LostShare& before = known.lost;
+  assert(known.place.size() == mesh.size());
   Box box;
   for (const Point& vertex : mesh.vertices) box.extend(vertex);
   const Observatory observatory{mesh, occluder, box.diagonal().norm()};
@@ -171,7 +171,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
   LostShare lost{zero, zero, zero, before.rays_per_patch, zero};
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
-    const PatchIndex b = place[i];
+    const PatchIndex b = known.place[i];
     const Shares shares = b == no_patch
                               ? observatory.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
                               : Shares{before.escaped[b], before.at_backs[b], before.covered[b], before.dark[b]};
