@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Makes the plots and the tables of docs/accuracy.md on what accuracy costs. Takes some four minutes.
 # usage: scripts/study_figures.sh OUT
-# Writes OUT/cornell_box and OUT/two_rooms, with what `patchlight study` prints as OUT/*.txt, and plots of both into
-# docs/figures. PATCHLIGHT_TOOL may name a tool that is built already.
+# Writes OUT/cornell_box and OUT/two_rooms, with what `patchlight study` prints as OUT/*.txt, and the plots of the Cornell
+# box into docs/figures. PATCHLIGHT_TOOL may name a tool that is built already.
 set -euo pipefail
 if [ $# -ne 1 ]; then
   echo "usage: scripts/study_figures.sh OUT" >&2
@@ -19,4 +19,3 @@ done
 for plot in error_by_cpu_second error_by_memory estimators_by_cpu_second; do
   cp "$out/cornell_box/$plot.png" "docs/figures/study_$plot.png"
 done
-cp "$out/two_rooms/error_by_cpu_second.png" docs/figures/study_two_rooms_error_by_cpu_second.png
