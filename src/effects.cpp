@@ -62,6 +62,15 @@ bool is_forced(const Plan& plan, Effect effect) {
   });
 }
 
+// The scene with the lights that are not left out, and without colour when that is skipped by force.
+template <typename LeftOut>
+Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
+  if (left_out(Effect::luminaires)) scene.luminaires.clear();
+  if (left_out(Effect::sun)) scene.sun.reset();
+  if (left_out(Effect::sky)) scene.sky.reset();
+  return is_skipped_by_force(plan, Effect::colour) ? with_spectra(std::move(scene), without_colour) : scene;
+}
+
 // Rows of lamps that are asked for at once.
 constexpr PatchIndex rows_at_once = 64;
 
@@ -108,19 +117,11 @@ Occluder::Blockers blockers_of(const Plan& plan) {
 }
 
 Scene scene_for_sensors(Scene scene, const Plan& plan) {
-  if (is_skipped_by_force(plan, Effect::luminaires)) scene.luminaires.clear();
-  if (is_skipped_by_force(plan, Effect::sun)) scene.sun.reset();
-  if (is_skipped_by_force(plan, Effect::sky)) scene.sky.reset();
-  if (is_skipped_by_force(plan, Effect::colour)) scene = with_spectra(std::move(scene), without_colour);
-  return scene;
+  return with_light(std::move(scene), plan, [&](Effect effect) { return is_skipped_by_force(plan, effect); });
 }
 
 Scene scene_as_planned(Scene scene, const Plan& plan) {
-  if (!simulates(plan, Effect::luminaires)) scene.luminaires.clear();
-  if (!simulates(plan, Effect::sun)) scene.sun.reset();
-  if (!simulates(plan, Effect::sky)) scene.sky.reset();
-  if (is_skipped_by_force(plan, Effect::colour)) scene = with_spectra(std::move(scene), without_colour);
-  return scene;
+  return with_light(std::move(scene), plan, [&](Effect effect) { return !simulates(plan, effect); });
 }
 
 DirectIrradiance direct_irradiance_as_planned(const Setting& setting, const Plan& plan, const PatchMesh& mesh) {
