@@ -53,8 +53,7 @@ Readings read_sensors(const Scene& whole, const Simulation& simulation, const Ob
   const std::uint64_t seed = simulation.plan.seed;
   const Coverings coverings = find_coverings(scene, simulation.plan.sides);
   const Occluder occluder(scene, Occluder::Blockers::all, coverings);
-  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, simulation.problem.exitance, occluder, sensors,
-                                                  {.seed = seed}, observer);
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors, {.seed = seed}, observer);
   Readings readings = {.irradiance = std::move(gathered.irradiance),
                        .standard_error = std::move(gathered.standard_error),
                        .photometric = scene.photometric,

@@ -76,8 +76,7 @@ ValidationCase element_case(std::string name, double exact, std::string source, 
             const Field radiosity = Field::Ones(mesh.size(), 1);
             const std::vector<Sensor> sensors{{Point::Zero(), normal}};
             const Occluder occluder(repaired, Occluder::Blockers::all);
-            const Field irradiance =
-                gather_irradiance(mesh, radiosity, radiosity, occluder, sensors, {}, observer).irradiance;
+            const Field irradiance = gather_irradiance(mesh, radiosity, occluder, sensors, {}, observer).irradiance;
             return Measured{irradiance(0, 0), 100 * mesh.size() * std::numeric_limits<double>::epsilon(), "rounding"};
           }};
 }

@@ -117,9 +117,8 @@ TEST(Cie171, Case56LightReflectedByAnEvenlyLitFloor) {
   const Occluder occluder(scene, Occluder::Blockers::all);
   for (const Case& c : cases) {
     const Sensor sensor{Point(2, c.y, c.z), c.y == 0 ? Vector(Vector::UnitY()) : Vector(-Vector::UnitZ())};
-    const Field irradiance = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
-                                               simulation.problem.exitance, occluder, {&sensor, 1})
-                                 .irradiance;
+    const Field irradiance =
+        gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder, {&sensor, 1}).irradiance;
     EXPECT_NEAR(100 * luminance(irradiance.row(0)) / (50000 * 0.3), c.percent, 1e-5 * c.percent) << c.y << ' ' << c.z;
   }
 }

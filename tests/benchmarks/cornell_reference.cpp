@@ -100,9 +100,8 @@ int main(int argc, char** argv) {
     request.sides = Sides::front;
     const Simulation simulation = simulate(scene, request);
     const double solved = cpu_seconds();
-    const Field gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
-                                             simulation.problem.exitance, occluder, reference.sensors)
-                               .irradiance;
+    const Field gathered =
+        gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder, reference.sensors).irradiance;
     std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
                 reference.sensors.size(), solved - begin, cpu_seconds() - solved);
     print_differences("gathered", gathered, reference.irradiance);

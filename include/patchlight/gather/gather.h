@@ -12,9 +12,10 @@
 namespace patchlight {
 
 struct GatherOptions {
-  int probes = 4;            ///< shadow rays per patch seen
-  int samples = 64;          ///< when these disagree
-  int emitter_samples = 64;  ///< shadow rays per emitting patch
+  int least_rays = 4;          ///< shadow rays to a patch before the sensor
+  int rays = 8192;             ///< more of them to all patches together, in proportion to what patches may give
+  int most_rays = 1 << 18;     ///< where these leave more than the following relative standard error
+  double wanted_error = 0.01;  ///< relative standard error of a sensor
   std::uint64_t seed = 1;
 };
 
@@ -25,13 +26,14 @@ struct GatheredIrradiance {
 };
 
 /// Irradiance at points by gathering the solved radiosity: every patch by its closed-form form factor times the share
-/// of it that shadow rays reach, emitting patches (any band of `exitance` above 0) with more rays than the others. The
-/// standard error adds up half the difference of what the two halves of a patch's shadow rays say, in squares over the
-/// patches, which have random shifts of their own. As the rays are stratified, and both halves together better than
-/// each, it is rather too large; patches whose first rays agree count as certain. O(points x patches). \throws
-/// Cancelled.
-GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const FieldView& exitance,
-                                     const Occluder& occluder, std::span<const Sensor> sensors,
-                                     const GatherOptions& options = {}, const Observer& observer = {});
+/// of it that shadow rays reach. How many rays a patch gets follows from what it could give, and not from what its rays
+/// meet: where few of them get through narrow openings, none of the light is lost. The rays of a patch come in
+/// replicates with random shifts of their own, whose scatter is the standard error; it is at least what the heaviest
+/// ray would give of those patches whose rays agree, as no hit in n rays means at most a few in n. Sensors of which the
+/// standard error is too large get more rays, in proportion to its square. The random numbers follow from the sensor's
+/// place. O(points x patches). \throws Cancelled.
+GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
+                                     std::span<const Sensor> sensors, const GatherOptions& options = {},
+                                     const Observer& observer = {});
 
 }  // namespace patchlight

@@ -1,0 +1,141 @@
+#include "gather/sources.h"
+
+#include "patchlight/base/sampling.h"
+#include "patchlight/form_factor/monte_carlo.h"
+#include "patchlight/form_factor/point_polygon.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace patchlight {
+namespace {
+
+constexpr std::uint32_t most_replicates = 8;
+
+// Of one replicate; where there are more rays, their points begin anew with another shift.
+constexpr std::uint32_t most_points = 4096;
+
+// Uniformly distributed in a convex polygon: a triangle of its fan, chosen by area; u is stretched to be used again.
+Point point_in(std::span<const Point> polygon, double u, double v) {
+  const Point& p = polygon[0];
+  const auto area = [&](std::size_t k) { return (polygon[k] - p).cross(polygon[k + 1] - p).norm(); };
+  double whole = 0;
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) whole += area(k);
+  double left = u * whole;
+  std::size_t k = 1;
+  while (k + 2 < polygon.size() && left > area(k)) left -= area(k++);
+  const double stretched = area(k) > 0 ? std::min(left / area(k), 1.0) : 0;
+  const Eigen::Vector2d b = square_to_triangle(stretched, v);
+  return p + b[0] * (polygon[k] - p) + b[1] * (polygon[k + 1] - p);
+}
+
+// A key of a place, whatever else is asked for with it.
+std::uint32_t key_of(const Point& point) {
+  return hash({std::bit_cast<std::uint64_t>(point.x() + 0.0), std::bit_cast<std::uint64_t>(point.y() + 0.0),
+               std::bit_cast<std::uint64_t>(point.z() + 0.0)});
+}
+
+double shifted(double u, std::uint32_t shift) {
+  const double moved = u + shift * 0x1p-32;
+  return moved < 1 ? moved : moved - 1;
+}
+
+// Summed geometry terms of the rays of one replicate.
+struct Weights {
+  double reached = 0;
+  double all = 0;
+};
+
+// The ratio of what is reached to all, with its variance by the scatter of the replicates about it (Cochran 1977,
+// section 6.4).
+VisibleShare share_of(std::span<const Weights> replicates, double rays) {
+  double reached = 0;
+  double all = 0;
+  for (const Weights& one : replicates) {
+    reached += one.reached;
+    all += one.all;
+  }
+  if (!(all > 0)) return {0, 0, rays};
+  const double mean = reached / all;
+  double squares = 0;
+  for (const Weights& one : replicates) squares += std::pow(one.reached - mean * one.all, 2);
+  const auto count = static_cast<double>(replicates.size());
+  return {mean, squares / (all * all) * count / (count - 1), rays};
+}
+
+}  // namespace
+
+std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity) {
+  std::vector<Source> found;
+  Spectrum unoccluded = Spectrum::Zero(radiosity.cols());
+  for (PatchIndex j = 0; j < mesh.size(); ++j) {
+    if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= 0) continue;
+    const PatchCorners corners = mesh.corner_points(j);
+    const std::span<const Point> points = corners;
+    const bool is_cut = std::any_of(points.begin(), points.end(),
+                                    [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) < 0; });
+    std::vector<Point> outline = is_cut ? clip_to_half_space(points, sensor.point, sensor.normal)
+                                        : std::vector<Point>(points.begin(), points.end());
+    if (outline.empty()) continue;
+    const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline);
+    if (!(form_factor > 0)) continue;
+    unoccluded += form_factor * radiosity.row(j);
+    found.push_back({j, std::move(outline), form_factor});
+  }
+  const double bands = std::max<double>(1, static_cast<double>((unoccluded > 0).count()));
+  const Spectrum weight = (unoccluded > 0).select(1 / (bands * unoccluded), 0.0);
+  for (Source& source : found)
+    source.light_share = source.form_factor * (radiosity.row(source.patch) * weight.transpose()).sum();
+  return found;
+}
+
+RayCounts ray_counts(double rays) {
+  const auto wanted = static_cast<std::uint32_t>(std::ceil(std::max(rays, 2.0)));
+  const std::uint32_t replicates = std::clamp(wanted / 2, 2U, most_replicates);
+  return {replicates, (wanted + replicates - 1) / replicates};
+}
+
+ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed)
+    : mesh_(mesh), occluder_(occluder), seed_(seed), points_(scrambled_sobol(most_points, hash({seed}))) {}
+
+// Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
+std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const Source> sources,
+                                                     std::span<const RayCounts> counts, std::uint32_t stage) const {
+  // 1. The rays of all sources
+  const std::uint64_t key = hash({seed_, key_of(sensor.point), key_of(sensor.normal), stage});
+  std::vector<Segment> segments;
+  std::vector<double> weights;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const PatchIndex j = sources[s].patch;
+    for (std::uint32_t r = 0; r < counts[s].replicates; ++r) {
+      std::array<std::uint32_t, 2> shift{};
+      for (std::uint32_t k = 0; k < counts[s].each; ++k) {
+        if (k % most_points == 0)
+          for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, j, 2 * r + d, k / most_points});
+        const auto& point = points_[k % most_points];
+        const Point y = point_in(sources[s].outline, shifted(point[0], shift[0]), shifted(point[1], shift[1]));
+        segments.push_back({sensor.point, y, no_polygon, mesh_.polygon[j]});
+        weights.push_back(geometry_term(sensor.point, sensor.normal, y, mesh_.normal[j]));
+      }
+    }
+  }
+
+  // 2. What they reach
+  const std::vector<std::uint8_t> blocked = occluder_.occluded(segments);
+  std::vector<VisibleShare> shares;
+  std::size_t ray = 0;
+  for (const RayCounts& count : counts) {
+    std::array<Weights, most_replicates> replicates{};
+    for (std::uint32_t r = 0; r < count.replicates; ++r) {
+      for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
+        replicates[r].all += weights[ray];
+        if (blocked[ray] == 0) replicates[r].reached += weights[ray];
+      }
+    }
+    shares.push_back(share_of(std::span(replicates).first(count.replicates), count.replicates * count.each));
+  }
+  return shares;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/sensor.h"
+#include "patchlight/visibility/occluder.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// A patch that a sensor may see.
+struct Source {
+  PatchIndex patch = 0;
+  std::vector<Point> outline;  ///< the part above the sensor's horizon
+  double form_factor = 0;      ///< unoccluded, from the sensor's point
+  double light_share = 0;      ///< of the sensor's unoccluded irradiance, mean of the bands that have any
+};
+
+/// Those before the sensor, in the order of the mesh, by the light of the given radiosity.
+std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity);
+
+/// What shadow rays to a source say.
+struct VisibleShare {
+  double mean = 0;
+  double variance = 0;  ///< of the mean
+  double rays = 0;
+};
+
+/// Shadow rays to a source: so many replicates of so many.
+struct RayCounts {
+  std::uint32_t replicates = 0;
+  std::uint32_t each = 0;
+};
+
+/// At least two replicates, so that they have a scatter, and at most eight.
+RayCounts ray_counts(double rays);
+
+/// Shadow rays from sensors to patches.
+class ShadowRays {
+ public:
+  ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed);
+
+  /// The visible shares of the sources. Stages of one sensor have unrelated random numbers.
+  std::vector<VisibleShare> visible_shares(const Sensor& sensor, std::span<const Source> sources,
+                                           std::span<const RayCounts> counts, std::uint32_t stage) const;
+
+ private:
+  const PatchMesh& mesh_;
+  const Occluder& occluder_;
+  std::uint64_t seed_;
+  std::vector<std::array<double, 4>> points_;
+};
+
+}  // namespace patchlight
