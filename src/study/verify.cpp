@@ -1,6 +1,5 @@
 #include "patchlight/study/verify.h"
 
-#include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
@@ -29,8 +28,8 @@ std::vector<PatchIndex> choose_by_area(const Eigen::VectorXd& area, std::size_t 
   return chosen;
 }
 
-std::vector<Receiver> receivers_of(const PatchMesh& mesh, const std::vector<PatchIndex>& patches) {
-  std::vector<Receiver> receivers;
+std::vector<PathReceiver> receivers_of(const PatchMesh& mesh, const std::vector<PatchIndex>& patches) {
+  std::vector<PathReceiver> receivers;
   for (const PatchIndex i : patches) receivers.push_back({mesh.corner_points(i).points, mesh.polygon[i], mesh.side[i]});
   return receivers;
 }
@@ -80,11 +79,6 @@ Field deviations_by_noise(const Verification& verification) {
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options, const Observer& observer) {
   assert(bar.rows() == simulation.mesh.size());
-  if (has_point_or_daylight(scene)) {
-    throw InputError(scene.file,
-                     "the scene has luminaires, sun or sky, which path tracing does not know; expected lamps that are "
-                     "faces of the model. Verify the scene with these alone");
-  }
   Verification result;
   result.patches = choose_by_area(simulation.problem.area, options.checked, options.seed);
   result.irradiance = rows_of(simulation.solution.irradiance, result.patches);

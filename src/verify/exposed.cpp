@@ -20,7 +20,7 @@ constexpr double contact = 1e-5;
 struct Lookout {
   const Occluder& occluder;
   const Surfaces& surfaces;
-  const Receiver& receiver;
+  const PathReceiver& receiver;
   Vector normal;
   Eigen::Matrix3d frame;
   double reach;  // metres within which a face lies against the receiver
@@ -55,7 +55,7 @@ std::vector<Ray> Lookout::rays_from(const Point& point, std::uint32_t seed) cons
 
 }  // namespace
 
-std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const Receiver& receiver,
+std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const PathReceiver& receiver,
                                   std::span<const Point> points, std::uint64_t seed) {
   const Vector normal = surfaces.at(receiver.polygon, receiver.side).normal;
   const Lookout lookout{occluder, surfaces, receiver, normal, frame_around(normal), contact / occluder.frame().scale};

@@ -7,11 +7,13 @@
 
 #include "verify/exposed.h"
 #include "verify/lamps.h"
+#include "verify/lights.h"
 #include "verify/surfaces.h"
 
 #include <algorithm>
 #include <bit>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,9 @@
 // The E(y) of lamps is also found by points on them and shadow rays, as a path seldom meets a small lamp. Where both
 // can find the same light, each of them counts it with its density over the sum of both (balance heuristic, Veach and
 // Guibas 1995): together once. By points on lamps alone, the variance would be infinite beside a lamp.
+//
+// Luminaires without extent, spheres and the sun meet no scattered ray: shadow rays alone find them. The sky is found
+// by scattered rays alone, those that leave the scene, through clear openings or where nothing is.
 
 namespace patchlight {
 namespace {
@@ -76,16 +81,22 @@ struct PathTracer {
   Occluder occluder;
   Surfaces surfaces;
   Lamps lamps;
+  std::optional<Lighting> lights;   // where there are luminaires, sun or sky
+  std::vector<std::uint8_t> clear;  // per polygon: 1 for an opening
   Eigen::Index bands;
 
-  Batch trace(const Receiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
-  std::vector<Vertex> starts(const Receiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
+  Batch trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
+  std::size_t rays_of_vertex() const;
+  std::vector<Vertex> starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
   Spectrum light_from_lamps(const std::vector<Vertex>& vertices, const Samples& samples) const;
+  Spectrum light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
+  Spectrum light_from_outside(const std::vector<Vertex>& vertices, const std::vector<Ray>& rays,
+                              const std::vector<std::optional<Hit>>& hits) const;
   Step scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
 };
 
 // Points spread over the exposed part of the receiver.
-std::vector<Vertex> PathTracer::starts(const Receiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
+std::vector<Vertex> PathTracer::starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
   std::vector<Point> points;
   for (const auto& u : scrambled_sobol(paths, hash({seed, 0}))) {
     points.push_back(square_to_quad(receiver.corners, u[0], u[1]));
@@ -123,8 +134,43 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
   return sum;
 }
 
-// One scattered ray from each vertex, backward along the light's way. A side that is not kept is black, and nothing
-// comes from the open.
+// Light of luminaires and sun by shadow rays.
+Spectrum PathTracer::light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples,
+                                           std::uint64_t seed) const {
+  Spectrum sum = Spectrum::Zero(bands);
+  if (!lights) return sum;
+  std::vector<LitPlace> places;
+  for (const auto& [point, polygon, side, path, throughput] : vertices) {
+    places.push_back({{point, surfaces.at(polygon, side).normal, polygon},
+                      uniform({seed, path, 5}),
+                      {samples[path][0], samples[path][1]}});
+  }
+  const Field found = irradiance_by_lights(*lights, places);
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    sum += vertices[k].throughput * found.row(static_cast<Eigen::Index>(k));
+  return sum;
+}
+
+// Light of sky and ground by the scattered rays that meet nothing or an opening: pi L, as directions are distributed as
+// cos(theta) / pi.
+Spectrum PathTracer::light_from_outside(const std::vector<Vertex>& vertices, const std::vector<Ray>& rays,
+                                        const std::vector<std::optional<Hit>>& hits) const {
+  Spectrum sum = Spectrum::Zero(bands);
+  if (!lights || !lights->sky) return sum;
+  std::vector<Ray> leaving;
+  std::vector<std::size_t> of_vertex;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (hits[k] && clear[hits[k]->polygon] == 0) continue;
+    leaving.push_back(rays[k]);
+    of_vertex.push_back(k);
+  }
+  const Field found = radiance_from_outside(*lights, leaving);
+  for (std::size_t k = 0; k < leaving.size(); ++k)
+    sum += std::numbers::pi * vertices[of_vertex[k]].throughput * found.row(static_cast<Eigen::Index>(k));
+  return sum;
+}
+
+// One scattered ray from each vertex, backward along the light's way. A side that is not kept is black.
 Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const {
   std::vector<Ray> rays;
   for (const Vertex& vertex : vertices) {
@@ -134,7 +180,7 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   }
   const auto hits = occluder.first_hits(rays);
 
-  Step step{{}, Spectrum::Zero(bands)};
+  Step step{{}, light_from_outside(vertices, rays, hits)};
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     if (!hits[k] || !surfaces.at(hits[k]->polygon, hits[k]->side).kept) continue;
     const Vertex& vertex = vertices[k];
@@ -160,14 +206,20 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   return step;
 }
 
-Batch PathTracer::trace(const Receiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
+std::size_t PathTracer::rays_of_vertex() const {
+  if (!lights) return 2;
+  return std::size_t{2} + (lights->luminaires.empty() ? 0 : 1) + (lights->sun ? 1 : 0);
+}
+
+Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
   std::vector<Vertex> vertices = starts(receiver, paths, seed);
   Batch batch{Spectrum::Zero(bands), static_cast<std::uint32_t>(vertices.size())};
   for (std::uint64_t length = 2; !vertices.empty(); ++length) {
     const std::uint32_t seed_here = hash({seed, length});
     const Samples samples = shuffled_samples(paths, seed_here);
     batch.irradiance += light_from_lamps(vertices, samples);
-    batch.rays += 2 * vertices.size();
+    batch.irradiance += light_from_luminaires(vertices, samples, seed_here);
+    batch.rays += rays_of_vertex() * vertices.size();
     Step step = scatter(vertices, samples, seed_here);
     batch.irradiance += step.irradiance;
     vertices = std::move(step.vertices);
@@ -195,13 +247,21 @@ Field mean_and_error(std::span<const Batch> batches) {
   return result;
 }
 
+PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
+  const Surfaces surfaces = surfaces_of(scene, sides);
+  const Coverings coverings = find_coverings(scene, sides);
+  PathTracer tracer{Occluder(scene, Occluder::Blockers::all, coverings), surfaces, lamps_of(scene, surfaces), {}, {},
+                    scene.materials.front().reflectance.size()};
+  if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, coverings);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);
+  return tracer;
+}
+
 }  // namespace
 
-PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Receiver> receivers,
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options, const Observer& observer) {
-  const Surfaces surfaces = surfaces_of(scene, sides);
-  const PathTracer tracer{Occluder(scene, Occluder::Blockers::all, find_coverings(scene, sides)), surfaces,
-                          lamps_of(scene, surfaces), scene.materials.front().reflectance.size()};
+  const PathTracer tracer = path_tracer_for(scene, sides);
   const std::uint32_t paths = std::bit_ceil((options.paths + path_batches - 1) / path_batches);  // of a batch
   std::vector<Batch> batches(receivers.size() * path_batches);
   parallel_for(batches.size(), Stage::trace_paths, observer, [&](std::size_t k) {

@@ -36,8 +36,7 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares the irradiance of randomly chosen patches, the larger the likelier, with path tracing in `scene`. Bars are
 /// per patch of the simulation and band, one standard deviation each. One-sided: too good an agreement is none the less
-/// one. The same bits for any number of threads. \throws Cancelled, InputError when the scene has
-/// luminaires, sun or sky.
+/// one. The same bits for any number of threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 

@@ -13,7 +13,7 @@
 namespace patchlight {
 
 /// A flat piece of one side of a polygon, whose mean irradiance is wanted.
-struct Receiver {
+struct PathReceiver {
   std::array<Point, 4> corners;  ///< convex, metres; a triangle repeats its last
   PolygonIndex polygon = 0;
   Side side = Side::front;
@@ -32,15 +32,17 @@ struct PathEstimate {
   Field irradiance;         ///< mean over what is exposed of the receiver, W/m^2; 0 if nothing is
   Field standard_error;     ///< its standard error, W/m^2, estimated with path_batches - 1 degrees of freedom
   std::uint32_t paths = 0;  ///< per receiver
-  std::uint64_t rays = 0;   ///< two per vertex of a path: one to a lamp, one scattered
+  std::uint64_t rays = 0;   ///< per vertex of a path one to a lamp and one scattered, where there are luminaires one to
+                            ///< one of them, and where there is a sun one to it
 };
 
 /// Irradiance by path tracing: the rendering equation of Kajiya (1986) for diffuse surfaces, without patches, form
 /// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
-/// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. The mean is
-/// over the part of a receiver that is not covered (docs/theory.md section 2). The same bits for any number of threads.
-/// \throws Cancelled.
-PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Receiver> receivers,
+/// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. Luminaires and
+/// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected ends
+/// at a clear opening, as in simulate(). The mean is over the part of a receiver that is not covered (docs/theory.md
+/// section 2). The same bits for any number of threads. \throws Cancelled.
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 
 }  // namespace patchlight

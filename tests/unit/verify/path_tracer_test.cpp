@@ -14,13 +14,13 @@ namespace {
 using namespace test;
 
 // The whole of one side of a polygon with four corners.
-Receiver whole(const Scene& scene, PolygonIndex polygon, Side side = Side::front) {
+PathReceiver whole(const Scene& scene, PolygonIndex polygon, Side side = Side::front) {
   const std::vector<Point> corners = corner_points(scene, polygon);
   return {{corners[0], corners[1], corners[2], corners[3]}, polygon, side};
 }
 
-std::vector<Receiver> whole_fronts(const Scene& scene) {
-  std::vector<Receiver> receivers;
+std::vector<PathReceiver> whole_fronts(const Scene& scene) {
+  std::vector<PathReceiver> receivers;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) receivers.push_back(whole(scene, p));
   return receivers;
 }
@@ -53,8 +53,8 @@ TEST(TraceIrradiance, OneLampInABlackCubeGivesTheFormFactor) {
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(1, 1, 1), true);
   for (std::size_t k = 0; k < faces.size(); ++k) scene = with_quad(std::move(scene), faces[k], k == 1 ? 1 : 0);
   const KeptSides sides = kept_sides(scene, Sides::front);
-  const std::vector<Receiver> opposed{whole(scene, 0)};
-  const std::vector<Receiver> touching{whole(scene, 2), whole(scene, 3), whole(scene, 4), whole(scene, 5)};
+  const std::vector<PathReceiver> opposed{whole(scene, 0)};
+  const std::vector<PathReceiver> touching{whole(scene, 2), whole(scene, 3), whole(scene, 4), whole(scene, 5)};
   expect_within_four_errors(trace_irradiance(scene, sides, opposed), 7 * 0.19982489569838732);
   expect_within_four_errors(trace_irradiance(scene, sides, touching), 7 * 0.20004377607540316);
 }
@@ -81,7 +81,7 @@ TEST(TraceIrradiance, LampEmitsFromTheSidesThatSimulateSays) {
   scene = with_quad(std::move(scene), square(0));
   scene = with_quad(std::move(scene), square(1), 1);
   scene = with_quad(std::move(scene), square(2));
-  const std::vector<Receiver> below_and_above{whole(scene, 0, Side::front), whole(scene, 2, Side::back)};
+  const std::vector<PathReceiver> below_and_above{whole(scene, 0, Side::front), whole(scene, 2, Side::back)};
   const auto expect = [&](const KeptSides& sides, double below, double above) {
     const PathEstimate estimate = trace_irradiance(scene, sides, below_and_above);
     EXPECT_NEAR(estimate.irradiance(0, 0), below * 0.19982489569838732, 4 * estimate.standard_error(0, 0));
@@ -107,7 +107,7 @@ TEST(TraceIrradiance, SidesThatAreNotKeptAreBlack) {
   without.polygons[3].material = 0;
   KeptSides sides = kept_sides(without, Sides::front);
   sides.front[3] = 0;
-  const std::vector<Receiver> floor{whole(black, 0)};
+  const std::vector<PathReceiver> floor{whole(black, 0)};
   const Field expected = trace_irradiance(black, kept_sides(black, Sides::front), floor).irradiance;
   const PathEstimate estimate = trace_irradiance(without, sides, floor, {.seed = 2});
   EXPECT_NEAR(estimate.irradiance(0, 0), expected(0, 0), 4 * std::sqrt(2) * estimate.standard_error(0, 0));
@@ -119,7 +119,7 @@ TEST(TraceIrradiance, IsTheMeanOverWhatIsNotCovered) {
   Scene scene = empty_scene({grey(0.5, 0.5)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(2, 2, 2), true);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0), Point(1.5, 1.5, 1), false);
-  const std::vector<Receiver> floor{whole(scene, 0)};
+  const std::vector<PathReceiver> floor{whole(scene, 0)};
   const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), floor);
   expect_within_four_errors(estimate, 1);
   EXPECT_LT(estimate.standard_error(0, 0), 0.02);
@@ -132,7 +132,7 @@ TEST(TraceIrradiance, StandardErrorIsTheScatterOverSeeds) {
   constexpr int seeds = 64;
   const Scene scene = furnished_room(0.5);
   const KeptSides sides = kept_sides(scene, Sides::front);
-  const std::vector<Receiver> receivers{whole(scene, 0), whole(scene, 6)};
+  const std::vector<PathReceiver> receivers{whole(scene, 0), whole(scene, 6)};
   for (const std::uint32_t paths : {32U, 1024U}) {
     Field irradiance(seeds, 2);
     Field variance(seeds, 2);
@@ -166,7 +166,7 @@ TEST(TraceIrradiance, SameBitsWithAnyNumberOfThreads) {
 
 TEST(TraceIrradiance, EndsBetweenSurfacesThatAbsorbNothing) {
   const Scene scene = cube_room(1, 1);
-  const std::vector<Receiver> floor{whole(scene, 0)};
+  const std::vector<PathReceiver> floor{whole(scene, 0)};
   const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), floor, {.paths = 1});
   EXPECT_EQ(estimate.paths, 32U);
   EXPECT_GT(estimate.irradiance(0, 0), 100);

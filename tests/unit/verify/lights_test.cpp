@@ -1,0 +1,137 @@
+#include "patchlight/verify/path_tracer.h"
+
+#include "support/scenes.h"
+
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+// Paths that meet luminaires, sun and sky, against closed forms; as they stand, and turned in a model of 1/1000 of the
+// size.
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+constexpr double pi = std::numbers::pi;
+
+// Form factor of opposed unit squares at distance 1 (Howell C-11).
+constexpr double opposed = 0.19982489569838732;
+
+Spectrum watts(double value) { return Spectrum::Constant(1, value); }
+
+Material glass(double transmittance) {
+  Material material = grey(0);
+  material.transmittance = watts(transmittance);
+  return material;
+}
+
+// The same, turned and of another size: intensities go with the square of lengths, so that irradiances stay.
+Scene placed(Scene scene, double scale) {
+  const Eigen::AngleAxisd turn(0.7, Vector(1, 2, 3).normalized());
+  for (Point& vertex : scene.vertices) vertex = scale * (turn * vertex);
+  for (Luminaire& luminaire : scene.luminaires) {
+    luminaire.position = scale * (turn * luminaire.position);
+    if (auto* point = std::get_if<PointLight>(&luminaire.light)) point->intensity *= scale * scale;
+    if (auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) sphere->radius *= scale;
+  }
+  if (scene.sun) scene.sun->direction = turn * scene.sun->direction;
+  scene.up = turn * scene.up;
+  return scene;
+}
+
+std::array<Scene, 2> placings(const Scene& scene) { return {scene, placed(scene, 1e-3)}; }
+
+PathEstimate on_front(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> c = corner_points(scene, polygon);
+  const std::vector<PathReceiver> receivers{{{c[0], c[1], c[2], c[3]}, polygon, Side::front}};
+  return trace_irradiance(scene, kept_sides(scene, Sides::front), receivers);
+}
+
+// Four standard errors: a right value fails with a probability of 4e-4, decided once by the seeds.
+void expect_irradiance(const Scene& scene, PolygonIndex polygon, double exact, double largest_error) {
+  for (const Scene& placed : placings(scene)) {
+    const PathEstimate estimate = on_front(placed, polygon);
+    EXPECT_NEAR(estimate.irradiance(0, 0), exact, 4 * estimate.standard_error(0, 0) + 1e-9 * exact);
+    EXPECT_LT(estimate.standard_error(0, 0), largest_error * exact);
+  }
+}
+
+Luminaire point_at(const Point& position, double flux) {
+  Luminaire lamp;
+  lamp.position = position;
+  lamp.light = PointLight{watts(flux / (4 * pi))};
+  return lamp;
+}
+
+Luminaire sphere_at(const Point& position, double radius, double flux) {
+  Luminaire lamp;
+  lamp.position = position;
+  lamp.light = SphericalLamp{radius, watts(flux / (4 * pi * radius * radius))};
+  return lamp;
+}
+
+Scene cube_of(double reflectance) {
+  Scene scene = cube_room(reflectance, 0);
+  for (Point& vertex : scene.vertices) vertex -= Vector(0.5, 0.5, 0.5);
+  return scene;
+}
+
+TEST(PathLights, EachFaceOfACubeGetsASixthOfTheLampInItsMiddle) {
+  // Phi / 6 straight on each face of 1 m^2, and by symmetry all faces are equal: H = Phi / (6 (1 - rho)).
+  for (const double reflectance : {0.0, 0.5}) {
+    Scene scene = cube_of(reflectance);
+    scene.luminaires = {point_at(Point::Zero(), 12)};
+    expect_irradiance(scene, 2, 2 / (1 - reflectance), 0.02);
+    scene.luminaires = {sphere_at(Point::Zero(), 0.1, 12)};
+    expect_irradiance(scene, 2, 2 / (1 - reflectance), 0.02);
+  }
+}
+
+TEST(PathLights, OneOfManyLuminairesStandsForAll) {
+  // One strong and many weak, all in the middle: their sum, whichever is chosen.
+  Scene scene = cube_of(0.5);
+  for (int k = 0; k < 20; ++k) scene.luminaires.push_back(point_at(Point::Zero(), k == 3 ? 5 : 0.35));
+  scene.luminaires.push_back(sphere_at(Point::Zero(), 0.01, 0.35));
+  expect_irradiance(scene, 4, 4, 0.02);
+}
+
+TEST(PathLights, SunShinesThroughAClearFace) {
+  // Through a clear ceiling of transmittance t the sun at the zenith gives E t on all of the floor.
+  Scene scene = cube_room(0, 0);
+  scene.materials.push_back(glass(0.6));
+  scene.polygons[1].material = 1;
+  scene.sun = Sun{Vector::UnitZ(), watts(800)};
+  expect_irradiance(scene, 0, 480, 1e-6);
+  // At tan = 1/2 from the zenith half of the floor lies in the shadow of a wall: E t cos / 2.
+  scene.sun = Sun{Vector(1, 0, 2).normalized(), watts(800)};
+  expect_irradiance(scene, 0, 480 * 2 / std::sqrt(5.0) / 2, 0.01);
+}
+
+TEST(PathLights, SkyIsSeenThroughHolesAndClearFaces) {
+  // A uniform sky of radiance L over a black box whose ceiling is clear, or not there: pi L t F. Of 4,096 rays the
+  // share F leaves: they scatter by no more than sqrt((1 - F) / F / 4096) = .031.
+  Scene scene = cube_room(0, 0);
+  scene.materials.push_back(glass(0.7));
+  scene.polygons[1].material = 1;
+  Sky sky;
+  sky.zenith_radiance = watts(3);
+  scene.sky = sky;
+  expect_irradiance(scene, 0, pi * 3 * 0.7 * opposed, 0.032);
+  scene.polygons.erase(scene.polygons.begin() + 1);
+  expect_irradiance(scene, 0, pi * 3 * opposed, 0.032);
+}
+
+TEST(PathLights, OpenGroundHasTheHorizontalIrradianceOfItsSky) {
+  // An overcast sky of the horizontal irradiance H on a horizontal face, whatever its reflectance. Turned with its up.
+  Scene scene = with_quad(empty_scene({grey(0.8)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  Sky sky;
+  sky.kind = SkyKind::cie_overcast;
+  sky.horizontal_irradiance = watts(50);
+  scene.sky = sky;
+  expect_irradiance(scene, 0, 50, 0.01);
+}
+
+}  // namespace
+}  // namespace patchlight
