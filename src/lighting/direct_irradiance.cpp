@@ -5,12 +5,14 @@
 
 #include "lighting/luminaire_irradiance.h"
 #include "lighting/receiver.h"
+#include "lighting/shades.h"
 #include "lighting/sky_irradiance.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -23,12 +25,21 @@ constexpr std::uint32_t replicates = 4;
 constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
+// Times the usual number of rays to the sun where its shadows are too many to be found by geometry.
+constexpr int sun_effort = 64;
+
+// Of a share that n rays all find to be 0, or all to be 1, no more than this over n is missed in 95 of 100 cases.
+// Hanley and Lippman-Hand 1983, the rule of three.
+constexpr double rule_of_three = 3;
+
 // Something that gives light: an estimate of the mean irradiance of a receiver. It takes as many of a scramble's points
 // as it is told for rays.
 struct Source {
   std::function<Spectrum(const Receiver&, SamplePoints, std::size_t)> mean;
   std::uint32_t samples = 0;
   bool has_extent = false;
+  std::function<std::optional<Spectrum>(const Receiver&)> exact = {};  // that of a patch, where it is known
+  std::function<Spectrum(const Receiver&)> unshadowed = {};            // where all rays bring the same
 };
 
 using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
@@ -69,20 +80,28 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
   return {mean, samples, has_extent};
 }
 
+Source sun_of(const Lighting& lighting, std::uint32_t samples) {
+  const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t rays) {
+    const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
+    return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
+  };
+  const auto unshadowed = [&lighting](const Receiver& receiver) {
+    const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
+    return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
+  };
+  const auto exact = [&lighting, unshadowed](const Receiver& receiver) -> std::optional<Spectrum> {
+    const auto share = lighting.shades->transmittance(receiver, lighting.sun->direction);
+    if (!share) return std::nullopt;
+    return Spectrum(unshadowed(receiver) * *share);
+  };
+  return {mean, samples, false, exact, unshadowed};
+}
+
 std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
   std::vector<Source> sources;
-  const auto add = [&](const ArrivalAt& arrival_at, int samples, bool has_extent) {
-    const auto mean = [&lighting, arrival_at](const Receiver& receiver, SamplePoints points, std::size_t rays) {
-      return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
-    };
-    sources.push_back({mean, static_cast<std::uint32_t>(samples), has_extent});
-  };
   for (const Luminaire& luminaire : lighting.luminaires)
     sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
-  if (lighting.sun) {
-    add([&lighting](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); },
-        options.sun_samples, false);
-  }
+  if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(sun_effort * options.sun_samples)));
   if (lighting.sky) {
     // With openings a sample takes two rays.
     const int rays = lighting.openings.empty() ? 1 : 2;
@@ -110,7 +129,8 @@ struct Estimator {
 };
 
 Estimator estimator_for(const Lighting& lighting, const LightingOptions& options) {
-  const int most = std::max({options.lamp_samples, options.sun_samples, options.sky_samples});
+  const int to_sun = lighting.sun ? sun_effort * options.sun_samples : 0;
+  const int most = std::max({options.lamp_samples, to_sun, options.sky_samples});
   const auto count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(most) / replicates);
   Estimator estimator{lighting.bands, sources_of(lighting, options), {}};
   for (std::uint32_t k = 0; k < scrambles; ++k)
@@ -118,9 +138,20 @@ Estimator estimator_for(const Lighting& lighting, const LightingOptions& options
   return estimator;
 }
 
+// What rays that all find the same may have missed, squared.
+Spectrum missed_variance(const Source& source, const Receiver& receiver, const Spectrum& mean) {
+  if (!source.unshadowed) return Spectrum::Zero(mean.size());
+  const Spectrum most = source.unshadowed(receiver);
+  const bool agree = (mean == 0).all() || ((mean - most).abs() <= 1e-12 * most).all();
+  return agree ? Spectrum((rule_of_three / source.samples * most).square()) : Spectrum(Spectrum::Zero(mean.size()));
+}
+
 Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
   const auto set = [&](std::uint32_t k) { return SamplePoints(points[(key + k * step) % scrambles]); };
   if (receiver.is_point() && !source.has_extent) return {source.mean(receiver, set(0), 1), Spectrum::Zero(bands)};
+  if (source.exact && !receiver.is_point()) {
+    if (const auto known = source.exact(receiver)) return {*known, Spectrum::Zero(bands)};
+  }
   const std::size_t each = std::max<std::size_t>(1, source.samples / replicates);
   Spectrum sum = Spectrum::Zero(bands);
   Spectrum squares = sum;
@@ -131,7 +162,7 @@ Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::
   }
   const Spectrum mean = sum / replicates;
   const Spectrum spread = (squares / replicates - mean.square()).max(0.0);
-  return {mean, spread / (replicates - 1)};
+  return {mean, (spread / (replicates - 1)).max(missed_variance(source, receiver, mean))};
 }
 
 Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const {

@@ -4,6 +4,8 @@
 #include "patchlight/scene/photometric_web.h"
 #include "patchlight/scene/triangulate.h"
 
+#include "lighting/shades.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -87,8 +89,12 @@ Lighting lighting_of(const Scene& scene, const Coverings& coverings) {
                     .openings = {},
                     .up = scene.up,
                     .bands = scene.materials.front().reflectance.size(),
-                    .paths = LightPaths(scene, coverings)};
-  if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
+                    .paths = LightPaths(scene, coverings),
+                    .shades = {}};
+  if (scene.sun && scene.sun->direction.dot(scene.up) > 0) {
+    lighting.sun = scene.sun;
+    lighting.shades = std::make_shared<const Shades>(scene, coverings);
+  }
   if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));

@@ -12,7 +12,7 @@ namespace patchlight {
 /// Shadow rays per patch or point. Powers of two that are at least 4 stratify best.
 struct LightingOptions {
   int lamp_samples = 64;   ///< per luminaire; at a point those without extent take one
-  int sun_samples = 64;    ///< at a point one
+  int sun_samples = 64;    ///< 64 times that where shadows are too many to be found by geometry; at a point one
   int sky_samples = 1024;  ///< directions; where there are clear openings half of them towards these
   std::uint64_t seed = 1;
 };
@@ -20,12 +20,14 @@ struct LightingOptions {
 /// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
-  Field standard_error;  ///< from four independent scrambles of the samples; 0 where nothing is sampled
+  Field standard_error;  ///< from four independent scrambles of the samples; 0 where nothing is sampled. Where n rays
+                         ///< to the sun all find the same: 3 / n of what it gives without shadows
 };
 
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
 /// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
-/// the patch. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
+/// the patch. That by the sun is exact up to rounding, from the outlines of all shadows, unless some 1,500 triangles
+/// stand between it and the patch. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
 /// \throws Cancelled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});

@@ -5,6 +5,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct Opening {
   std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
 };
 
+class Shades;
+
 /// What gives light in a scene and is no patch, ready for direct_irradiance(). Immutable and safe to use from several
 /// threads.
 struct Lighting {
@@ -29,6 +32,7 @@ struct Lighting {
   Vector up;
   Eigen::Index bands = 0;
   LightPaths paths;
+  std::shared_ptr<const Shades> shades;  ///< of the sun; null without one
 };
 
 /// Of a scene that check() has passed. With `coverings` places over which another polygon lies get no light.

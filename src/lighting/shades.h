@@ -1,0 +1,57 @@
+#pragma once
+
+#include "patchlight/light/spectrum.h"
+#include "patchlight/scene/coverings.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/visibility/shaft.h"
+
+#include "lighting/receiver.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// What stands between patches and a light that has no extent, by geometry alone: however small a hole is, the light
+/// that gets through it is found. Immutable and safe to use from several threads.
+class Shades {
+ public:
+  explicit Shades(const Scene& scene, const Coverings& coverings = {});
+
+  /// Mean over the exposed part of a patch of what is let through of parallel light from a unit direction before the
+  /// patch, per band: exact up to rounding. Nothing where the shadows of too many polygons meet to say so in reasonable
+  /// time.
+  std::optional<Spectrum> transmittance(const Receiver& patch, const Vector& toward_light) const;
+
+ private:
+  struct Triangle {
+    std::array<Point, 3> corners;
+    Vector normal;  // of the polygon's front
+    PolygonIndex polygon = no_polygon;
+  };
+  struct Node {
+    Box box;
+    std::uint32_t next = 0;  // the node after those below this one
+    std::uint32_t triangle = 0;
+    bool is_leaf = false;
+  };
+  using Indices = std::vector<std::uint32_t>;
+
+  void add_nodes(std::span<std::uint32_t> triangles);
+  Indices triangles_over(std::span<const HalfSpace> below) const;
+  bool lies_under(PolygonIndex polygon, PolygonIndex other) const;
+  const Spectrum* transmittance_of(const Triangle& triangle, const Vector& toward_light) const;
+
+  double tolerance_ = 0;  // of heights, m
+  Eigen::Index bands_ = 0;
+  Coverings coverings_;
+  std::vector<Triangle> triangles_;                      // polygon by polygon
+  std::vector<std::size_t> first_triangle_;              // of each polygon; and the number of all
+  std::vector<std::array<Spectrum, 2>> transmittances_;  // per polygon and side; empty: opaque
+  std::vector<Node> nodes_;
+};
+
+}  // namespace patchlight
