@@ -101,7 +101,8 @@ Decision backs(const EffectFacts& facts, const Request& request) {
   if (facts.turned_away == 0)
     return {Effect::backs, true, "no side is known to look into the dark",
             "nothing more than without: there is nothing to leave out"};
-  return {Effect::backs, false, "all lamps are inside: the outer sides of what encloses them look into the dark",
+  return {Effect::backs, false,
+          "they look away from all light: out of what encloses the lamps, or nothing is before them",
           counted(facts.turned_away, "side") + " of faces without patches"};
 }
 

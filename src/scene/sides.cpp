@@ -2,6 +2,9 @@
 
 #include "patchlight/scene/shells.h"
 
+#include "scene/extent.h"
+#include "scene/half_spaces.h"
+#include "scene/lamp_places.h"
 #include "scene/solids.h"
 
 #include <algorithm>
@@ -11,30 +14,6 @@
 
 namespace patchlight {
 namespace {
-
-// Points just before every side that emits, in its middle and at its corners, and those of every luminaire: a lamp may
-// stick through a wall.
-std::vector<Point> points_of_lamps(const Scene& scene) {
-  const double extent = bounds(scene).diagonal().norm();
-  std::vector<Point> points;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const Side side : {Side::front, Side::back}) {
-      if (!emits(scene, p, side)) continue;
-      points.push_back(point_before(scene, p, side, extent));
-      for (const Point& corner : corners_before(scene, p, side, extent)) points.push_back(corner);
-    }
-  }
-  for (const Luminaire& luminaire : scene.luminaires) {
-    points.push_back(luminaire.position);
-    const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light);
-    if (sphere == nullptr) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double radius : {-sphere->radius, sphere->radius})
-        points.push_back(luminaire.position + radius * Vector::Unit(axis));
-    }
-  }
-  return points;
-}
 
 // Counts for the notes.
 struct Count {
@@ -75,6 +54,11 @@ using SideMask = std::vector<std::uint8_t>;
 
 std::size_t at(PolygonIndex polygon, Side side) { return 2 * polygon + static_cast<std::size_t>(side); }
 
+SideMask either(SideMask first, const SideMask& second) {
+  for (std::size_t k = 0; k < first.size(); ++k) first[k] |= second[k];
+  return first;
+}
+
 // Leaves these sides out, or keeps them when they are wanted all the same.
 KeptSides with_sides(KeptSides kept, const SideMask& mask, bool wanted) {
   for (PolygonIndex p = 0; p < kept.front.size(); ++p) {
@@ -87,7 +71,7 @@ KeptSides with_sides(KeptSides kept, const SideMask& mask, bool wanted) {
 // The sides of polygons that lie beside this box for sure, sharing no volume with it, and do not look into it.
 SideMask sides_beside(const Scene& scene, const Box& room) {
   SideMask mask(2 * scene.polygons.size(), 0);
-  const double extent = bounds(scene).diagonal().norm();
+  const double extent = extent_of(scene);
   const Vector touching = Vector::Constant(1e-6 * extent);
   const Box inner(room.min() + touching, room.max() - touching);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -106,10 +90,36 @@ SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vect
   for (const Solid& solid : solids) {
     for (const PolygonIndex p : solid.polygons)
       mask[at(p, inner_side(solid, shells, p) == Side::front ? Side::back : Side::front)] = 1;
-    const SideMask beside = sides_beside(scene, solid.box);
-    for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= beside[k];
+    mask = either(std::move(mask), sides_beside(scene, solid.box));
   }
   return mask;
+}
+
+// How far over a plane a luminaire may lie by rounding, as a share of the extent.
+constexpr double rounding = 1e-12;
+
+bool shines_before(const Luminaire& luminaire, const Point& on_plane, const Vector& normal, double extent) {
+  const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
+  const double height = normal.dot(luminaire.position - on_plane) + (sphere != nullptr ? sphere->radius : 0);
+  return height > rounding * extent;
+}
+
+// The sides before which nothing lies and no light is: they see nothing. Lamps shine all the same.
+SideMask sides_before_nothing(const Scene& scene, double extent) {
+  SideMask mask(2 * scene.polygons.size(), 0);
+  const HalfSpaces occupied = occupied_half_spaces(scene);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back}) {
+      if ((side == Side::front ? occupied.before : occupied.behind)[p] || emits(scene, p, side)) continue;
+      const Vector normal = (side == Side::front ? 1 : -1) * front_normal(scene, p);
+      const Point& on_plane = scene.vertices[scene.polygons[p].corners[0]];
+      mask[at(p, side)] =
+          std::none_of(scene.luminaires.begin(), scene.luminaires.end(),
+                       [&](const Luminaire& luminaire) { return shines_before(luminaire, on_plane, normal, extent); });
+    }
+  }
+  const bool all_dark = std::all_of(mask.begin(), mask.end(), [](std::uint8_t dark) { return dark != 0; });
+  return all_dark ? SideMask(mask.size(), 0) : mask;
 }
 
 // Sides in the dark, of both kinds.
@@ -134,26 +144,25 @@ struct Lit {
   bool outside = false;
 };
 
-// Light of luminaires gets out through clear faces, that of patches does not.
-Lit lit_sides(const Scene& scene, const Solid& solid, const std::vector<Point>& lamps, bool daylight) {
-  const auto held = static_cast<std::size_t>(
-      std::count_if(lamps.begin(), lamps.end(), [&](const Point& lamp) { return holds(solid, lamp); }));
-  const bool from_outside = daylight || held < lamps.size();
-  const bool gets_out = solid.has_opening && !scene.luminaires.empty();
-  return {held > 0 || (from_outside && solid.has_opening), held == 0 || from_outside || gets_out};
+// Clear faces let light through, in and out.
+Lit lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
+  const bool from_outside = daylight || lamps.outside;
+  const bool gets_out = lamps.inside && solid.has_opening;
+  return {lamps.inside || (from_outside && solid.has_opening), !lamps.inside || from_outside || gets_out};
 }
 
 KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) {
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 1);
   kept.back.assign(scene.polygons.size(), 1);
-  const std::vector<Point> lamps = points_of_lamps(scene);
+  const double extent = extent_of(scene);
+  const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
   const bool daylight = scene.sun || scene.sky;
   const Shells shells = shells_of(scene);
   Count count;
   std::vector<Solid> dark, around_all_lamps;
   for (Solid& solid : closed_solids(scene, shells)) {
-    const Lit lit = lit_sides(scene, solid, lamps, daylight);
+    const Lit lit = lit_sides(solid, places_of(lamps, solid, extent), daylight);
     if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
       count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     }
@@ -169,7 +178,9 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
   const SideMask unreached = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
-  return without(std::move(kept), {unreached, sides_outside(scene, shells, around_all_lamps)}, in_the_dark);
+  SideMask turned_away = sides_outside(scene, shells, around_all_lamps);
+  if (any_light && !daylight) turned_away = either(std::move(turned_away), sides_before_nothing(scene, extent));
+  return without(std::move(kept), {unreached, std::move(turned_away)}, in_the_dark);
 }
 
 }  // namespace

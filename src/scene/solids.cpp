@@ -62,11 +62,6 @@ Point inner_point(const std::vector<Point>& corners) {
   return middle;
 }
 
-// A step from a side into the space before it.
-Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
-  return (side == Side::front ? offset : -offset) * extent * front_normal(scene, polygon);
-}
-
 // No vertex lies before a face as seen from inside. What has its corners in a solid lies in it as a whole only then.
 bool is_convex(const Solid& solid) {
   const double tolerance = offset * solid.box.diagonal().norm();
@@ -130,6 +125,10 @@ bool holds(const Solid& solid, const Point& point) {
   double solid_angle = 0;
   for (const auto& [a, b, c] : solid.triangles) solid_angle += signed_solid_angle(point, a, b, c);
   return std::abs(std::lround(solid_angle / (4 * std::numbers::pi))) == 1;
+}
+
+Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
+  return (side == Side::front ? offset : -offset) * extent * front_normal(scene, polygon);
 }
 
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {

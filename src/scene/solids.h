@@ -27,7 +27,10 @@ Side inner_side(const Solid& solid, const Shells& shells, PolygonIndex polygon);
 /// True when the solid has winding number +-1 around the point. O(triangles).
 bool holds(const Solid& solid, const Point& point);
 
-/// A point just before the middle of a side, by 1e-6 of the scene's `extent`. The middle is that of the polygon's
+/// A step from a side into the space before it, by 1e-6 of the scene's `extent`.
+Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
+
+/// A point one step_before() the middle of a side. The middle is that of the polygon's
 /// largest triangle, inside the polygon even when that is not convex.
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent);
 

@@ -11,8 +11,8 @@ namespace patchlight {
 
 /// Which sides of the polygons take part.
 enum class Sides {
-  automatic,  ///< all but those that face the inside of a closed solid without a lamp, or the dark outside of a closed
-              ///< shell
+  automatic,  ///< all but those into the dark: inside a closed solid without a lamp, outside of one around all lamps,
+              ///< or with nothing before them
   front,      ///< the front sides only; of polygons whose back is a face of its own both
   both        ///< both sides of every polygon
 };
@@ -34,7 +34,7 @@ struct KeptSides {
   std::vector<std::string> notes;   ///< what was decided, for the report
   std::vector<DarkSolid> dark_solids = {};
   std::size_t unreached = 0;    ///< sides that face the inside of one
-  std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid
+  std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid, or nothing at all
 };
 
 /// Sides that no light reaches and that are kept nevertheless.
@@ -43,19 +43,19 @@ struct KeptInTheDark {
   bool turned_away = false;  ///< those that face the dark outside of a closed solid
 };
 
-/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; polygons of it that are turned against
-/// the others are seen as if turned back. A solid holds a lamp when a point just before an emitting side of a polygon
-/// has winding number +-1 in it, or a luminaire's position has. Sun and sky shine from outside, and light gets in
-/// through clear openings.
-///
+/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; its turned polygons are seen as if
+/// turned back. It holds a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1;
+/// what crosses its surface, or comes within 5e-7 of the scene's extent of it, where rounding decides, is inside and
+/// outside: no light is lost for it. Sun and sky shine from outside. Clear openings let light in and out.
 /// Sides::automatic keeps a side unless
 /// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
 ///   belongs to the solid itself, or there is light elsewhere and the point just before its middle and all its corners
 ///   lie within, or
 /// - it faces the outside of a closed solid that holds every lamp of the scene, or lies beside the bounds of one
-///   without openings: no light gets there.
-/// `in_the_dark` asks for such sides nevertheless; they are counted all the same. What stands in dark solids is looked
-/// for as long as that takes a fraction of a second; beyond that it is kept.
+///   without openings: no light gets there, or
+/// - nothing of the scene lies before its plane, nor a luminaire, it does not emit, and there is no sun or sky.
+/// `in_the_dark` asks for such sides nevertheless; they are counted all the same, the last as turned away. What stands
+/// in dark solids is looked for as long as that takes a fraction of a second; beyond that it is kept.
 /// So the inner sides of a closed room are used even when its normals point outward; a note says so.
 KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark = {});
 

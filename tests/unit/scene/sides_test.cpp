@@ -60,6 +60,19 @@ Scene with_lamp(Scene scene, const Point& centre, double size = 0.1) {
       lamp);
 }
 
+// Six far sheets around everything: no side has nothing before it.
+Scene among_others(Scene scene) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double at : {-9.0, 9.0}) {
+      const Vector u = Vector::Unit((axis + 1) % 3);
+      const Vector v = Vector::Unit((axis + 2) % 3);
+      const Point middle = at * Vector::Unit(axis);
+      scene = with_polygon(std::move(scene), {middle, middle + u, middle + v});
+    }
+  }
+  return scene;
+}
+
 using Pair = std::pair<int, int>;
 
 // Front and back of a polygon.
@@ -88,12 +101,34 @@ TEST(KeptSides, FrontAndBothDoNotLookAtTheScene) {
 }
 
 TEST(KeptSides, ASolidWithoutALampKeepsItsOuterSides) {
-  const Scene outward = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2});
+  const Scene outward = among_others(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2}));
   expect_all(automatic(outward), 0, 6, front_only);
-  const Scene inward = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 2});
+  const Scene inward = among_others(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 2}));
   expect_all(automatic(inward), 0, 6, back_only);
   EXPECT_EQ(sides_of(automatic(outward), 6), both_sides) << "the lamp is no solid";
   EXPECT_FALSE(automatic(outward).emit_from_back);
+}
+
+// A lamp over an open box: inside there is light, and before the outer sides there is nothing, but for the lamp's own.
+TEST(KeptSides, ASideWithNothingBeforeItIsDark) {
+  for (const double metres : {1.0, 1000.0}) {
+    Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+    scene.polygons.pop_back();  // that at high z
+    scene = with_lamp(std::move(scene), {0, 0, 0.7});
+    const Eigen::AngleAxisd rotation(1.1, Vector(0.3, 1, -2).normalized());
+    for (Point& vertex : scene.vertices) vertex = metres * (rotation * vertex);
+    const KeptSides kept = automatic(scene);
+    expect_all(kept, 0, 6, front_only);
+    EXPECT_EQ(kept.turned_away, 6U);
+    expect_all(kept_sides(scene, Sides::automatic, {.turned_away = true}), 0, 6, both_sides);
+    scene.sky = Sky{};
+    expect_all(automatic(scene), 0, 6, both_sides);
+    scene.sky.reset();
+    scene.luminaires.resize(1);
+    scene.luminaires[0].position = metres * (rotation * Point(2, 0, 0));
+    EXPECT_EQ(sides_of(automatic(scene), 1), both_sides) << "the wall at high x is lit from outside";
+    EXPECT_EQ(sides_of(automatic(scene), 0), front_only);
+  }
 }
 
 TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
@@ -106,7 +141,7 @@ TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
 }
 
 TEST(KeptSides, ALuminaireIsALampWhereItStands) {
-  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  Scene scene = among_others(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward));
   scene.luminaires.resize(1);
   scene.luminaires[0].position = {0, 0, 0.2};
   expect_all(automatic(scene), 0, 6, front_only);
@@ -125,7 +160,7 @@ TEST(KeptSides, DaylightGetsInThroughOpeningsOnly) {
 
 TEST(KeptSides, ASolidAroundOneOfTwoLampsKeepsBothSides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
-  scene = with_lamp(with_lamp(std::move(scene), {0, 0, 0.2}), {0, 0, 2});
+  scene = among_others(with_lamp(with_lamp(std::move(scene), {0, 0, 0.2}), {0, 0, 2}));
   expect_all(automatic(scene), 0, 6, both_sides);
 }
 
@@ -135,7 +170,7 @@ TEST(KeptSides, ALampThatIsPartOfTheShellShinesWhereItsFrontLooks) {
   expect_all(automatic(inward), 0, 6, front_only);
   Scene outward = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   outward.polygons[5].material = lamp;
-  expect_all(automatic(outward), 0, 6, front_only);
+  expect_all(automatic(among_others(std::move(outward))), 0, 6, front_only);
 }
 
 TEST(KeptSides, ARoomHoldsItsFurniture) {
@@ -149,7 +184,7 @@ TEST(KeptSides, ARoomHoldsItsFurniture) {
 }
 
 TEST(KeptSides, ATurnedFaceOfASolidKeepsTheSideThatItsNeighboursKeep) {
-  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2});
+  Scene scene = among_others(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 2}));
   std::reverse(scene.polygons[2].corners.begin(), scene.polygons[2].corners.end());
   const KeptSides kept = automatic(scene);
   expect_all(kept, 0, 2, front_only);
@@ -279,7 +314,7 @@ TEST(KeptSides, WhatLiesWithinADarkSolidInPartsStays) {
 TEST(KeptSides, ALampThroughAWallLightsBothSides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward);
   scene = with_polygon(std::move(scene), {{0.2, 0, 0}, {1.4, 0, 0}, {1.4, 0.1, 0}, {0.2, 0.1, 0}}, lamp);
-  expect_all(automatic(scene), 0, 6, both_sides);
+  expect_all(automatic(among_others(std::move(scene))), 0, 6, both_sides);
 }
 
 TEST(KeptSides, WithoutALampNothingIsLeftOutButTheInsides) {
@@ -299,7 +334,7 @@ TEST(KeptSides, AConcaveLampIsLookedForWhereItIs) {
       {{-2, 2, 0.1}, {-1, 2, 0.1}, {-1, -1, 0.1}, {1, -1, 0.1}, {1, 2, 0.1}, {2, 2, 0.1}, {2, -2, 0.1}, {-2, -2, 0.1}},
       lamp);
   ASSERT_LT(front_normal(scene, 6).z(), 0.5);
-  expect_all(automatic(scene), 0, 6, front_only);
+  expect_all(automatic(among_others(std::move(scene))), 0, 6, front_only);
 }
 
 // Numbering and position carry no meaning: the same sides are kept after the polygons are shuffled and the model is
