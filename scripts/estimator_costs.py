@@ -11,7 +11,7 @@ import pathlib
 import sys
 import tempfile
 
-OPTIONS = ["--estimator auto", "--without hidden", "--without free", "--without far", "--without probes", "--estimator area",
+OPTIONS = ["--estimator auto", "--without hidden", "--without free", "--without far", "--estimator area",
            "--estimator contour", "--estimator point-polygon", "--estimator hemisphere --samples 4096"]
 
 

@@ -49,7 +49,7 @@ curve two_rooms 2000 3
 curve two_rooms 8000 1
 curve boxes_500 5000 1
 measure form_factors large closed_room_40 0 \
-  --benchmark_filter='assemble/probes:(4/samples:(4|16)|8/samples:(8|16)|16/samples:16)/'
+  --benchmark_filter='assemble/samples:(4|8|16)/'
 measure form_factors rays closed_room_20 0 --benchmark_filter=shadow_rays
 measure form_factors rays two_rooms 2000 --benchmark_filter=shadow_rays
 measure form_factors threads closed_room_20 0 --benchmark_filter=second_thread

@@ -27,13 +27,13 @@ class Measured:
         self.runs = {key: medians(of_key) for key, of_key in values.items()}
 
     def of(self, name):
-        """(probes, samples, counters) of the runs whose names match."""
+        """(samples, counters) of the runs whose names match."""
         found = []
         for key, counters in self.runs.items():
             if re.match(name, key):
                 numbers = [int(n) for n in re.findall(r":(\d+)", key)]
-                found.append((*numbers[:2], counters) if len(numbers) > 1 else (0, 0, counters))
-        return sorted(found, key=lambda run: run[:2])
+                found.append((numbers[0] if numbers else 0, counters))
+        return sorted(found, key=lambda run: run[0])
 
     def patches(self):
         return next(iter(self.runs.values()))["patches"]
@@ -76,15 +76,15 @@ def curves(folder, title, names):
     if not rooms:
         return
     print(f"### {title}")
-    head, cells = ["probes / samples"], {}
+    head, cells = ["samples"], {}
     for room in rooms:
         head += [f"{count(room.patches())} patches: rays, M", "CPU s", "row sums"]
-        for probes, samples, c in room.of("assemble.*threads:1"):
-            row = cells.setdefault((probes, samples), {})
+        for samples, c in room.of("assemble.*threads:1"):
+            row = cells.setdefault(samples, {})
             row[id(room)] = [short(c["rays"] / 1e6, 3), short(c["cpu_s"]), short(c["row_sum_rms"])]
     rows = []
     for setting, row in sorted(cells.items()):
-        rows.append([f"{setting[0]} / {setting[1]}"] + [x for room in rooms for x in row.get(id(room), ["", "", ""])])
+        rows.append([str(setting)] + [x for room in rooms for x in row.get(id(room), ["", "", ""])])
     table(head, rows)
 
 
@@ -95,17 +95,17 @@ def entries(folder, names):
     rows = []
     for name in names:
         measured = Measured(folder, name)
-        for probes, samples, c in measured.of("entries"):
+        for samples, c in measured.of("entries"):
             rows.append(
-                [count(measured.patches()), f"{probes} / {samples}"]
+                [count(measured.patches()), str(samples)]
                 + [short(c[k]) for k in ("cpu_s", "row_sum_rms", "l1", "p999", "mean_F", "matvec")]
             )
-    table(["patches", "probes / samples", "CPU s", "row sums", "L1", "p99.9", "mean F", "matvec"], rows)
+    table(["patches", "samples", "CPU s", "row sums", "L1", "p99.9", "mean F", "matvec"], rows)
 
 
 def cheapest(measured, goal=ROW_SUM_GOAL):
-    runs = [run for run in measured.of("assemble.*threads:1") if run[2]["row_sum_rms"] <= goal]
-    return min(runs, key=lambda run: run[2]["cpu_s"]) if runs else None
+    runs = [run for run in measured.of("assemble.*threads:1") if run[1]["row_sum_rms"] <= goal]
+    return min(runs, key=lambda run: run[1]["cpu_s"]) if runs else None
 
 
 def growth(folder):
@@ -114,24 +114,24 @@ def growth(folder):
     for name in (SMALL, "curve_closed_room_20_0", LARGE):
         best = cheapest(Measured(folder, name))
         if best:
-            probes, samples, c = best
+            samples, c = best
             points.append((c["patches"], c["cpu_s"]))
-            rows.append([count(c["patches"]), f"{probes} / {samples}", short(c["cpu_s"]), short(c["row_sum_rms"])])
-    table(["patches", "probes / samples", "CPU s", "row sums"], rows)
+            rows.append([count(c["patches"]), str(samples), short(c["cpu_s"]), short(c["row_sum_rms"])])
+    table(["patches", "samples", "CPU s", "row sums"], rows)
     if len(points) > 1:
         print(f"Exponent from the first to the last: {exponent(points[0], points[-1]):.2f}.")
     large = Measured(folder, LARGE)
-    for probes, samples, c in Measured(folder, SMALL).of("assemble.*threads:1"):
-        for p, s, d in large.of("assemble.*threads:1"):
-            if (p, s) == (probes, samples):
+    for samples, c in Measured(folder, SMALL).of("assemble.*threads:1"):
+        for s, d in large.of("assemble.*threads:1"):
+            if s == samples:
                 small, big = (c["patches"], c["cpu_s"]), (d["patches"], d["cpu_s"])
-                print(f"With {p} / {s} at both ends: {exponent(small, big):.2f}.")
+                print(f"With {s} at both ends: {exponent(small, big):.2f}.")
     print("\nThe largest room on two threads:")
     rows = [
-        [f"{p} / {s}"] + [short(c[k]) for k in ("wall_s", "cpu_s", "row_sum_rms")] + [short(c["peak_bytes"] / 1e9, 3)]
-        for p, s, c in large.of("assemble.*threads:2")
+        [str(s)] + [short(c[k]) for k in ("wall_s", "cpu_s", "row_sum_rms")] + [short(c["peak_bytes"] / 1e9, 3)]
+        for s, c in large.of("assemble.*threads:2")
     ]
-    table(["probes / samples", "wall s", "CPU s", "row sums", "peak memory, GB"], rows)
+    table(["samples", "wall s", "CPU s", "row sums", "peak memory, GB"], rows)
 
 
 def exponent(first, last):
@@ -142,10 +142,10 @@ def threads(folder, name):
     print("### A second thread")
     print("\nMedians of three interleaved pairs of runs; busy = processors that two threads got of the machine.")
     rows = [
-        [f"{p} / {s}", short(c["wall_1"], 3), short(c["wall_2"], 3), f"{c['gain']:.2f}", f"{c['processors_2']:.2f}"]
-        for p, s, c in Measured(folder, name).of("second_thread")
+        [str(s), short(c["wall_1"], 3), short(c["wall_2"], 3), f"{c['gain']:.2f}", f"{c['processors_2']:.2f}"]
+        for s, c in Measured(folder, name).of("second_thread")
     ]
-    table(["probes / samples", "wall s, one", "wall s, two", "gain", "busy"], rows)
+    table(["samples", "wall s, one", "wall s, two", "gain", "busy"], rows)
 
 
 def rays(folder, names):
@@ -156,10 +156,10 @@ def rays(folder, names):
     rows = []
     for name in names:
         measured = Measured(folder, name)
-        for p, s, c in measured.of("shadow_rays"):
+        for s, c in measured.of("shadow_rays"):
             speeds = [short(c[k] / 1e6, 3) for k in ("rays_per_s", "bare_rays_per_s")]
-            rows.append([count(measured.patches()), f"{p} / {s}", *speeds, percent(c["share"])])
-    table(["patches", "probes / samples", "end to end, M/s", "bare, M/s", "share"], rows)
+            rows.append([count(measured.patches()), str(s), *speeds, percent(c["share"])])
+    table(["patches", "samples", "end to end, M/s", "bare, M/s", "share"], rows)
 
 
 def calibration(folder, names):
@@ -167,7 +167,7 @@ def calibration(folder, names):
     rows, bins = [], []
     for name in names:
         measured = Measured(folder, name)
-        for _, _, c in measured.of("calibration"):
+        for _, c in measured.of("calibration"):
             patches = count(measured.patches())
             for kind in ("partial", *(f"bin{b}" for b in range(BINS))):
                 label = "all" if kind == "partial" else f"{int(kind[3:]) / BINS:.3f} on"
@@ -191,7 +191,7 @@ def unoccluded(folder, names):
     rows, notes = [], []
     for name in names:
         measured = Measured(folder, name)
-        for _, _, c in measured.of("unoccluded"):
+        for _, c in measured.of("unoccluded"):
             for zone in ("near", "middle", "far"):
                 sizes = [short(c[f"{zone}_{k}"]) for k in ("median", "p999", "max", "max_F")]
                 shares = [percent(c[f"{zone}_{k}"]) for k in ("within", "within_F")]
@@ -211,9 +211,9 @@ def solutions(folder, names):
     rows = []
     for name in names:
         measured = Measured(folder, name)
-        for p, s, c in measured.of("solutions"):
-            rows.append([count(measured.patches()), f"{p} / {s}", short(c["mixed"]), short(c["bright"])])
-    table(["patches", "probes / samples", "rho 0.3 and 0.8", "rho 0.99"], rows)
+        for s, c in measured.of("solutions"):
+            rows.append([count(measured.patches()), str(s), short(c["mixed"]), short(c["bright"])])
+    table(["patches", "samples", "rho 0.3 and 0.8", "rho 0.99"], rows)
 
 
 def goals(folder):
@@ -229,32 +229,32 @@ def goals(folder):
         measured = Measured(folder, name)
         for row_sums, limit in limits.items():
             best = cheapest(measured, row_sums)
-            found = best[2]["cpu_s"] if best else None
+            found = best[1]["cpu_s"] if best else None
             goal(f"{count(measured.patches())} patches, CPU s to row sums within {short(row_sums)}", found, limit)
-    within = [run for run in Measured(folder, "errors_closed_room_10_0").of("entries") if run[2]["cpu_s"] <= 0.4]
+    within = [run for run in Measured(folder, "errors_closed_room_10_0").of("entries") if run[1]["cpu_s"] <= 0.4]
     for name, limit in (("l1", 2e-3), ("p999", 1.5e-4), ("matvec", 1e-3)):
-        found = min((run[2][name] for run in within), default=None)
+        found = min((run[1][name] for run in within), default=None)
         goal(f"1,416 patches, {name} of the entries in 0.4 CPU s", found, limit)
     small, large = cheapest(Measured(folder, SMALL)), cheapest(Measured(folder, LARGE))
     if small and large:
-        ends = [(c["patches"], c["cpu_s"]) for _, _, c in (small, large)]
+        ends = [(c["patches"], c["cpu_s"]) for _, c in (small, large)]
         goal("exponent of the growth", exponent(*ends), 2.1)
-    both = [c for _, _, c in Measured(folder, LARGE).of("assemble.*threads:2") if c["row_sum_rms"] <= ROW_SUM_GOAL]
+    both = [c for _, c in Measured(folder, LARGE).of("assemble.*threads:2") if c["row_sum_rms"] <= ROW_SUM_GOAL]
     goal("22,656 patches, wall s on two threads", min((c["wall_s"] for c in both), default=None), 30)
     goal("22,656 patches, peak memory in GB", min((c["peak_bytes"] / 1e9 for c in both), default=None), 1.3)
-    for p, s, c in Measured(folder, "rays_closed_room_20_0").of("shadow_rays"):
-        goal(f"rays end to end / bare, {p} / {s}", c["share"], 0.5, at_least=True)
-    for p, s, c in Measured(folder, "threads_closed_room_20_0").of("second_thread"):
-        goal(f"gain of the second thread, {p} / {s}", c["gain"], 1.8, at_least=True)
+    for s, c in Measured(folder, "rays_closed_room_20_0").of("shadow_rays"):
+        goal(f"rays end to end / bare, {s} samples", c["share"], 0.5, at_least=True)
+    for s, c in Measured(folder, "threads_closed_room_20_0").of("second_thread"):
+        goal(f"gain of the second thread, {s} samples", c["gain"], 1.8, at_least=True)
     for name in ERRORS:
         measured = Measured(folder, name)
-        for _, _, c in measured.of("calibration"):
+        for _, c in measured.of("calibration"):
             label = f"{count(measured.patches())} patches"
             goal(f"{label}, groups of partial pairs out of calibration", wrong_groups(c), 0)
             least = min(c["visible_within"], c["occluded_within"])
             goal(f"{label}, unanimous pairs within their bound", least, 0.95, at_least=True)
-        for p, s, c in measured.of("solutions"):
-            goal(f"{count(measured.patches())} patches, {p} / {s}, solution", max(c["mixed"], c["bright"]), 1e-3)
+        for s, c in measured.of("solutions"):
+            goal(f"{count(measured.patches())} patches, {s} samples, solution", max(c["mixed"], c["bright"]), 1e-3)
     table(["", "found", "limit", ""], rows)
 
 

@@ -228,7 +228,6 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   }
   if (!more_samples && !finer_mesh) return std::nullopt;
   plan.samples = by.samples;
-  plan.probes = std::max(plan.probes, by.samples / 2);
   MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};
   if (!more_samples) to_solve.known = std::move(solved.raw);
   return to_solve;

@@ -12,7 +12,8 @@ nlohmann::ordered_json json_of(const SamplingError::Unanimous& unanimous) {
   return {{"sampled_again", unanimous.pairs},
           {"missed", unanimous.missed},
           {"bound", bound_on_miss(unanimous)},
-          {"by_share", unanimous.by_share}};
+          {"by_share", unanimous.by_share},
+          {"squares", unanimous.squares}};
 }
 
 SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
@@ -20,6 +21,7 @@ SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
   json.at("sampled_again").get_to(unanimous.pairs);
   json.at("missed").get_to(unanimous.missed);
   json.at("by_share").get_to(unanimous.by_share);
+  json.at("squares").get_to(unanimous.squares);
   return unanimous;
 }
 

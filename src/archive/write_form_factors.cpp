@@ -114,7 +114,6 @@ Json left_out(const ShortCuts& short_cuts) {
   Json names = Json::array();
   if (!short_cuts.hidden) names.push_back("hidden");
   if (!short_cuts.free) names.push_back("free");
-  if (!short_cuts.probes) names.push_back("probes");
   if (!short_cuts.far) names.push_back("far");
   return names;
 }
@@ -143,7 +142,6 @@ std::string info_json(const FormFactorResult& result) {
   json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
   json["options"] = {{"max_edge_m", plan.max_edge},
                      {"sides", name_of(request.sides)},
-                     {"probes", plan.probes},
                      {"samples", plan.samples},
                      {"estimator", name_of(plan.estimator)},
                      {"without", left_out(plan.short_cuts)},

@@ -27,23 +27,20 @@ void add_without(CLI::App& command, ShortCuts& short_cuts) {
           "--without",
           [&short_cuts](const std::vector<std::string>& names) {
             for (const std::string& name : names) {
-              short_cuts.*choice<bool ShortCuts::*>("--without", name,
-                                                    {{"hidden", &ShortCuts::hidden},
-                                                     {"free", &ShortCuts::free},
-                                                     {"probes", &ShortCuts::probes},
-                                                     {"far", &ShortCuts::far}}) = false;
+              short_cuts.*choice<bool ShortCuts::*>(
+                              "--without", name,
+                              {{"hidden", &ShortCuts::hidden}, {"free", &ShortCuts::free}, {"far", &ShortCuts::far}}) =
+                  false;
             }
           },
           "leaves out a short cut, to see what it saves and errs: clusters\nof patches hidden from each other, or with "
-          "nothing between them,\nwithout rays; a few probes first; the coarse rule for far pairs;\nmay be repeated; "
+          "nothing between them,\nwithout rays; the coarse rule for far pairs;\nmay be repeated; "
           "default: all are taken")
       ->allow_extra_args(false)
-      ->option_text("hidden|free|probes|far");
+      ->option_text("hidden|free|far");
 }
 
-bool takes_all(const ShortCuts& short_cuts) {
-  return short_cuts.hidden && short_cuts.free && short_cuts.probes && short_cuts.far;
-}
+bool takes_all(const ShortCuts& short_cuts) { return short_cuts.hidden && short_cuts.free && short_cuts.far; }
 
 }  // namespace
 

@@ -119,8 +119,8 @@ std::string assembly(const Scene& scene, const Simulation& simulation) {
   const SamplingError& error = simulation.transport.error;
   if (was_audited(error)) {
     text << "\nsampled form factors: standard error " << rounded(100 * standard_error(error, 0.5), 2)
-         << " % of the unoccluded value for half hidden pairs with a form factor below 1/256; where probes agreed, 95 "
-            "% are within "
+         << " % of the unoccluded value for half hidden pairs with a form factor below 1/256; where rays agreed, 95 % "
+            "are within "
          << rounded(100 * bound_on_miss(error.visible), 2) << " % (seen) and "
          << rounded(100 * bound_on_miss(error.occluded), 2) << " % (hidden)";
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t most_scrambles = 256;
 constexpr std::uint32_t most_entries = 1U << 22;  // of the table, so that it stays below 150 MB
-constexpr std::size_t coordinates = 8;
+constexpr std::size_t coordinates = 4;
 
 }  // namespace
 
@@ -20,13 +20,10 @@ SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
   table_.resize(std::size_t{scrambles_} * coordinates * samples);
   for (std::uint32_t scramble = 0; scramble < scrambles_; ++scramble) {
     const auto points = scrambled_sobol(samples, hash({seed, scramble}));
-    float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples;
+    std::uint32_t* const rows = table_.data() + std::size_t{scramble} * coordinates * samples;
     for (std::size_t k = 0; k < samples; ++k) {
-      const auto& [u, v, s, t] = points[k];
-      const Eigen::Vector2d b = square_to_triangle(u, v);
-      const Eigen::Vector2d c = square_to_triangle(s, t);
-      const std::array<double, coordinates> values{u, v, s, t, b[0], b[1], c[0], c[1]};
-      for (std::size_t d = 0; d < coordinates; ++d) rows[d * samples + k] = static_cast<float>(values[d]);
+      for (std::size_t d = 0; d < coordinates; ++d)
+        rows[d * samples + k] = static_cast<std::uint32_t>(points[k][d] * 0x1p32);
     }
   }
 }
@@ -34,8 +31,10 @@ SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
 SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key, std::uint32_t replicate) const {
   const std::uint32_t key = hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_))));
   const std::uint32_t scramble = (key % scrambles_ + replicate) % scrambles_;
-  const float* const rows = table_.data() + std::size_t{scramble} * coordinates * samples_;
-  return {rows, rows + 4 * std::size_t{samples_}, samples_};
+  SampleSet set{table_.data() + std::size_t{scramble} * coordinates * samples_, samples_, {}};
+  std::uint32_t state = hash(key + replicate);
+  for (std::uint32_t& shift : set.shift) shift = state = hash(state + 0x9e3779b9U);
+  return set;
 }
 
 double geometry_term(const Point& x, const Vector& normal_x, const Point& y, const Vector& normal_y) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numbers>
 
 namespace patchlight {
@@ -13,16 +14,31 @@ std::array<float, 3> narrow(const Vector& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
+// Where samples lie on a patch: coordinates d and d + 1 of the set, for triangles made barycentric
+// (square_to_triangle()).
+template <std::size_t count>
+PATCHLIGHT_INLINE std::array<std::array<float, count>, 2> place(bool is_triangle, const SampleSet& set, std::size_t d,
+                                                                std::size_t first) {
+  std::array<std::array<float, count>, 2> at;
+  for (std::size_t c = 0; c < 2; ++c) {
+    const std::uint32_t* const net = set.net + (d + c) * set.stride + first;
+    for (std::size_t k = 0; k < count; ++k) at[c][k] = shifted(net[k], set.shift[d + c]);
+  }
+  if (!is_triangle) return at;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float root = std::sqrt(at[0][k]);
+    at[0][k] = root - root * at[1][k];
+    at[1][k] = root * at[1][k];
+  }
+  return at;
+}
+
 // Loops over `count` lanes, which is known to the compiler, so that they become vector instructions.
 template <std::size_t count>
 PATCHLIGHT_INLINE void fill(PairSamples& samples, std::ptrdiff_t lane, const SampledPatch& from, const SampledPatch& to,
                             const SampleSet& set, std::size_t first, float factor) {
-  const float* const from_set = (from.is_triangle ? set.triangle : set.square) + first;
-  const float* const to_set = (to.is_triangle ? set.triangle : set.square) + first + 2 * set.stride;
-  const float* const u = from_set;
-  const float* const v = from_set + set.stride;
-  const float* const s = to_set;
-  const float* const t = to_set + set.stride;
+  const auto [u, v] = place<count>(from.is_triangle, set, 0, first);
+  const auto [s, t] = place<count>(to.is_triangle, set, 2, first);
   std::array<std::array<float, count>, 3> x;
   std::array<std::array<float, count>, 3> toward;
   std::array<float, count> squared{};

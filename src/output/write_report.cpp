@@ -94,7 +94,6 @@ Json sampling_error_part(const SamplingError& error) {
 Json plan_part(const Plan& plan) {
   Json part;
   part["max_edge_m"] = plan.max_edge;
-  part["probes"] = plan.probes;
   part["samples"] = plan.samples;
   part["estimator"] = name_of(plan.estimator);
   part["close"] = plan.close;

@@ -112,9 +112,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
     // A nested mesh is made from parents with edges twice as long.
     plan.max_edge = nested ? max_edge_for(scene, plan.sides, wanted / 4) / 2 : max_edge_for(scene, plan.sides, wanted);
   }
-  // What unanimous probes miss would soon outweigh the error of the partly hidden pairs: both grow together.
-  plan.probes = std::max(plan.probes, request.samples / 2);
-  plan.samples = std::max(request.samples, plan.probes);
+  plan.samples = request.samples;
   plan.seed = request.seed;
   plan.estimator = request.estimator;
   plan.short_cuts = request.short_cuts;
@@ -139,7 +137,7 @@ bool simulates(const Plan& plan, Effect effect) {
 }
 
 AssemblyOptions assembly_options(const Plan& plan) {
-  return {plan.probes, plan.samples, plan.seed, plan.standard_errors, plan.estimator, plan.short_cuts};
+  return {plan.samples, plan.seed, plan.standard_errors, plan.estimator, plan.short_cuts};
 }
 
 }  // namespace patchlight

@@ -24,14 +24,9 @@ std::uint32_t audit_interval(PatchIndex size, bool estimated) {
   return static_cast<std::uint32_t>(std::clamp(pairs / 16384, 4.0, estimated ? 16.0 : 256.0));
 }
 
-// Of pairs of which no ray carries weight, because their ends hardly ever see each other's fronts, all rays count
-// alike.
 EntryKind kind_of(const Pair& pair) {
-  const bool weightless = pair.free_rays + pair.blocked_rays == 0;
-  const bool any_free = (weightless ? pair.idle_free_rays : pair.free_rays) > 0;
-  const bool any_blocked = (weightless ? pair.idle_blocked_rays : pair.blocked_rays) > 0;
-  if (any_free && any_blocked) return EntryKind::estimated;
-  return any_free ? EntryKind::all_visible : EntryKind::all_hidden;
+  const double share = pair.visible_share();
+  return share == 0 ? EntryKind::all_hidden : share == 1 ? EntryKind::all_visible : EntryKind::estimated;
 }
 
 // What one row of clusters adds to the result.
@@ -97,16 +92,18 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   if (!(again.unoccluded > 0)) return;
   const double share = exchange_area / again.unoccluded;
   const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
+  const double variance = pair.effort * difference * difference / 2;
   if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
     ++facts.error.partial_pairs[bin];
-    facts.error.squares[bin] += pair.effort * difference * difference / 2;
+    facts.error.squares[bin] += variance;
     return;
   }
   const bool visible = kind_of(pair) == EntryKind::all_visible;
   SamplingError::Unanimous& unanimous = visible ? facts.error.visible : facts.error.occluded;
   ++unanimous.pairs;
-  unanimous.missed += (visible ? again.blocked_rays : again.free_rays) > 0 ? 1 : 0;
+  unanimous.missed += kind_of(again) != kind_of(pair) ? 1 : 0;
+  unanimous.squares += variance;
   constexpr std::size_t steps = SamplingError::Unanimous::steps;
   ++unanimous.by_share[static_cast<std::size_t>(std::min(std::abs(difference) * steps, steps - 1.0))];
 }
@@ -219,7 +216,7 @@ const char* name_of(Estimator estimator) {
 
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const Observer& observer) {
-  assert(options.probes >= 1 && options.samples >= options.probes);
+  assert(options.samples >= 1);
   switch (options.estimator) {
     case Estimator::automatic:
       return by_pair_class(mesh, occluder, options, nullptr, observer);

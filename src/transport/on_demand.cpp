@@ -149,7 +149,7 @@ Eigen::MatrixXd OnDemandTransport::form_factors(PatchRange from, PatchRange to) 
 std::unique_ptr<RowTransport> on_demand_transport(const PatchMesh& mesh, const Occluder& occluder,
                                                   const AssemblyOptions& options, Eigen::VectorXd area) {
   assert(options.estimator == Estimator::automatic);
-  assert(options.probes >= 1 && options.samples >= options.probes);
+  assert(options.samples >= 1);
   return std::make_unique<OnDemandTransport>(mesh, occluder, options, std::move(area));
 }
 

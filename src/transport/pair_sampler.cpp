@@ -24,13 +24,13 @@ std::uint32_t in_packets(int count) {
   return wanted <= 2 ? 2 : wanted <= 4 ? 4 : wanted <= 8 ? 8 : (wanted + 15) / 16 * 16;
 }
 
-void add(Pair& pair, float weight, bool blocked) {
-  (blocked ? pair.blocked_weight : pair.free_weight) += weight;
-  if (weight > 0) {
-    ++(blocked ? pair.blocked_rays : pair.free_rays);
-  } else {
-    ++(blocked ? pair.idle_blocked_rays : pair.idle_free_rays);
-  }
+// `let_through` is the share of the light along the ray that arrives.
+void add(Pair& pair, float weight, float let_through) {
+  const bool idle = !(weight > 0);
+  pair.weight += weight;
+  pair.seen_weight += weight * let_through;
+  (idle ? pair.idle_seen : pair.seen) += let_through;
+  ++(idle ? pair.idle_rays : pair.weighted_rays);
 }
 
 // Calls use(group) for the pairs that are sampled in one way and have had equally many rays.
@@ -54,13 +54,17 @@ std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vect
 
 }  // namespace
 
+double Pair::visible_share() const {
+  const bool idle = weighted_rays == 0;
+  return static_cast<double>(idle ? idle_seen : seen) / std::max(1U, idle ? idle_rays : weighted_rays);
+}
+
 PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& shapes, const Occluder& occluder,
                          const AssemblyOptions& options)
     : mesh_(mesh),
       shapes_(shapes),
       occluder_(occluder),
       far_rule_(options.short_cuts.far ? FarRule::coarse : FarRule::fine),
-      probes_(in_packets(options.short_cuts.probes ? options.probes : options.samples)),
       samples_(in_packets(options.samples)),
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
@@ -105,7 +109,7 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
       }
       const unsigned blocked = occluder_.occluded(next.rays);
       for (std::size_t lane = 0; lane < packet && p + lane / step < pairs.size(); ++lane) {
-        add(pairs[p + lane / step], next.weight[lane], (blocked >> lane & 1) != 0);
+        add(pairs[p + lane / step], next.weight[lane], (blocked >> lane & 1) != 0 ? 0.0F : 1.0F);
       }
     }
     k += static_cast<std::uint32_t>(step);
@@ -128,7 +132,9 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
     const PatchShape& a = shapes_[pair.first];
     const PatchShape& b = shapes_[pair.second];
     for (std::size_t k = begin; k < end; ++k) {
-      const auto at = [&](std::size_t d) { return static_cast<double>(pair.set.square[d * pair.set.stride + k]); };
+      const auto at = [&](std::size_t d) {
+        return static_cast<double>(shifted(pair.set.net[d * pair.set.stride + k], pair.set.shift[d]));
+      };
       const Point x = square_to_quad(a.corners.points, at(0), at(1));
       const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, at(2), at(3));
       segments.push_back(
@@ -137,7 +143,7 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
     }
   }
   const std::vector<std::uint8_t> blocked = occluder_.occluded(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0);
+  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0 ? 0.0F : 1.0F);
 }
 
 // Samples [begin, end) of pairs that are sampled in one way; none when there are that many already.
@@ -147,67 +153,59 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
   trace_packets(pairs, begin, end);
 }
 
-// By the form factor from the smaller patch, or what the rays so far tell of it.
+// By the form factor from the smaller patch, or what the weights of the first samples tell of it.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
   const double first = shapes_[pair.first].area;
   const double second = shapes_[pair.second].area;
-  const double mean_weight = static_cast<double>(pair.free_weight + pair.blocked_weight) / pair.rays();
+  const double mean_weight = static_cast<double>(pair.weight) / pair.rays();
   const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded) : first * second * mean_weight;
   return sampling_effort(unoccluded / std::min(first, second));
 }
 
 std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
-  // 1. A few probes for every pair.
+  // 1. The usual number of samples for every pair.
   const auto others = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_adjacent; });
-  trace({pairs.begin(), others}, 0, probes_);
-  trace({others, pairs.end()}, 0, probes_);
+  trace({pairs.begin(), others}, 0, samples_);
+  trace({others, pairs.end()}, 0, samples_);
 
   // 2. More where the form factor is large.
   for (Pair& pair : pairs) pair.effort = effort_for(pair);
   const auto usual = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.effort > 1; });
   for_groups({pairs.begin(), usual},
-             [&](std::span<Pair> group) { trace(group, probes_, group.front().effort * probes_); });
+             [&](std::span<Pair> group) { trace(group, samples_, group.front().effort * samples_); });
 
-  // 3. The remaining samples where the probes disagree.
-  const auto partial = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.is_partial(); });
-  for (auto pair = pairs.begin(); pair != partial; ++pair) {
-    if (pair->unoccluded < 0) pair->unoccluded = exact(pair->first, pair->second);
-    pair->effort = effort_for(*pair);
-  }
-  for_groups({pairs.begin(), partial},
-             [&](std::span<Pair> group) { trace(group, group.front().rays(), group.front().effort * samples_); });
-
-  // 4. What was not worth computing for pairs that see nothing of each other.
-  for (auto pair = partial; pair != pairs.end(); ++pair) {
-    if (pair->unoccluded < 0 && pair->free_rays > 0) pair->unoccluded = exact(pair->first, pair->second);
+  // 3. What is not worth computing for pairs that see nothing of each other.
+  for (Pair& pair : pairs) {
+    if (pair.unoccluded < 0 && pair.visible_share() > 0) pair.unoccluded = exact(pair.first, pair.second);
   }
   return pairs;
 }
 
 Pair PairSampler::sampled_again(const Pair& pair) const {
-  Pair again = pair;
-  again.set = table_.of_pair(keys_[pair.first], keys_[pair.second], 1);
-  again.free_weight = again.blocked_weight = 0;
-  again.free_rays = again.blocked_rays = again.idle_free_rays = again.idle_blocked_rays = 0;
+  Pair again{.first = pair.first,
+             .second = pair.second,
+             .set = table_.of_pair(keys_[pair.first], keys_[pair.second], 1),
+             .unoccluded = pair.unoccluded,
+             .effort = pair.effort,
+             .is_adjacent = pair.is_adjacent};
   trace({&again, 1}, 0, pair.effort * samples_);
   if (again.unoccluded < 0) again.unoccluded = exact(pair.first, pair.second);
   return again;
 }
 
 double PairSampler::exchange_area(const Pair& pair) const {
+  const double share = pair.visible_share();
+  if (share == 0) return 0;
+  const double U = pair.unoccluded;
+  const double n = pair.rays();
+  const double m = pair.weighted_rays;
+  if (share == 1 || m < 2) return share * U;
+  // U less the mean weight has the expectation 0. Times the visible share of the other samples, which it does not
+  // depend on, it takes away what the weights scatter; without those other samples it would be a bias.
   const double areas = shapes_[pair.first].area * shapes_[pair.second].area;
-  // Of patches that see each other in a small part only, no sample may lie in it: then all rays count alike.
-  if (pair.free_rays + pair.blocked_rays == 0) {
-    return static_cast<double>(pair.unoccluded) * pair.idle_free_rays / std::max(1U, pair.rays());
-  }
-  if (pair.blocked_rays == 0) return pair.unoccluded;
-  if (pair.free_rays == 0) return 0;
-  const double count = pair.rays();
-  // What is mostly hidden is estimated directly; what is mostly seen by the control variate, the exact unoccluded value
-  // less the mean of what is blocked. Either way the error is that of the smaller part.
-  if (pair.free_weight < pair.blocked_weight)
-    return std::min<double>(pair.unoccluded, areas * pair.free_weight / count);
-  return std::max(0.0, pair.unoccluded - areas * pair.blocked_weight / count);
+  const double free = areas * pair.seen_weight;
+  const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
+  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U);
 }
 
 }  // namespace patchlight

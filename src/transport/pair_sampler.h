@@ -17,19 +17,19 @@ struct Pair {
   PatchIndex first = 0;  ///< rays are sampled from here
   PatchIndex second = 0;
   SampleSet set;
-  float unoccluded = 0;              ///< exchange area without occluders, m^2; -1 when not yet computed
-  float free_weight = 0;             ///< summed weights of the samples whose shadow ray is free: geometry terms, 1/m^2
-  float blocked_weight = 0;          ///< and of those whose ray is blocked
-  std::uint32_t free_rays = 0;       ///< of samples with a weight
-  std::uint32_t blocked_rays = 0;    ///< the same
-  std::uint32_t idle_free_rays = 0;  ///< of samples without: one end lies behind the other patch
-  std::uint32_t idle_blocked_rays = 0;  ///< the same
-  std::uint32_t effort = 1;             ///< times the usual number of samples
-  bool is_adjacent = false;             ///< sampled by solid angle
+  float unoccluded = 0;             ///< exchange area without occluders, m^2; -1 when not yet computed
+  float weight = 0;                 ///< summed weights of its samples: geometry terms, 1/m^2
+  float seen_weight = 0;            ///< the same, each times what its shadow ray lets through, 0 to 1
+  float seen = 0;                   ///< summed shares that the rays of samples with a weight let through
+  float idle_seen = 0;              ///< of samples without: one end lies behind the other patch
+  std::uint32_t weighted_rays = 0;  ///< of samples with a weight
+  std::uint32_t idle_rays = 0;      ///< of samples without
+  std::uint32_t effort = 1;         ///< times the usual number of samples
+  bool is_adjacent = false;         ///< sampled by solid angle
 
-  std::uint32_t rays() const { return free_rays + blocked_rays + idle_free_rays + idle_blocked_rays; }
-  /// The rays disagree, or say nothing.
-  bool is_partial() const { return (free_rays > 0) == (blocked_rays > 0); }
+  std::uint32_t rays() const { return weighted_rays + idle_rays; }
+  /// The share of its rays that get through; where none carries weight, all count alike.
+  double visible_share() const;
 };
 
 /// Finds by shadow rays how much of each other the patches of pairs see.
@@ -44,14 +44,14 @@ class PairSampler {
   /// The exchange area without occluders, by closed form or quadrature in double precision.
   float exact(PatchIndex i, PatchIndex j) const;
 
-  /// Traces a few probes for every pair, and all samples where they disagree; more of both for large form factors. The
-  /// pairs come out in another order.
+  /// Traces as many rays for every pair as its form factor calls for, whatever they meet: were it to depend on what the
+  /// first of them meet, the estimate would be biased. The pairs come out in another order.
   std::vector<Pair> sampled(std::vector<Pair> pairs) const;
 
   /// All samples of one pair anew, independent of those before.
   Pair sampled_again(const Pair& pair) const;
 
-  /// The estimate from the pair's rays, m^2.
+  /// The estimate from the pair's rays, m^2: docs/theory.md, formula (5).
   double exchange_area(const Pair& pair) const;
 
  private:
@@ -64,7 +64,6 @@ class PairSampler {
   const std::vector<PatchShape>& shapes_;
   const Occluder& occluder_;
   FarRule far_rule_;
-  std::uint32_t probes_;
   std::uint32_t samples_;
   double scale_;
   std::vector<std::uint32_t> keys_;

@@ -27,11 +27,11 @@ struct Drawer {
   const PatchMesh& mesh;
   const Eigen::VectorXd& area;
   const EntryErrors& errors;
-  double of_visible;  // relative
-  double of_hidden;
+  const SamplingError& sampling;
   std::uint32_t seed;
 
   double standard_error(PatchIndex i, PatchIndex j) const;
+  double of_unanimous(const SamplingError::Unanimous& unanimous, PatchIndex i, PatchIndex j) const;
   void add_row(PatchIndex j, const FieldView& x, Field& sum) const;
   void add_variances(PatchIndex j, const FieldView& x, Field& sum) const;
 };
@@ -41,13 +41,19 @@ double Drawer::standard_error(PatchIndex i, PatchIndex j) const {
     case EntryKind::exact:
       return 0;
     case EntryKind::all_visible:
-      return of_visible > 0 ? of_visible * unoccluded(mesh, area, i, j) : 0;
+      return of_unanimous(sampling.visible, i, j);
     case EntryKind::all_hidden:
-      return of_hidden > 0 ? of_hidden * unoccluded(mesh, area, i, j) : 0;
+      return of_unanimous(sampling.occluded, i, j);
     case EntryKind::estimated:
       return errors.standard_error(i, j);
   }
   return 0;
+}
+
+double Drawer::of_unanimous(const SamplingError::Unanimous& unanimous, PatchIndex i, PatchIndex j) const {
+  if (unanimous.squares == 0) return 0;
+  const double U = unoccluded(mesh, area, i, j);
+  return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(area[i], area[j])));
 }
 
 // Adds what the entries of row j and the columns before it contribute.
@@ -90,12 +96,7 @@ Field sum_over_rows(std::size_t size, Eigen::Index columns, Add add) {
 }
 
 Drawer drawer_of(const ErrorsOfEntries& of, std::uint64_t seed) {
-  return {of.mesh,
-          of.area,
-          of.errors,
-          standard_error(of.sampling.visible),
-          standard_error(of.sampling.occluded),
-          hash({seed, 0x64726177})};
+  return {of.mesh, of.area, of.errors, of.sampling, hash({seed, 0x64726177})};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ SamplingError& SamplingError::operator+=(const SamplingError& other) {
   for (const auto kind : {&SamplingError::visible, &SamplingError::occluded}) {
     (this->*kind).pairs += (other.*kind).pairs;
     (this->*kind).missed += (other.*kind).missed;
+    (this->*kind).squares += (other.*kind).squares;
     for (std::size_t step = 0; step < Unanimous::steps; ++step) {
       (this->*kind).by_share[step] += (other.*kind).by_share[step];
     }
@@ -44,18 +45,9 @@ double standard_error(const SamplingError& error, double visible_share, std::uin
   return pairs > 0 ? std::sqrt(square / static_cast<double>(pairs) / effort) : 1;
 }
 
-double standard_error(const SamplingError::Unanimous& unanimous) {
+double standard_error(const SamplingError::Unanimous& unanimous, std::uint32_t effort) {
   if (unanimous.pairs == 0) return 0;
-  constexpr double steps = SamplingError::Unanimous::steps;
-  // Most pairs of the first step have nothing wrong at all.
-  auto counts = unanimous.by_share;
-  counts[0] -= std::min(counts[0], unanimous.pairs - unanimous.missed);
-  double squares = 0;
-  for (std::size_t step = 0; step < counts.size(); ++step) {
-    const double share = (static_cast<double>(step) + 0.5) / steps;
-    squares += static_cast<double>(counts[step]) * share * share;
-  }
-  return std::sqrt(squares / static_cast<double>(unanimous.pairs));
+  return std::sqrt(unanimous.squares / static_cast<double>(unanimous.pairs) / effort);
 }
 
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {

@@ -79,7 +79,7 @@ Measured sampled_form_factor(const Scene& scene, double max_edge, std::uint32_t 
   double sum_of_squares = 0;
   double systematic = 0;
   for (int run = 1; run <= runs; ++run) {
-    const AssemblyOptions options{rays_per_pair, rays_per_pair, static_cast<std::uint64_t>(run)};
+    const AssemblyOptions options{rays_per_pair, static_cast<std::uint64_t>(run)};
     const GroupExchange exchange = group_exchange(scene, max_edge, options, observer);
     const double form_factor = exchange.exchange_area(0, to) / exchange.area[0];
     sum += form_factor;
@@ -88,7 +88,7 @@ Measured sampled_form_factor(const Scene& scene, double max_edge, std::uint32_t 
   }
   const double mean = sum / runs;
   const double variance = std::max(0.0, sum_of_squares / runs - mean * mean) / (runs - 1);  // of the mean
-  return {mean, standard_errors * std::sqrt(variance) + systematic, "4 standard errors, quadrature, probes"};
+  return {mean, standard_errors * std::sqrt(variance) + systematic, "4 standard errors, quadrature"};
 }
 
 Measured refined(const Measured& coarse, const Measured& fine) {

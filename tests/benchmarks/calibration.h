@@ -18,7 +18,7 @@ struct Spread {
   double mean_z = 0;
 };
 
-/// Every pair whose probes disagreed, and those by the bins of the visible share.
+/// Every pair whose rays disagreed, and those by the bins of the visible share.
 struct PartialPairs {
   Spread all;
   std::array<Spread, SamplingError::bins> bins;
@@ -26,12 +26,12 @@ struct PartialPairs {
 PartialPairs partial_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,
                            const ExchangeAreas& reference);
 
-/// Every pair whose probes agreed.
+/// Every pair whose rays agreed.
 struct UnanimousPairs {
   double pairs = 0;
   double within = 0;        ///< share of them that is off by at most the bound
   double bound = 0;         ///< stated by the audit, as a share of the unoccluded exchange area
-  double audited_rate = 0;  ///< share of the audited ones where the probes missed something
+  double audited_rate = 0;  ///< share of the audited ones where they missed something
   double rate = 0;          ///< share of all where they did, by the reference
 };
 UnanimousPairs unanimous_pairs(const std::vector<SampledEntry>& sampled, const Assembly& assembly,

@@ -43,7 +43,7 @@ void entries(benchmark::State& state, const Work& work) {
   for (auto _ : state) {
     const ThreadLimit one(1);
     const double start = cpu_seconds();
-    const Assembly assembly = assembled(work, {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 1});
+    const Assembly assembly = assembled(work, {static_cast<int>(state.range(0)), 1});
     state.counters["cpu_s"] = cpu_seconds() - start;
     const auto errors = entry_errors(work.room.mesh, assembly.exchange_areas, work.reference);
     state.counters["patches"] = work.room.mesh.size();
@@ -57,7 +57,7 @@ void entries(benchmark::State& state, const Work& work) {
 
 void solutions(benchmark::State& state, const Work& work) {
   for (auto _ : state) {
-    const Assembly assembly = assembled(work, {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 1});
+    const Assembly assembly = assembled(work, {static_cast<int>(state.range(0)), 1});
     const SolutionErrors errors = solution_errors(work.room, assembly.exchange_areas, work.reference);
     state.counters["patches"] = work.room.mesh.size();
     state.counters["mixed"] = errors.mixed;
@@ -139,11 +139,11 @@ int main(int count, char** values) {
   Room room = read_room(values[1], std::stoul(values[2]));
   ExchangeAreas exact = reference(room, std::stoi(values[4]), values[3]);
   const auto work = std::make_shared<Work>(Work{std::move(room), std::move(exact)});
-  auto* const curve = add("entries", entries, work)->ArgNames({"probes", "samples"});
-  for (const auto& [probes, samples] : settings()) curve->Args({probes, samples});
+  auto* const curve = add("entries", entries, work)->ArgNames({"samples"});
+  for (const int samples : settings()) curve->Args({samples});
   const AssemblyOptions defaults;
-  auto* const solved = add("solutions", solutions, work)->ArgNames({"probes", "samples"});
-  solved->Args({defaults.probes, defaults.samples})->Args({8, 16})->Args({16, 64});
+  auto* const solved = add("solutions", solutions, work)->ArgNames({"samples"});
+  solved->Args({defaults.samples})->Args({48});
   add("calibration", calibration, work);
   add("unoccluded", unoccluded, work);
   return run(count, values, 5);

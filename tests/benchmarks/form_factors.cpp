@@ -33,13 +33,11 @@ Cost measured_assembly(const Room& room, const AssemblyOptions& options, int thr
   return {std::move(assembly), cpu_seconds() - cpu, wall_seconds() - wall};
 }
 
-AssemblyOptions options_of(const benchmark::State& state) {
-  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 1};
-}
+AssemblyOptions options_of(const benchmark::State& state) { return {static_cast<int>(state.range(0)), 1}; }
 
 void assemble(benchmark::State& state, const Room& room) {
   for (auto _ : state) {
-    const Cost cost = measured_assembly(room, options_of(state), static_cast<int>(state.range(2)));
+    const Cost cost = measured_assembly(room, options_of(state), static_cast<int>(state.range(1)));
     state.SetIterationTime(cost.cpu);
     const RowSumError error = row_sum_error(room, cost.assembly.exchange_areas);
     const AssemblyCounts& counts = cost.assembly.counts;
@@ -132,14 +130,14 @@ int main(int count, char** values) {
     return 1;
   }
   const auto room = std::make_shared<Room>(read_room(values[1], std::stoul(values[2])));
-  auto* const curve = add("assemble", assemble, room)->ArgNames({"probes", "samples", "threads"});
-  auto* const gain = add("second_thread", second_thread, room)->ArgNames({"probes", "samples"});
-  auto* const rays = add("shadow_rays", shadow_rays, room)->ArgNames({"probes", "samples"});
-  for (const auto& [probes, samples] : settings()) {
-    curve->Args({probes, samples, 1});
-    curve->Args({probes, samples, 2});
-    gain->Args({probes, samples});
-    rays->Args({probes, samples});
+  auto* const curve = add("assemble", assemble, room)->ArgNames({"samples", "threads"});
+  auto* const gain = add("second_thread", second_thread, room)->ArgNames({"samples"});
+  auto* const rays = add("shadow_rays", shadow_rays, room)->ArgNames({"samples"});
+  for (const int samples : settings()) {
+    curve->Args({samples, 1});
+    curve->Args({samples, 2});
+    gain->Args({samples});
+    rays->Args({samples});
   }
   return run(count, values, 3);
 }

@@ -47,7 +47,7 @@ void write_matrix(const ExchangeAreas& S, const std::filesystem::path& file) {
 
 ExchangeAreas reference(const Room& room, int samples, const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) return read_matrix(file, room.mesh.size());
-  Assembly assembly = assemble_exchange_areas(room.mesh, Occluder(room.scene), {samples, samples, seed});
+  Assembly assembly = assemble_exchange_areas(room.mesh, Occluder(room.scene), {samples, seed});
   write_matrix(assembly.exchange_areas, file);
   return std::move(assembly.exchange_areas);
 }

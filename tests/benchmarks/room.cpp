@@ -46,14 +46,7 @@ RowSumError row_sum_error(const Room& room, const ExchangeAreas& S) {
   return error;
 }
 
-std::vector<std::array<int, 2>> settings() {
-  std::vector<std::array<int, 2>> all{{2, 2}, {4, 4}, {4, 16}, {8, 8}, {8, 16}, {16, 16}, {16, 64}, {16, 128}};
-  const AssemblyOptions defaults;
-  if (std::find(all.begin(), all.end(), std::array{defaults.probes, defaults.samples}) == all.end()) {
-    all.push_back({defaults.probes, defaults.samples});
-  }
-  return all;
-}
+std::vector<int> settings() { return {2, 4, 8, 16, 32, 48, 64}; }
 
 double peak_memory() {
   rusage usage{};

@@ -28,8 +28,8 @@ struct RowSumError {
 };
 RowSumError row_sum_error(const Room& room, const ExchangeAreas& S);
 
-/// Probes and samples to measure the curve of error against cost at; the defaults of the program are among them.
-std::vector<std::array<int, 2>> settings();
+/// Samples to measure the curve of error against cost at; the default of the program is among them.
+std::vector<int> settings();
 
 /// Largest resident set of this process so far, in bytes.
 double peak_memory();

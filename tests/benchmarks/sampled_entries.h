@@ -13,7 +13,7 @@ struct SampledEntry {
   PatchIndex first = 0;
   PatchIndex second = 0;
   double unoccluded = 0;    ///< exchange area without occluders, m^2
-  bool is_partial = false;  ///< the probes disagreed: an estimate, else fully visible or fully occluded as far as seen
+  bool is_partial = false;  ///< the rays disagreed: an estimate, else fully visible or fully occluded as far as seen
 };
 
 /// These pairs of an assembly that kept its errors, cluster by cluster as they were sampled.

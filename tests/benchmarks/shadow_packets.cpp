@@ -21,10 +21,10 @@ struct PacketMaker {
   double scale;
   std::vector<ShadowPacket> made;
 
-  // Samples [begin, end) of some pairs; each packet holds as many of a pair as fill it evenly.
-  void add(const std::vector<SampledEntry>& pairs, int begin, int end) {
+  // So many samples of some pairs; each packet holds as many of a pair as fill it evenly.
+  void add(const std::vector<SampledEntry>& pairs, int end) {
     PairSamples next;
-    for (int k = begin; k < end;) {
+    for (int k = 0; k < end;) {
       const int step = k % 16 == 0 && end - k >= 16 ? 16
                        : k % 8 == 0 && end - k >= 8 ? 8
                        : k % 4 == 0 && end - k >= 4 ? 4
@@ -57,14 +57,11 @@ std::vector<ShadowPacket> shadow_packets(const Room& room, const TracingFrame& f
   const auto stride = pairs_together * static_cast<std::size_t>(1 + rays / (packet * static_cast<double>(packets)));
   for (std::size_t first = 0; first < sampled.size() && maker.made.size() < packets; first += stride) {
     std::vector<SampledEntry> pairs;
-    std::vector<SampledEntry> partial;
     for (std::size_t k = first; k < std::min(sampled.size(), first + pairs_together); ++k) {
       if (is_adjacent(shapes[sampled[k].first], shapes[sampled[k].second])) continue;
       pairs.push_back(sampled[k]);
-      if (sampled[k].is_partial) partial.push_back(sampled[k]);
     }
-    maker.add(pairs, 0, options.probes);
-    maker.add(partial, options.probes, options.samples);
+    maker.add(pairs, options.samples);
   }
   return std::move(maker.made);
 }

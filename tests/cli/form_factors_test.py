@@ -79,9 +79,9 @@ class FormFactorsTest(ToolTest):
     def test_short_cuts_can_be_left_out(self):
         self.find("-o", "all.ff", "--patches", "300")
         counts = json.loads((self.folder / "all.ff/info.json").read_text())["counts"]
-        self.find("-o", "few.ff", "--patches", "300", "--without", "free", "--without", "probes")
+        self.find("-o", "few.ff", "--patches", "300", "--without", "free", "--without", "far")
         info = json.loads((self.folder / "few.ff/info.json").read_text())
-        self.assertEqual(info["options"]["without"], ["free", "probes"])
+        self.assertEqual(info["options"]["without"], ["free", "far"])
         self.assertGreater(info["counts"]["shadow_rays"], 2 * counts["shadow_rays"])
         self.assertEqual(info["counts"]["free_pairs"], 0)
 

@@ -93,7 +93,7 @@ constexpr double half = 0.5 * 0.19982489569838732;  // of the catalogue's value 
 
 // Whichever corner the triangle begins with and whichever way it is turned, it hides the same rays.
 TEST(HalfHiddenSquares, DoNotDependOnTheTrianglesFirstCorner) {
-  const AssemblyOptions options{4, 256, 1};
+  const AssemblyOptions options{256, 1};
   const double expected = exchange_between(half_hidden(0, false), 2, options);
   for (int rotation = 0; rotation < 3; ++rotation) {
     for (const bool turned_over : {false, true}) {
@@ -112,7 +112,7 @@ TEST(HalfHiddenSquares, ExchangeHalf) {
     double sum = 0;
     double squares = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const double value = exchange_between(half_hidden(0, false), 2, {4, samples, static_cast<std::uint64_t>(seed)});
+      const double value = exchange_between(half_hidden(0, false), 2, {samples, static_cast<std::uint64_t>(seed)});
       EXPECT_NEAR(value, half, 3 * half / std::sqrt(4.0 * samples)) << samples << " samples, seed " << seed;
       if (samples == 4096) {
         EXPECT_NEAR(value, half, 1e-3) << seed;

@@ -33,8 +33,8 @@ class Calibration : public testing::Test {
     const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
     const Occluder occluder(scene);
     shapes = patch_shapes(mesh);
-    assembly = new Assembly(assemble_exchange_areas(mesh, occluder, {4, 16, 1, true}));
-    reference = new Assembly(assemble_exchange_areas(mesh, occluder, {1600, 1600, 7}));
+    assembly = new Assembly(assemble_exchange_areas(mesh, occluder, {16, 1, true}));
+    reference = new Assembly(assemble_exchange_areas(mesh, occluder, {1600, 7}));
   }
   static void TearDownTestSuite() {
     delete assembly;

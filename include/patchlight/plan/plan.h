@@ -49,9 +49,8 @@ struct Request {
 /// How a scene is going to be solved.
 struct Plan {
   KeptSides sides;
-  double max_edge = 0;  ///< metres
-  int probes = 8;       ///< first shadow rays of a pair that rays decide
-  int samples = 16;
+  double max_edge = 0;        ///< metres
+  int samples = 16;           ///< shadow rays of a pair that rays decide, more where its form factor is large
   int lost_share_rays = 256;  ///< hemisphere rays per patch
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;

@@ -30,15 +30,13 @@ const char* name_of(Estimator estimator);
 struct ShortCuts {
   bool hidden = true;  ///< clusters that one polygon hides from each other take no rays
   bool free = true;    ///< clusters with nothing between them take no rays
-  bool probes = true;  ///< where a few rays agree no more are traced
   bool far = true;     ///< far pairs take the quadrature of the lowest order
 };
 
 struct AssemblyOptions {
-  int probes = 4;    ///< shadow rays of a pair before it counts as fully visible or fully blocked
-  int samples = 16;  ///< shadow rays of a partly occluded pair, at least `probes`. The automatic estimator rounds both
-                     ///< up to 2, 4, 8 or a multiple of 16, to fill packets, and takes sampling_effort() times as many.
-                     ///< The others take just this many for every pair, Estimator::hemisphere for every patch
+  int samples = 16;  ///< shadow rays of a pair that rays decide. The automatic estimator rounds them up to 2, 4, 8 or a
+                     ///< multiple of 16, to fill packets, and takes sampling_effort() times as many. The others take
+                     ///< just this many for every pair, Estimator::hemisphere for every patch
   std::uint64_t seed = 1;
   bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
   Estimator estimator = Estimator::automatic;

@@ -89,7 +89,7 @@ Comparison compare(const Place& place, const AssemblyOptions& options) {
 
 // Law: an entry follows from its two patches alone, so that a row by itself has the bits that it has in the matrix.
 TEST(OnDemand, RowsAreThoseOfTheMatrix) {
-  const AssemblyOptions options{8, 16, 3};
+  const AssemblyOptions options{16, 3};
   AssemblyCounts counts;
   const auto expect_the_same = [&](const Scene& scene, double max_edge) {
     const Comparison comparison = compare(Place(scene, max_edge), options);
@@ -110,9 +110,9 @@ TEST(OnDemand, RowsAreThoseOfTheMatrix) {
 
 TEST(OnDemand, RowsAreThoseOfTheMatrixWithoutShortCuts) {
   const Place place(furnished_room(0.5), 0.6);
-  for (int left_out = 0; left_out < 4; ++left_out) {
-    const ShortCuts short_cuts{left_out != 0, left_out != 1, left_out != 2, left_out != 3};
-    const Comparison comparison = compare(place, {.probes = 4, .samples = 32, .short_cuts = short_cuts});
+  for (int left_out = 0; left_out < 3; ++left_out) {
+    const ShortCuts short_cuts{left_out != 0, left_out != 1, left_out != 2};
+    const Comparison comparison = compare(place, {.samples = 32, .short_cuts = short_cuts});
     EXPECT_EQ(comparison.differing, 0U) << left_out;
     EXPECT_GT(comparison.counts.facing_pairs, 100U);
   }
