@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws what level grids of sensors read as a map (SVG): a coloured square with its number for each sensor.
+"""Draws what level grids of sensors read as a map (SVG): a coloured square with its number for each sensor
+that is not inside a wall.
 
 usage: scripts/sensor_map.py SENSORS.csv MAP.svg [--column daylight_factor_percent]
 
@@ -73,7 +74,7 @@ def read(file, column):
     for group in dict.fromkeys(row["group"] for row in rows):
         points = [(float(r["x"]), float(r["y"]), float(r[column])) for r in rows if r["group"] == group]
         step = spacing(points)
-        found += [(x, y, value, step) for x, y, value in points]
+        found += [(x, y, value, step) for x, y, value in points if not math.isnan(value)]
     return found
 
 

@@ -8,6 +8,7 @@
 #include "cli/text_table.h"
 #include "effects.h"
 
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -27,6 +28,28 @@ std::optional<Spectrum> only_overcast_sky(const Scene& scene) {
   return 7.0 / 9 * std::numbers::pi * sky.zenith_radiance;  // E = 7 pi L_z / 9: Moon and Spencer 1942
 }
 
+// The sensors that are not inside walls.
+std::vector<Sensor> free_sensors(std::span<const SensorPlace> places) {
+  std::vector<Sensor> sensors;
+  for (const SensorPlace& place : places) {
+    if (place.standing != Standing::inside_wall) sensors.push_back(place.sensor);
+  }
+  return sensors;
+}
+
+// A row for each place from one for each of the free sensors; NaN inside walls.
+Field at_places(const Field& values, std::span<const SensorPlace> places) {
+  Field all(static_cast<Eigen::Index>(places.size()), values.cols());
+  Eigen::Index next = 0;
+  for (Eigen::Index row = 0; row < all.rows(); ++row) {
+    if (places[static_cast<std::size_t>(row)].standing == Standing::inside_wall)
+      all.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
+    else
+      all.row(row) = values.row(next++);
+  }
+  return all;
+}
+
 }  // namespace
 
 Scene with_points(Scene scene, const SolveArguments& arguments) {
@@ -44,38 +67,42 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
   throw InputError("--points-output", "the scene file has no sensors; give it a table [[sensors]], or --points FILE");
 }
 
-Readings read_sensors(const Scene& whole, const Simulation& simulation, const Observer& observer) {
+Readings read_sensors(const Scene& whole, const Simulation& simulation, std::span<const SensorPlace> places,
+                      const Observer& observer) {
   const Scene scene = scene_for_sensors(whole, simulation.plan);
   // Without interreflection sensors see what lamps send, and nothing that is reflected.
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
-  const std::vector<Sensor> sensors = all_sensors(scene.sensors);
+  const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.seed;
   const Coverings coverings = find_coverings(scene, simulation.plan.sides);
   const Occluder occluder(scene, Occluder::Blockers::all, coverings);
   GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors, {.seed = seed}, observer);
-  Readings readings = {.irradiance = std::move(gathered.irradiance),
-                       .standard_error = std::move(gathered.standard_error),
+  if (has_point_or_daylight(scene)) {
+    std::vector<SurfacePoint> points;
+    for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
+    gathered.irradiance += direct.irradiance;
+    gathered.standard_error = (gathered.standard_error.square() + direct.standard_error.square()).sqrt();
+  }
+  Readings readings = {.irradiance = at_places(gathered.irradiance, places),
+                       .standard_error = at_places(gathered.standard_error, places),
                        .photometric = scene.photometric,
                        .outside_by_sky = only_overcast_sky(scene)};
-  if (!has_point_or_daylight(scene)) return readings;
-  std::vector<SurfacePoint> points;
-  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
-  readings.irradiance += direct.irradiance;
-  readings.standard_error = (readings.standard_error.square() + direct.standard_error.square()).sqrt();
+  for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);
   return readings;
 }
 
 std::string sensor_summary(const Scene& scene, const Readings& readings) {
   if (scene.sensors.empty()) return {};
   const std::string in_unit = std::string(", ") + sensor_unit(readings);
-  std::vector<TextRow> rows = {{"sensors", "number", "min" + in_unit, "mean" + in_unit, "max" + in_unit, "U0",
-                                "largest standard error" + in_unit}};
+  std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit, "max" + in_unit,
+                                "U0", "largest standard error" + in_unit}};
   if (readings.outside_by_sky) rows[0].emplace_back("mean daylight factor, %");
   for (const GroupReadings& group : by_group(scene.sensors, readings)) {
-    rows.push_back({group.name, std::to_string(group.sensors), rounded(group.min), rounded(group.mean),
-                    rounded(group.max), rounded(group.uniformity), rounded(group.largest_standard_error, 2)});
+    rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls), rounded(group.min),
+                    rounded(group.mean), rounded(group.max), rounded(group.uniformity),
+                    rounded(group.largest_standard_error, 2)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   return text_table(rows);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "patchlight/gather/readings.h"
+#include "patchlight/gather/sensor_places.h"
 #include "patchlight/simulate.h"
 
 #include "cli/arguments.h"
 
+#include <span>
 #include <string>
 
 namespace patchlight::cli {
@@ -16,9 +18,10 @@ Scene with_points(Scene scene, const SolveArguments& arguments);
 /// InputError when an output is named but nothing is to be read.
 std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene);
 
-/// What the sensors of a solved scene read: light gathered from its patches, and straight from luminaires, sun and sky.
-/// \throws Cancelled.
-Readings read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer);
+/// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from
+/// luminaires, sun and sky. \throws Cancelled.
+Readings read_sensors(const Scene& scene, const Simulation& simulation, std::span<const SensorPlace> places,
+                      const Observer& observer);
 
 /// A line for each group of sensors: least, mean and greatest value, uniformity, daylight factor; empty without
 /// sensors.

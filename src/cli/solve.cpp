@@ -70,8 +70,9 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));
   if (!scene.sensors.empty()) {
     results.points_outputs = points_outputs(arguments, scene);
-    results.readings = read_sensors(scene, simulation, observer);
-    results.warnings = doubtful_sensors(scene, simulation.plan.sides, occluder);
+    const std::vector<SensorPlace> places = place_sensors(scene, simulation.plan.sides, occluder);
+    results.readings = read_sensors(scene, simulation, places, observer);
+    results.warnings = doubtful_sensors(scene, places);
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {

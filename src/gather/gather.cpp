@@ -11,6 +11,9 @@
 namespace patchlight {
 namespace {
 
+// A sensor that is nearer to a polygon's plane lies on it, as a share of the scene's extent: the occluder's own limit.
+constexpr double on_plane_tolerance = 1e-9;
+
 // Irradiance at one sensor.
 struct Reading {
   Spectrum mean;
@@ -60,9 +63,8 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
   return std::max(1.0, factor.maxCoeff());
 }
 
-Reading read_sensor(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity, const ShadowRays& rays,
-                    const GatherOptions& options) {
-  const std::vector<Source> sources = sources_before(sensor, mesh, radiosity);
+Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const FieldView& radiosity,
+                    const ShadowRays& rays, const GatherOptions& options) {
   const std::vector<RayCounts> first = counts_for(sources, options.rays, options.least_rays);
   std::vector<VisibleShare> shares = rays.visible_shares(sensor, sources, first, 0);
   const Reading reading = reading_of(sources, shares, radiosity);
@@ -82,10 +84,12 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
   const ShadowRays rays(mesh, occluder, options.seed);
+  const double tolerance = on_plane_tolerance / occluder.frame().scale;
   const Field zero = Field::Zero(static_cast<Eigen::Index>(sensors.size()), radiosity.cols());
   GatheredIrradiance result{zero, zero};
   parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {
-    const Reading reading = read_sensor(sensors[k], mesh, radiosity, rays, options);
+    const std::vector<Source> sources = sources_before(sensors[k], mesh, radiosity, tolerance);
+    const Reading reading = read_sensor(sensors[k], sources, radiosity, rays, options);
     result.irradiance.row(static_cast<Eigen::Index>(k)) = reading.mean;
     result.standard_error.row(static_cast<Eigen::Index>(k)) = reading.variance.sqrt();
   });

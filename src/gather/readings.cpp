@@ -7,6 +7,10 @@
 
 namespace patchlight {
 
+bool is_inside_wall(const Readings& readings, std::size_t sensor) {
+  return !readings.inside_wall.empty() && readings.inside_wall[sensor] != 0;
+}
+
 SensorValue sensor_value(const Readings& readings, std::size_t sensor) {
   const auto row = static_cast<Eigen::Index>(sensor);
   const double per_lux = readings.photometric ? 1 : 1 / luminous_efficacy;
@@ -21,24 +25,42 @@ double daylight_factor(const Readings& readings, std::size_t sensor) {
   return 100 * luminance(readings.irradiance.row(row)) / luminance(*readings.outside_by_sky);
 }
 
+namespace {
+
+GroupReadings statistics(std::span<const std::size_t> sensors, const Readings& readings) {
+  GroupReadings found;
+  if (sensors.empty()) return found;
+  const auto count = static_cast<double>(sensors.size());
+  found.min = sensor_value(readings, sensors[0]).value;
+  double daylight = 0;
+  for (const std::size_t k : sensors) {
+    const SensorValue value = sensor_value(readings, k);
+    found.min = std::min(found.min, value.value);
+    found.max = std::max(found.max, value.value);
+    found.mean += value.value / count;
+    found.largest_standard_error = std::max(found.largest_standard_error, value.standard_error);
+    if (readings.outside_by_sky) daylight += daylight_factor(readings, k) / count;
+  }
+  if (found.mean > 0) found.uniformity = found.min / found.mean;
+  if (readings.outside_by_sky) found.mean_daylight_factor = daylight;
+  return found;
+}
+
+}  // namespace
+
 std::vector<GroupReadings> by_group(std::span<const SensorGroup> groups, const Readings& readings) {
   std::vector<GroupReadings> all;
   std::size_t first = 0;
   for (const SensorGroup& group : groups) {
-    GroupReadings found{.name = group.name, .sensors = group.sensors.size()};
-    if (found.sensors > 0) found.min = sensor_value(readings, first).value;
-    double daylight = 0;
-    for (std::size_t k = first; k < first + found.sensors; ++k) {
-      const SensorValue value = sensor_value(readings, k);
-      found.min = std::min(found.min, value.value);
-      found.max = std::max(found.max, value.value);
-      found.mean += value.value / static_cast<double>(found.sensors);
-      found.largest_standard_error = std::max(found.largest_standard_error, value.standard_error);
-      if (readings.outside_by_sky) daylight += daylight_factor(readings, k) / static_cast<double>(found.sensors);
+    std::vector<std::size_t> read;
+    for (std::size_t k = first; k < first + group.sensors.size(); ++k) {
+      if (!is_inside_wall(readings, k)) read.push_back(k);
     }
-    if (found.mean > 0) found.uniformity = found.min / found.mean;
-    if (readings.outside_by_sky) found.mean_daylight_factor = daylight;
-    first += found.sensors;
+    GroupReadings found = statistics(read, readings);
+    found.name = group.name;
+    found.sensors = group.sensors.size();
+    found.inside_walls = group.sensors.size() - read.size();
+    first += group.sensors.size();
     all.push_back(std::move(found));
   }
   return all;

@@ -5,8 +5,8 @@
 #include "patchlight/form_factor/point_polygon.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace patchlight {
 namespace {
@@ -30,10 +30,16 @@ Point point_in(std::span<const Point> polygon, double u, double v) {
   return p + b[0] * (polygon[k] - p) + b[1] * (polygon[k + 1] - p);
 }
 
+// Coordinates in a unit scene are rounded to so many steps, so that rounding in another unit leaves the random numbers
+// as they are. Round coordinates do not lie midway between two.
+constexpr double steps = 1e6 * std::numbers::pi;
+
 // A key of a place, whatever else is asked for with it.
-std::uint32_t key_of(const Point& point) {
-  return hash({std::bit_cast<std::uint64_t>(point.x() + 0.0), std::bit_cast<std::uint64_t>(point.y() + 0.0),
-               std::bit_cast<std::uint64_t>(point.z() + 0.0)});
+std::uint32_t key_of(const Vector& place) {
+  std::array<std::uint64_t, 3> rounded{};
+  for (int d = 0; d < 3; ++d)
+    rounded[static_cast<std::size_t>(d)] = static_cast<std::uint64_t>(std::llround(steps * place[d]));
+  return hash({rounded[0], rounded[1], rounded[2]});
 }
 
 double shifted(double u, std::uint32_t shift) {
@@ -66,11 +72,12 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
 
 }  // namespace
 
-std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity) {
+std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
+                                   double tolerance) {
   std::vector<Source> found;
   Spectrum unoccluded = Spectrum::Zero(radiosity.cols());
   for (PatchIndex j = 0; j < mesh.size(); ++j) {
-    if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= 0) continue;
+    if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= tolerance) continue;
     const PatchCorners corners = mesh.corner_points(j);
     const std::span<const Point> points = corners;
     const bool is_cut = std::any_of(points.begin(), points.end(),
@@ -103,7 +110,9 @@ ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uin
 std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const Source> sources,
                                                      std::span<const RayCounts> counts, std::uint32_t stage) const {
   // 1. The rays of all sources
-  const std::uint64_t key = hash({seed_, key_of(sensor.point), key_of(sensor.normal), stage});
+  const TracingFrame frame = occluder_.frame();
+  const std::uint64_t key =
+      hash({seed_, key_of(frame.scale * (sensor.point - frame.centre)), key_of(sensor.normal), stage});
   std::vector<Segment> segments;
   std::vector<double> weights;
   for (std::size_t s = 0; s < sources.size(); ++s) {

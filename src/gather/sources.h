@@ -20,8 +20,10 @@ struct Source {
   double light_share = 0;      ///< of the sensor's unoccluded irradiance, mean of the bands that have any
 };
 
-/// Those before the sensor, in the order of the mesh, by the light of the given radiosity.
-std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity);
+/// Those before which the sensor stands by more than `tolerance`, in metres, and that are before it, in the order of
+/// the mesh, by the light of the given radiosity. No side of a polygon on which a sensor lies is before it.
+std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
+                                   double tolerance);
 
 /// What shadow rays to a source say.
 struct VisibleShare {

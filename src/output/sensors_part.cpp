@@ -11,6 +11,7 @@ nlohmann::ordered_json sensors_part(const SensorReport& sensors) {
     Json entry;
     entry["name"] = group.name;
     entry["sensors"] = group.sensors;
+    entry["inside_walls"] = group.inside_walls;
     entry["min"] = group.min;
     entry["mean"] = group.mean;
     entry["max"] = group.max;

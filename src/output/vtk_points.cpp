@@ -73,7 +73,7 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   data.AddArray(floats("irradiance", in_order(readings.irradiance, rows)));
   data.AddArray(floats("irradiance_standard_error", in_order(readings.standard_error, rows)));
   std::vector<double> values, errors, daylight;
-  std::vector<int> groups, sensors;
+  std::vector<int> groups, sensors, inside_walls;
   Field normals(static_cast<Eigen::Index>(rows.size()), 3);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SensorValue value = sensor_value(readings, rows[k].sensor);
@@ -82,6 +82,7 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
     if (readings.outside_by_sky) daylight.push_back(daylight_factor(readings, rows[k].sensor));
     groups.push_back(rows[k].group_number);
     sensors.push_back(static_cast<int>(rows[k].sensor));
+    inside_walls.push_back(is_inside_wall(readings, rows[k].sensor) ? 1 : 0);
     normals.row(static_cast<Eigen::Index>(k)) = rows[k].group->sensors[rows[k].k].normal.transpose();
   }
   const std::string name = readings.photometric ? "illuminance" : "weighted_irradiance";
@@ -90,6 +91,7 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   if (readings.outside_by_sky) data.AddArray(numbers<vtkFloatArray>("daylight_factor", daylight));
   data.AddArray(numbers<vtkIntArray>("group", groups));
   data.AddArray(numbers<vtkIntArray>("sensor", sensors));
+  data.AddArray(numbers<vtkIntArray>("inside_wall", inside_walls));
   data.AddArray(floats("normal", normals));
   data.SetActiveScalars(name.c_str());
 }

@@ -23,7 +23,7 @@ std::string header(const Readings& readings) {
   std::string names = "x,y,z,nx,ny,nz" + band_columns("E", bands) + band_columns("SE", bands);
   if (readings.photometric) names += ",E_v_lx,SE_v_lx";
   if (readings.outside_by_sky) names += ",daylight_factor_percent";
-  return names + ",group\n";
+  return names + ",inside_wall,group\n";
 }
 
 // In quotes where a comma, a quote or a line break would end it early (RFC 4180).
@@ -62,7 +62,7 @@ std::string table(std::span<const SensorGroup> groups, const Readings& readings)
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++sensor) {
       add_position(text, group, k);
       add_values(text, readings, sensor);
-      text << ',' << cell(group.name) << '\n';
+      text << ',' << is_inside_wall(readings, sensor) << ',' << cell(group.name) << '\n';
     }
   }
   assert(static_cast<Eigen::Index>(sensor) == readings.irradiance.rows());

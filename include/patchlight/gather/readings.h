@@ -4,6 +4,7 @@
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/sensor.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@ namespace patchlight {
 struct Readings {
   Field irradiance;
   Field standard_error;
+  std::vector<std::uint8_t> inside_wall{};   ///< per sensor: 1 where there is nothing to read, values are NaN; or empty
   bool photometric = false;                  ///< the lights are stated in lumens or lux: illuminance has a meaning
   std::optional<Spectrum> outside_by_sky{};  ///< irradiance of an unobstructed horizontal plane; given when a CIE
                                              ///< overcast sky is the only light: then there are daylight factors
@@ -27,6 +29,9 @@ struct SensorValue {
   double standard_error = 0;  ///< that of bands whose errors go together, as those of the same shadow rays do
 };
 
+/// True for a sensor inside a wall (place_sensors()): it has no part in statistics.
+bool is_inside_wall(const Readings& readings, std::size_t sensor);
+
 SensorValue sensor_value(const Readings& readings, std::size_t sensor);
 
 /// "lx" or "W/m^2".
@@ -36,10 +41,11 @@ const char* sensor_unit(const Readings& readings);
 /// must be given.
 double daylight_factor(const Readings& readings, std::size_t sensor);
 
-/// What the sensors of one group read, in sensor_unit().
+/// What the sensors of one group read, in sensor_unit(). Those inside walls count in the first two numbers alone.
 struct GroupReadings {
   std::string name;
   std::size_t sensors = 0;
+  std::size_t inside_walls = 0;
   double min = 0;
   double mean = 0;
   double max = 0;

@@ -2,6 +2,7 @@
 
 #include "patchlight/gather/doubtful_sensors.h"
 #include "patchlight/gather/readings.h"
+#include "patchlight/gather/sensor_places.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/sensor_grid.h"
 #include "patchlight/scene/sides.h"
@@ -143,6 +144,23 @@ TEST(ByGroup, TellsMinMeanMaxAndUniformity) {
   EXPECT_NEAR(in_lux[0].mean_daylight_factor.value(), 2, 1e-14);
 }
 
+TEST(ByGroup, LeavesOutWhatIsInsideWalls) {
+  const Sensor sensor{Point::Zero(), Vector::UnitZ()};
+  const std::vector<SensorGroup> groups = {{.name = "a", .sensors = {sensor, sensor, sensor}},
+                                           {.name = "b", .sensors = {sensor}}};
+  Readings readings = constant_readings({std::nan(""), 1, 3, std::nan("")});
+  readings.inside_wall = {1, 0, 0, 1};
+  readings.outside_by_sky = Spectrum::Constant(1, 10);
+  const std::vector<GroupReadings> found = by_group(groups, readings);
+  EXPECT_EQ(found[0].sensors, 3U);
+  EXPECT_EQ(found[0].inside_walls, 1U);
+  EXPECT_NEAR(found[0].mean, 2, 1e-15);
+  EXPECT_NEAR(found[0].uniformity, 0.5, 1e-15);
+  EXPECT_NEAR(found[0].mean_daylight_factor.value(), 20, 1e-13);
+  EXPECT_EQ(found[1].inside_walls, 1U);
+  EXPECT_EQ(found[1].mean, 0);
+}
+
 TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   Scene scene = furnished_room(0.5);
   SensorGroup group{.name = "desk", .sensors = {}, .file = "room.toml"};
@@ -158,7 +176,8 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   add(Point(1, 2.5, 0.8), Vector::UnitZ(), 6);      // in the plane of a side, beside it
   scene.sensors.push_back(group);
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found = doubtful_sensors(scene, kept_sides(scene, Sides::automatic), occluder);
+  const std::vector<std::string> found =
+      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
       << found[0];
@@ -169,7 +188,8 @@ TEST(DoubtfulSensors, ManyAreCounted) {
   Scene scene = furnished_room(0.5);
   scene.sensors.push_back({.name = "all", .sensors = std::vector<Sensor>(9, {Point(1.5, 1.4, 0.8), Vector::UnitZ()})});
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found = doubtful_sensors(scene, kept_sides(scene, Sides::automatic), occluder);
+  const std::vector<std::string> found =
+      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
   ASSERT_EQ(found.size(), 6U);
   EXPECT_EQ(found[5].rfind("4 more sensors", 0), 0U) << found[5];
 }

@@ -35,9 +35,9 @@ TEST(WritePoints, RepeatsTheInputAndAddsIrradiance) {
   const std::vector<SensorGroup> groups = {points({"0.10,0,1e-3,0,0,1", "1,2,3,0,-1,0"})};
   write_points(folder.path() / "points.csv", groups, readings);
   EXPECT_EQ(content_of(folder.path() / "points.csv"),
-            "x,y,z,nx,ny,nz,E_r,E_g,E_b,SE_r,SE_g,SE_b,group\n"
-            "0.10,0,1e-3,0,0,1,1,2.5,0.333333333,0,0.25,0,points\n"
-            "1,2,3,0,-1,0,0,1e-12,123456789,0,0,0,points\n");
+            "x,y,z,nx,ny,nz,E_r,E_g,E_b,SE_r,SE_g,SE_b,inside_wall,group\n"
+            "0.10,0,1e-3,0,0,1,1,2.5,0.333333333,0,0.25,0,0,points\n"
+            "1,2,3,0,-1,0,0,1e-12,123456789,0,0,0,0,points\n");
 }
 
 TEST(WritePoints, NumbersOtherBandsAndQuotesNames) {
@@ -46,7 +46,7 @@ TEST(WritePoints, NumbersOtherBandsAndQuotesNames) {
   groups[0].name = "a \"b\", c";
   write_points(folder.path() / "points.csv", groups, readings_of(Field::Constant(1, 2, 0.5)));
   EXPECT_EQ(content_of(folder.path() / "points.csv"),
-            "x,y,z,nx,ny,nz,E_1,E_2,SE_1,SE_2,group\n0,0,0,0,0,1,0.5,0.5,0,0,\"a \"\"b\"\", c\"\n");
+            "x,y,z,nx,ny,nz,E_1,E_2,SE_1,SE_2,inside_wall,group\n0,0,0,0,0,1,0.5,0.5,0,0,0,\"a \"\"b\"\", c\"\n");
 }
 
 TEST(WritePoints, PhotometricLightsGiveLuxAndAnOvercastSkyDaylightFactors) {
@@ -58,8 +58,8 @@ TEST(WritePoints, PhotometricLightsGiveLuxAndAnOvercastSkyDaylightFactors) {
   const std::vector<SensorGroup> groups = {rectangle_grid(Point(0, 0, 1), {Vector::UnitX(), Vector::UnitY()}, 1)};
   write_points(folder.path() / "points.csv", groups, readings);
   EXPECT_EQ(content_of(folder.path() / "points.csv"),
-            "x,y,z,nx,ny,nz,E_1,SE_1,E_v_lx,SE_v_lx,daylight_factor_percent,group\n"
-            "0.5,0.5,1,0,0,1,2,0,358,0,50,\n");
+            "x,y,z,nx,ny,nz,E_1,SE_1,E_v_lx,SE_v_lx,daylight_factor_percent,inside_wall,group\n"
+            "0.5,0.5,1,0,0,1,2,0,358,0,50,0,\n");
 }
 
 // VTK keeps vertices before polygons, whatever the order of the groups: every cell must still have its own value.
