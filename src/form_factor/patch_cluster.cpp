@@ -17,6 +17,9 @@ constexpr double plane_resolution = 1e-6;
 // On a plane with fewer patches than this, clusters are made with those of other planes.
 constexpr std::size_t least_on_plane = 6;
 
+// A model is no larger than so many times the root of its area, or some of it lies far away.
+constexpr double roomy = 10;
+
 using Members = std::vector<PatchIndex>;
 
 void set(LaneVectors& vectors, std::size_t lane, const Vector& value) {
@@ -109,7 +112,9 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
   if (mesh.size() == 0) return clusters;
   Box box;
   for (const PatchShape& shape : shapes) box.extend(shape.centroid);
-  const double unit = box.diagonal().norm() + shapes[0].radius;
+  // Patches far away from all others do not make it larger.
+  const double unit = std::min(box.diagonal().norm() + shapes[0].radius,
+                               roomy * std::sqrt(std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0)));
   Members others;
   const auto add = [&](Members& members, bool is_planar) {
     std::vector<Members> leaves;

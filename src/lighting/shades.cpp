@@ -3,6 +3,7 @@
 #include "patchlight/scene/triangulate.h"
 
 #include "lighting/lit_area.h"
+#include "scene/extent.h"
 
 #include <algorithm>
 #include <numeric>
@@ -79,7 +80,7 @@ bool lies_in(const Box& box, const HalfSpace& below) {
 }  // namespace
 
 Shades::Shades(const Scene& scene, const Coverings& coverings)
-    : tolerance_(in_plane * bounds(scene).diagonal().norm()),
+    : tolerance_(in_plane * extent_of(scene)),
       bands_(scene.materials.front().reflectance.size()),
       coverings_(coverings),
       transmittances_(scene.polygons.size()) {

@@ -3,6 +3,8 @@
 #include "patchlight/scene/coverings.h"
 #include "patchlight/scene/shells.h"
 
+#include "scene/extent.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -174,7 +176,7 @@ SceneReport survey(const Scene& scene) {
   report.open_edges = shells.boundary.size();
   for (const auto& [from, to] : shells.boundary) report.open_edge_length += (to - from).norm();
 
-  const double size = report.bounds.sizes().maxCoeff();
+  const double size = main_bounds(scene).sizes().maxCoeff();
   report.unit_guess = guess_unit(scene, size);
   report.usable = has_lamp(scene);
   report.problems = scene.problems;

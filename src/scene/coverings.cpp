@@ -2,6 +2,7 @@
 
 #include "patchlight/scene/triangulate.h"
 
+#include "scene/extent.h"
 #include "scene/problem_face.h"
 
 #include <algorithm>
@@ -128,7 +129,7 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
     boxes.push_back(faces.back().box);
   }
   const Eigen::KdBVH<double, 3, PolygonIndex> tree(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
-  Search search{scene, kept, faces, bounds(scene).diagonal().norm(), {}};
+  Search search{scene, kept, faces, extent_of(scene), {}};
   Eigen::BVIntersect(tree, tree, search);
   for (auto& covering : search.found.over) std::sort(covering.begin(), covering.end());
   return std::move(search.found);

@@ -1,8 +1,13 @@
 #include "scene/extent.h"
 
+#include "patchlight/scene/weld.h"
+
+#include "scene/simple_polygon.h"
+
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 
 namespace patchlight {
 namespace {
@@ -10,6 +15,12 @@ namespace {
 constexpr double largest_share = 0.125;
 constexpr double most = 0.6;
 constexpr int far_away = 100;
+
+// A face is a sliver when it is this much longer than wide.
+constexpr double sliver = 1e5;
+constexpr double largest_loss = 1e-6;   // of the area
+constexpr double largest_number = 0.2;  // of the faces
+constexpr double tenth = 0.1;
 
 struct Weighted {
   double value;
@@ -68,6 +79,14 @@ Corners weighted_corners(const Scene& scene) {
   return all;
 }
 
+// Would welding by so much make a line of a face that is none?
+bool collapses(const std::vector<Point>& corners, double distance) {
+  Box box;
+  for (const Point& corner : corners) box.extend(corner);
+  const double length = box.diagonal().norm();
+  return is_narrow(corners, distance) && !is_narrow(corners, length / sliver);
+}
+
 double quantile(const Corners& corners, const std::function<double(const Point&)>& value_at, double share) {
   std::vector<Weighted> values;
   for (std::size_t k = 0; k < corners.points.size(); ++k)
@@ -116,6 +135,32 @@ Box main_bounds(const Scene& scene) {
 }
 
 double extent_of(const Scene& scene) { return main_bounds(scene).diagonal().norm(); }
+
+double weld_distance(const Scene& scene) {
+  double distance = weld_distance(main_bounds(scene));
+  std::vector<double> areas;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) areas.push_back(area_vector(corner_points(scene, p)).norm());
+  const double cap = cap_of(areas);
+  double total = 0;
+  for (double& area : areas) total += area = std::min(area, cap);
+  const auto loses_much = [&] {
+    double area = 0;
+    double faces = 0;
+    for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+      if (!(areas[p] > 0) || !collapses(corner_points(scene, p), distance)) continue;
+      area += areas[p];
+      ++faces;
+    }
+    return area > largest_loss * total || faces > largest_number * static_cast<double>(areas.size());
+  };
+  // Below single precision of single precision there is no detail that is meant; below double precision none at all.
+  const Box main = main_bounds(scene);
+  const double resolved = weld_tolerance * weld_distance(main);
+  const double farthest = main.isEmpty() ? 0 : main.min().cwiseAbs().cwiseMax(main.max().cwiseAbs()).maxCoeff();
+  const double least = std::max(resolved, 4 * std::numeric_limits<double>::epsilon() * farthest);
+  while (distance > least && loses_much()) distance = std::max(least, tenth * distance);
+  return distance;
+}
 
 std::vector<PolygonIndex> far_polygons(const Scene& scene) {
   const Box main = main_bounds(scene);

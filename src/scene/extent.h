@@ -16,6 +16,11 @@ Box main_bounds(const Scene& scene);
 /// The diagonal of main_bounds() in metres: what tolerances are relative to.
 double extent_of(const Scene& scene);
 
+/// How near two vertices have to be to be one, in metres: weld_distance() of the main bounds, or by tenths as much less
+/// as it takes for no more than a millionth of the area, or a fifth of the faces, to be narrower than that without
+/// being slivers, a hundred thousand times as long as wide. Large polygons count as in main_bounds().
+double weld_distance(const Scene& scene);
+
 /// The polygons with a corner outside of main_bounds(), in order.
 std::vector<PolygonIndex> far_polygons(const Scene& scene);
 

@@ -4,6 +4,7 @@
 #include "patchlight/scene/weld.h"
 
 #include "scene/coincident.h"
+#include "scene/extent.h"
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
 
@@ -28,6 +29,22 @@ Scene number_faces(Scene scene) {
   return scene;
 }
 
+// A stray vertex tells nothing of how large details are.
+Scene report_far_faces(Scene scene) {
+  Faces far;
+  const Box main = main_bounds(scene);
+  double farthest = 0;
+  for (const PolygonIndex p : far_polygons(scene)) {
+    far.push_back(problem_face(scene, scene.polygons[p]));
+    for (const Point& corner : far.back().corners) farthest = std::max(farthest, main.exteriorDistance(corner));
+  }
+  std::ostringstream does;
+  does.precision(3);
+  does << "up to " << farthest << " m away from the rest of the model, which is " << main.sizes().maxCoeff()
+       << " m long: what is near is told by the rest alone; remove what is astray";
+  return with_problem(std::move(scene), ProblemKind::implausible_size, std::move(far), does.str());
+}
+
 // Keeps one vertex of those at one place, and only those that polygons use.
 Scene weld_vertices(Scene scene) {
   constexpr std::uint32_t unused = ~std::uint32_t{0};
@@ -41,7 +58,7 @@ Scene weld_vertices(Scene scene) {
     number[v] = static_cast<std::uint32_t>(used.size());
     used.push_back(scene.vertices[v]);
   }
-  const double distance = weld_distance(bounds(scene));
+  const double distance = weld_distance(scene);
   const std::vector<std::uint32_t> stands_for = welded(used, distance);
 
   std::size_t moved = 0;
@@ -101,7 +118,7 @@ std::vector<std::uint32_t> without_spikes(std::vector<std::uint32_t> corners, co
 }
 
 Scene clean_corners(Scene scene) {
-  const double width = weld_distance(bounds(scene));
+  const double width = weld_distance(scene);
   Faces repeated;
   for (Polygon& polygon : scene.polygons) {
     std::vector<std::uint32_t> kept = without_spikes(polygon.corners, scene.vertices, width);
@@ -116,7 +133,7 @@ Scene clean_corners(Scene scene) {
 
 // Leaves out polygons without area and cuts those that are not simple and planar.
 Scene make_simple(Scene scene) {
-  const double width = weld_distance(bounds(scene));
+  const double width = weld_distance(scene);
   Faces narrow, crossing, lost, bent;
   std::vector<Polygon> polygons;
   polygons.reserve(scene.polygons.size());
@@ -203,6 +220,7 @@ Scene report_shells(Scene scene) {
 Scene repair(Scene scene) {
   check_vertices(scene);
   scene = number_faces(std::move(scene));
+  scene = report_far_faces(std::move(scene));
   scene = weld_vertices(std::move(scene));
   scene = clean_corners(std::move(scene));
   scene = make_simple(std::move(scene));

@@ -1,5 +1,7 @@
 #include "patchlight/scene/sensor_grid.h"
 
+#include "scene/extent.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -67,7 +69,7 @@ std::vector<PolygonIndex> floor_of(const Scene& scene, std::span<const PolygonIn
     lowest = std::min(lowest, level.back().second);
   }
   std::vector<PolygonIndex> floor;
-  const double tolerance = one_height * bounds(scene).diagonal().norm();
+  const double tolerance = one_height * extent_of(scene);
   for (const auto& [p, height] : level) {
     if (height <= lowest + tolerance) floor.push_back(p);
   }

@@ -2,6 +2,8 @@
 
 #include "patchlight/scene/weld.h"
 
+#include "scene/extent.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -19,7 +21,7 @@ struct EdgeUse {
 
 // All edge uses, those of the same edge side by side.
 std::vector<EdgeUse> edge_uses(const Scene& scene) {
-  const std::vector<std::uint32_t> place = welded(scene.vertices, weld_distance(bounds(scene)));
+  const std::vector<std::uint32_t> place = welded(scene.vertices, weld_distance(scene));
   std::vector<EdgeUse> uses;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const auto& corners = scene.polygons[p].corners;

@@ -162,9 +162,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  Box box;
-  for (const Point& vertex : mesh.vertices) box.extend(vertex);
-  const Observatory observatory{mesh, occluder, box.diagonal().norm()};
+  const Observatory observatory{mesh, occluder, 1 / occluder.frame().scale};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());

@@ -3,6 +3,7 @@
 #include "patchlight/scene/triangulate.h"
 #include "patchlight/visibility/convex_hull.h"
 
+#include "scene/extent.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
@@ -96,7 +97,7 @@ struct Occluder::Tracer {
 Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings)
     : device(rtcNewDevice(nullptr)), left_out(left_out_by(which, scene)), shafts(scene, left_out) {
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
-  const Box box = bounds(scene);
+  const Box box = main_bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
   const bool some_meet_rays_alone = which == Blockers::inside_hull || which == Blockers::none;

@@ -1,6 +1,7 @@
 #include "patchlight/visibility/shaft.h"
 
 #include "base/target_clones.h"
+#include "scene/extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +83,7 @@ PATCHLIGHT_INLINE bool inside(const Slabs& slabs, const Plane& plane) {
 }  // namespace
 
 ShaftCuller::ShaftCuller(const Scene& scene, const std::vector<std::uint8_t>& left_out) {
-  const Box box = bounds(scene);
+  const Box box = main_bounds(scene);
   centre_ = box.center();
   scale_ = 1 / box.diagonal().norm();
   std::vector<Slabs> of_polygon;
