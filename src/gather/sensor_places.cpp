@@ -4,6 +4,7 @@
 
 #include "gather/outlines.h"
 #include "gather/walls.h"
+#include "scene/extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +57,7 @@ PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Outline> out
 std::vector<SensorPlace> place_sensors(const Scene& scene, const KeptSides& sides, const Occluder& occluder) {
   const std::vector<Outline> outlines = outlines_of(scene);
   const std::vector<Sensor> sensors = all_sensors(scene.sensors);
-  const double extent = bounds(scene).diagonal().norm();
+  const double extent = extent_of(scene);
   std::vector<SensorPlace> places(sensors.size());
   std::vector<Point> points(sensors.size());
   parallel_for(sensors.size(), [&](std::size_t k) {

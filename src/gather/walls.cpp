@@ -4,6 +4,8 @@
 #include "patchlight/scene/shells.h"
 #include "patchlight/scene/weld.h"
 
+#include "scene/extent.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -168,8 +170,8 @@ std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& side
                     outlines,
                     {sides, kept_sides(scene, Sides::automatic)},
                     shells_of(scene),
-                    welded(scene.vertices, weld_distance(bounds(scene))),
-                    rim_tolerance * bounds(scene).diagonal().norm(),
+                    welded(scene.vertices, weld_distance(scene)),
+                    rim_tolerance * extent_of(scene),
                     points_on_lamps(scene, outlines)};
 
   // 1. What each point has around it: sides that take no part, or a shell that may be a wall

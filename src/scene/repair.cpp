@@ -5,6 +5,7 @@
 
 #include "scene/coincident.h"
 #include "scene/extent.h"
+#include "scene/openings.h"
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
 
@@ -159,11 +160,17 @@ Scene make_simple(Scene scene) {
 
 Scene merge_coincident(Scene scene) {
   const Coincidence found = find_coincident(scene);
-  Faces duplicates, covered, two_sided;
+  Faces duplicates, covered, two_sided, opened;
   std::size_t other_material = 0;
   for (const Coincidence::Pair& pair : found.pairs) {
     Polygon& first = scene.polygons[pair.first];
     const Polygon& second = scene.polygons[pair.second];
+    const bool second_is_clear = is_opening(scene, pair.second);
+    if (second_is_clear != is_opening(scene, pair.first)) {
+      opened.push_back(problem_face(scene, second_is_clear ? first : second));
+      if (second_is_clear) first = second;
+      continue;
+    }
     if (!pair.same_front && !first.back_material) {
       two_sided.push_back(problem_face(scene, second));
       first.back_material = second.material;
@@ -184,6 +191,8 @@ Scene merge_coincident(Scene scene) {
   scene.polygons = std::move(kept);
   const std::string others =
       other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
+  scene = with_problem(std::move(scene), ProblemKind::overlapping_faces, std::move(opened),
+                       "at the place of a clear one: opened there");
   scene = with_problem(std::move(scene), ProblemKind::covered_lamp, std::move(covered),
                        "of lamps at the place of an earlier face that does not emit; the earlier face stays, so remove "
                        "it or move the lamp");
@@ -225,6 +234,7 @@ Scene repair(Scene scene) {
   scene = clean_corners(std::move(scene));
   scene = make_simple(std::move(scene));
   scene = merge_coincident(std::move(scene));
+  scene = with_openings_cut(std::move(scene));
   scene = report_shells(std::move(scene));
   scene.problems = worst_first(std::move(scene.problems));
   return scene;

@@ -1,0 +1,142 @@
+// Panes drawn on walls that are not cut: a clear face opens what it lies over.
+#include "patchlight/scene/repair.h"
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+const Eigen::Affine3d turned_a_little(Eigen::AngleAxisd(0.7, Vector(0.3, 1, -2).normalized()));
+
+// A room of 4 x 3 x 2.5 m under an overcast sky, with panes of transmittance 1 in the wall at high x: from y to y and z
+// to z each.
+struct Pane {
+  double from_y, to_y, from_z, to_z;
+};
+
+Quad quad_of(const Pane& pane) {
+  return {Point(4, pane.from_y, pane.from_z), Point(4, pane.from_y, pane.to_z), Point(4, pane.to_y, pane.to_z),
+          Point(4, pane.to_y, pane.from_z)};
+}
+
+Scene room_under_the_sky() {
+  Material clear = grey(0);
+  clear.transmittance = Spectrum::Ones(1);
+  Scene scene = empty_scene({grey(0.5), clear});
+  Sky sky;
+  sky.kind = SkyKind::cie_overcast;
+  sky.horizontal_irradiance = Spectrum::Constant(1, 100);
+  scene.sky = sky;
+  return scene;
+}
+
+Scene with_panes_drawn(const std::vector<Pane>& panes) {
+  Scene scene = with_box(room_under_the_sky(), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (const Pane& pane : panes) scene = with_quad(std::move(scene), quad_of(pane), 1);
+  return scene;
+}
+
+// The same with the wall made of strips beside the panes, which stand side by side between the same two heights.
+Scene with_wall_cut(const std::vector<Pane>& panes) {
+  Scene scene = room_under_the_sky();
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (k != 3) scene = with_quad(std::move(scene), faces[k]);
+  }
+  const double low = panes[0].from_z;
+  const double high = panes[0].to_z;
+  if (low > 0) scene = with_quad(std::move(scene), quad_of({0, 3, 0, low}));
+  scene = with_quad(std::move(scene), quad_of({0, 3, high, 2.5}));
+  double y = 0;
+  for (const Pane& pane : panes) {
+    scene = with_quad(with_quad(std::move(scene), quad_of({y, pane.from_y, low, high})), quad_of(pane), 1);
+    y = pane.to_y;
+  }
+  return with_quad(std::move(scene), quad_of({y, 3, low, high}));
+}
+
+// Mean irradiance of the floor, W/m^2.
+double floor_irradiance(Scene scene, Sides sides, const Eigen::Affine3d& placing, double metres_per_unit) {
+  scene = repair(moved(std::move(scene), placing));
+  scene.up = (placing.linear() * Vector::UnitZ()).normalized();
+  Request request;
+  request.max_edge = 0.4 * metres_per_unit;
+  request.sides = sides;
+  const Simulation simulation = simulate(scene, request);
+  double flux = 0;
+  double area = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (simulation.mesh.polygon[i] != 0 || simulation.mesh.side[i] != Side::front) continue;
+    flux += simulation.problem.area[i] * simulation.solution.irradiance(i, 0);
+    area += simulation.problem.area[i];
+  }
+  return flux / area;
+}
+
+// The sky's noise of two independent means over some 80 patches is well below 1 %; the meshes of the walls differ.
+void expect_opened(const std::vector<Pane>& panes) {
+  const double expected = floor_irradiance(with_wall_cut(panes), Sides::front, Eigen::Affine3d::Identity(), 1);
+  ASSERT_GT(expected, 1);
+  for (const Sides sides : {Sides::automatic, Sides::front}) {
+    EXPECT_NEAR(floor_irradiance(with_panes_drawn(panes), sides, Eigen::Affine3d::Identity(), 1) / expected, 1, 0.02);
+    const Eigen::Affine3d placing = turned_a_little * Eigen::Scaling(0.001);
+    EXPECT_NEAR(floor_irradiance(with_panes_drawn(panes), sides, placing, 0.001) / expected, 1, 0.02);
+  }
+}
+
+TEST(DrawnPane, OpensTheWall) { expect_opened({{1, 2, 0.8, 1.8}}); }
+
+TEST(DrawnPane, SeveralInOneWallOpenIt) {
+  expect_opened({{0.3, 0.9, 0.8, 1.8}, {1.1, 1.7, 0.8, 1.8}, {2, 2.8, 0.8, 1.8}});
+}
+
+TEST(DrawnPane, OneThatReachesTheFloorOpensTheWall) { expect_opened({{1, 2, 0, 2}}); }
+
+// A hole with a seam and the pane in it make a closed surface again, with an opening.
+TEST(DrawnPane, LeavesTheRoomClosed) {
+  const Scene scene = repair(with_panes_drawn({{0.3, 0.9, 0.8, 1.8}, {2, 2.8, 0.8, 1.8}}));
+  EXPECT_EQ(scene.polygons.size(), 8U);
+  const KeptSides dark = kept_sides(scene, Sides::automatic);
+  EXPECT_TRUE(dark.dark_solids.empty());
+  Scene by_night = scene;
+  by_night.sky.reset();
+  by_night.luminaires.resize(1);
+  by_night.luminaires[0].position = {2, 1.5, 2};
+  EXPECT_EQ(kept_sides(by_night, Sides::automatic).notes.size(), 0U)
+      << "light gets out: no outer side is left out for it";
+}
+
+// A pane with the corners of the wall, whichever comes first and whichever way it faces.
+TEST(DrawnPane, OfTheWallsSizeTakesItsPlace) {
+  const Pane whole{0, 3, 0, 2.5};
+  for (const bool turned : {false, true}) {
+    Scene scene = with_panes_drawn({whole});
+    if (turned) std::reverse(scene.polygons[6].corners.begin(), scene.polygons[6].corners.end());
+    for (const bool pane_first : {false, true}) {
+      if (pane_first) std::swap(scene.polygons[3], scene.polygons[6]);
+      const Scene repaired = repair(scene);
+      ASSERT_EQ(repaired.polygons.size(), 6U);
+      EXPECT_EQ(repaired.polygons[3].material, 1U);
+      EXPECT_FALSE(repaired.polygons[3].back_material);
+    }
+  }
+}
+
+// A small opaque sticker on a large pane stays.
+TEST(DrawnPane, DoesNotOpenWhatLiesOverIt) {
+  Scene scene = with_panes_drawn({{0.5, 2.5, 0.5, 2}});
+  scene = repair(with_quad(std::move(scene), quad_of({1, 1.2, 1, 1.2}), 0));
+  EXPECT_EQ(scene.polygons.size(), 8U);
+  EXPECT_EQ(scene.polygons[7].corners.size(), 4U);
+}
+
+}  // namespace
+}  // namespace patchlight
