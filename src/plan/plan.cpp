@@ -7,6 +7,8 @@
 #include "patchlight/plan/left_out_sides.h"
 #include "patchlight/plan/survey.h"
 
+#include "plan/luminaires_behind.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -80,6 +82,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
   if (!simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour) plan.lamp_colour = *facts.lamp_colour;
   plan.solver.every_band = simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour;
   for (std::string& note : notes_on_sun(scene)) plan.notes.push_back(std::move(note));
+  for (std::string& note : notes_on_luminaires_behind(scene)) plan.notes.push_back(std::move(note));
   if (request.kept_sides) {
     for (std::string& note : notes_on_left_out_sides(scene, *request.kept_sides, request.sides))
       plan.notes.push_back(std::move(note));

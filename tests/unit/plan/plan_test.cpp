@@ -46,6 +46,27 @@ TEST(MakePlan, SaysThatTheSunIsBelowTheHorizon) {
   EXPECT_EQ(plan.notes[0], "the sun is 30 degrees below the horizon: it gives no light");
 }
 
+TEST(MakePlan, NamesALuminaireJustBehindTheCeilingThatItShinesThrough) {
+  for (const bool inward : {true, false}) {
+    Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2.5), inward);
+    scene.luminaires.resize(1);
+    scene.luminaires[0].name = "downlight";
+    scene.luminaires[0].light = PointLight{Spectrum::Ones(1)};
+    const auto notes_at = [&](double height) {
+      scene.luminaires[0].position = {2, 1.5, height};
+      const std::vector<std::string> notes = make_plan(scene, {}).notes;
+      return std::count_if(notes.begin(), notes.end(), [](const std::string& note) {
+        return note.find("'downlight'") != std::string::npos && note.find("behind a face") != std::string::npos;
+      });
+    };
+    EXPECT_EQ(notes_at(2.5), 0);
+    EXPECT_EQ(notes_at(std::nextafter(2.5, 3)), 0);
+    EXPECT_EQ(notes_at(2.4995), 0) << "in the room";
+    EXPECT_EQ(notes_at(2.5005), 1) << "it lights the roof";
+    EXPECT_EQ(notes_at(2.502), 0) << "it is meant to";
+  }
+}
+
 TEST(MakePlan, OcclusionOnlyWhereSomethingCanStandBetween) {
   EXPECT_FALSE(decision(make_plan(cube_room(0.5, 1), {}), Effect::occlusion).simulate);
   EXPECT_TRUE(decision(make_plan(furnished_room(0.5), {}), Effect::occlusion).simulate);
