@@ -8,6 +8,7 @@
 #include "effects.h"
 #include "interest.h"
 #include "memory.h"
+#include "relative_errors.h"
 #include "solve_mesh.h"
 #include "stage_clock.h"
 #include "to_accuracy.h"
@@ -48,6 +49,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const Setting setting{lit, coverings, occluder, with, observer};
   Simulation result = refines(request) ? solve_to_accuracy(setting, planned, plan, clock).simulation
                                        : solve_mesh(setting, planned, plan, clock).simulation;
+  result.spaces = errors_by_space(lit, result);
   result.costs = clock.costs();
   return result;
 }

@@ -11,6 +11,8 @@
 #include "effects.h"
 #include "memory.h"
 #include "problem_of.h"
+#include "relative_errors.h"
+#include "solve_for_interest.h"
 #include "with_error_bars.h"
 
 #include <limits>
@@ -110,7 +112,11 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   // 4. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
   options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
-  simulation.solution = solver_as_planned(with.solve, plan)(*transport, simulation.problem, options, observer);
+  const SolveWith solve = solver_as_planned(with.solve, plan);
+  const Solve once = [&](const SolverOptions& by) { return solve(*transport, simulation.problem, by, observer); };
+  SolvedWith solved = solve_for_interest(setting, simulation, options, once);
+  simulation.plan.solver.relative_error = solved.relative_error;
+  simulation.solution = std::move(solved.solution);
   simulation.balance = energy_balance(simulation.problem, simulation.solution,
                                       plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
   clock.finish(Stage::solve);
@@ -143,19 +149,9 @@ SolvedMesh solve_mesh(const Setting& setting, const Request& request, const Plan
 }
 
 AccuracyStep accuracy_of(const SolvedMesh& solved) {
-  const Simulation& simulation = solved.simulation;
-  const ErrorBars& bars = *simulation.error_bars;
-  const auto relative = [&](const Field& bar) {
-    return relative_bar(bar, simulation.problem, simulation.solution, solved.interest);
-  };
-  return {.patches = simulation.mesh.size(),
-          .new_patches = simulation.mesh.size(),
-          .samples = simulation.plan.samples,
-          .mesh = relative(bars.mesh),
-          .form_factor = relative(bars.form_factor),
-          .solver = relative(bars.solver),
-          .total = relative(bars.total()),
-          .display = relative(bars.display)};
+  AccuracyStep step = errors_of(solved.simulation, solved.interest);
+  step.patches = step.new_patches = solved.simulation.mesh.size();
+  return step;
 }
 
 }  // namespace patchlight

@@ -26,6 +26,9 @@ constexpr double share_of_mesh = 0.7;
 constexpr double share_of_form_factors = 0.6;
 constexpr double share_of_solver = 0.02;
 
+// What the solver may leave of the light that is of interest.
+constexpr double part_of_solver = 0.1;
+
 // Shadow rays of a pair, more than which are not worth their time.
 constexpr int most_samples = 512;
 
@@ -214,6 +217,13 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = plan.accuracy.value_or(step.total / 2);
   if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
+  if (request.tolerance) {
+    // What a tolerance that was asked for leaves no mesh mends.
+    if (step.solver > accuracy) return std::nullopt;
+  } else {
+    plan.solver_part = part_of_solver * accuracy;
+    plan.solver.relative_error = std::min(plan.solver.relative_error, solved.simulation.plan.solver.relative_error);
+  }
   if (!plan.seconds && step.total > accuracy) require_within_reach(request, steps);
 
   const Refinement by = refinement(solved, accuracy);
@@ -237,7 +247,10 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 
 SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
   Search search{setting, request, plan};
-  if (plan.accuracy) search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
+  if (plan.accuracy && !request.tolerance) {
+    search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
+    search.plan.solver_part = part_of_solver * *plan.accuracy;
+  }
   MeshToSolve to_solve{first_mesh(setting.scene, plan), {}, {}, {}};
   for (;;) {
     require_memory(to_solve.mesh.patches.size(), request);

@@ -47,6 +47,13 @@ struct AccuracyStep {
   double cpu_seconds = 0;
 };
 
+/// The relative errors of the patches on one side of closed shells with openings, each as a share of the light that
+/// these patches reflect.
+struct SpaceErrors {
+  std::string space;    ///< "inside" or "outside"
+  AccuracyStep errors;  ///< with the number of patches; no seconds
+};
+
 /// A solved scene.
 struct Simulation {
   Plan plan;
@@ -55,8 +62,10 @@ struct Simulation {
   RadiosityProblem problem;
   Solution solution;
   EnergyBalance balance;
-  std::optional<ErrorBars> error_bars;  ///< when asked for
-  std::vector<AccuracyStep> accuracy;   ///< with error bars: every mesh, the last one is this one
+  std::optional<ErrorBars> error_bars;   ///< when asked for
+  std::vector<AccuracyStep> accuracy;    ///< with error bars: every mesh, the last one is this one
+  std::vector<SpaceErrors> spaces = {};  ///< with error bars, where closed shells with openings divide the patches of
+                                         ///< interest: inside and outside; else empty
   std::vector<StageCost> costs;
   Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };

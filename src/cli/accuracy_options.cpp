@@ -3,6 +3,7 @@
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
 
+#include <string>
 #include <vector>
 
 namespace patchlight::cli {
@@ -10,17 +11,17 @@ namespace patchlight::cli {
 void add_accuracy_options(CLI::App& command, Request& request) {
   add(command, "--accuracy", "ERROR",
       "relative error of the patches' mean radiosities, e.g. 1% or 0.01:\npatches and shadow rays are refined where it "
-      "pays until the error\nbars are below; begins with --patches, here 600 unless given, and\n--samples; default: "
-      "one "
-      "mesh",
+      "pays until the error\nbars are below; begins with --patches, here " +
+          std::to_string(first_patches) + " unless given, and\n--samples; default: one mesh",
       [&request](const std::string& text) { request.accuracy = relative_error("--accuracy", text); });
   add(command, "--time", "TIME",
       "refines for about so long, e.g. 30s or 2min, or less when\n--accuracy is reached; default: no limit",
       [&request](const std::string& text) { request.seconds = seconds("--time", text); });
   command
-      .add_option("--interest", request.interest,
-                  "material, object or group: the error is that of its patches,\nand refinement serves them; may be "
-                  "repeated; default: all")
+      .add_option(
+          "--interest", request.interest,
+          "material, object or group, or a side of one, e.g. room.inside:\nthe error is that of its patches, and "
+          "refinement serves them; may be\nrepeated; default: all")
       ->allow_extra_args(false)
       ->option_text("NAME");
   command.add_flag_callback(

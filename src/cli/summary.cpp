@@ -4,6 +4,7 @@
 
 #include "cli/text_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -35,14 +36,22 @@ std::string convergence(const Plan& plan, const Solution& solution) {
 
 std::string percent(double share, int digits = 2) { return rounded(100 * share, digits); }
 
+std::string parts(const AccuracyStep& step) {
+  return percent(step.total) + " %: mesh " + percent(step.mesh) + ", form factors " + percent(step.form_factor) +
+         ", solver " + percent(step.solver, 1) + "; drawn with one value a patch " + percent(step.display) + " %";
+}
+
 // How far off the patches' means may be, and what is drawn with them.
 std::string errors(const Simulation& simulation) {
   const AccuracyStep& step = simulation.accuracy.back();
   std::string on;
   for (const std::string& name : simulation.plan.interest) on += (on.empty() ? " on " : ", ") + name;
-  return "error of the patches' means" + on + " about " + percent(step.total) + " %: mesh " + percent(step.mesh) +
-         ", form factors " + percent(step.form_factor) + ", solver " + percent(step.solver, 1) +
-         "; drawn with one value a patch " + percent(step.display) + " %";
+  std::string text = "error of the patches' means" + on + " about " + parts(step);
+  for (const auto& [space, part] : simulation.spaces) {
+    text += "\n  " + space + ", " + std::to_string(part.patches) +
+            " patches, of the light that is reflected there: " + parts(part);
+  }
+  return text;
 }
 
 // The meshes on the way to an accuracy.
@@ -200,9 +209,14 @@ bool is_accurate(const Simulation& simulation) {
 std::string explain_not_accurate(const Simulation& simulation) {
   const AccuracyStep& step = simulation.accuracy.back();
   const bool by_mesh = step.mesh >= step.form_factor;
+  const bool by_solver = step.solver > std::max(step.mesh, step.form_factor);
   std::string text = "accuracy of " + percent(*simulation.plan.accuracy, 3) + " % NOT reached: the error is about " +
                      percent(step.total) + " % after " + rounded(step.seconds) + " s; most of it is from the " +
-                     (by_mesh ? "size of the patches" : "sampling of form factors") + ". ";
+                     (by_solver ? "solver"
+                      : by_mesh ? "size of the patches"
+                                : "sampling of form factors") +
+                     ". ";
+  if (by_solver) return text + "Give a smaller --tolerance, or none: then it is what the accuracy takes";
   if (simulation.plan.seconds) return text + "Give a longer --time, or more --memory if it ended before";
   return text + (by_mesh
                      ? "Begin with more --patches"

@@ -20,6 +20,16 @@ Json relative_errors(const Simulation& simulation) {
   return errors_of(simulation.accuracy.back());
 }
 
+Json relative_errors_by_space(const Simulation& simulation) {
+  if (simulation.spaces.empty()) return nullptr;
+  Json spaces;
+  for (const SpaceErrors& space : simulation.spaces) {
+    spaces[space.space] = errors_of(space.errors);
+    spaces[space.space]["patches"] = space.errors.patches;
+  }
+  return spaces;
+}
+
 Json accuracy_steps(const Simulation& simulation) {
   Json steps = Json::array();
   for (const AccuracyStep& step : simulation.accuracy) {

@@ -52,7 +52,7 @@ Json request_part(const Request& request) {
   part["sides"] = name_of(request.sides);
   part["solver"] = name_of(request.solver);
   part["relaxation"] = json_of(request.relaxation);
-  part["tolerance"] = request.tolerance;
+  part["tolerance"] = request.tolerance.value_or(default_tolerance);
   part["max_iterations"] = request.max_iterations;
   part["max_rows"] = json_of(request.max_rows);
   part["samples"] = request.samples;
@@ -287,6 +287,7 @@ void write_report(const std::filesystem::path& file, const Run& run) {
   report["energy_balance"] = energy_part(simulation.balance, simulation.transport.row_sum.size() > 0);
   report["solution"] = solution_part(simulation);
   report["relative_error"] = relative_errors(simulation);
+  report["relative_error_by_space"] = relative_errors_by_space(simulation);
   report["accuracy"] = accuracy_steps(simulation);
   report["costs"] = costs_part(simulation.costs);
   report["memory_peak_bytes"] = memory_peak_bytes();

@@ -52,7 +52,7 @@ Decision interreflection(const EffectFacts& facts, const Request& request) {
             "form factors of the lamps alone, and no equations"};
   }
   return {Effect::interreflection, true, "the highest reflectance is " + number(facts.highest_reflectance),
-          bounces(facts.highest_reflectance, request.tolerance)};
+          bounces(facts.highest_reflectance, request.tolerance.value_or(default_tolerance))};
 }
 
 std::string numbers_of(const std::vector<Eigen::Index>& bands) {

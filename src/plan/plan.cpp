@@ -127,7 +127,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.on_demand = request.on_demand;
   plan.close = request.close && !request.on_demand;
   plan.solver = {.solver = request.solver,
-                 .relative_error = request.tolerance,
+                 .relative_error = request.tolerance.value_or(default_tolerance),
                  .max_iterations = request.max_iterations,
                  .max_rows = request.max_rows,
                  .relaxation = request.relaxation};

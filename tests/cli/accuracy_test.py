@@ -14,6 +14,51 @@ ARRAYS = ("error_mesh", "error_form_factor", "error_total", "display_error", "er
 # Both sides of the plate and the lamp's front take part, and the inner sides of the room.
 AREA = 6 * 4 + 2 * 1 + 0.25
 
+OFFICE_MODEL = """mtllib office.mtl
+v 0 0 0
+v 4 0 0
+v 4 5 0
+v 0 5 0
+v 0 0 3
+v 4 0 3
+v 4 5 3
+v 0 5 3
+v -4 -6 -.2
+v 8 -6 -.2
+v 8 -.1 -.2
+v -4 -.1 -.2
+o room
+usemtl plaster
+f 1 2 3 4
+f 5 8 7 6
+f 2 6 7 3
+f 3 7 8 4
+f 4 8 5 1
+usemtl pane
+f 1 5 6 2
+o outside
+usemtl ground
+f 9 10 11 12
+"""
+OFFICE_MATERIALS = "newmtl plaster\nKd .6 .6 .6\nnewmtl pane\nKd .1 .1 .1\nnewmtl ground\nKd .2 .2 .2\n"
+OFFICE = """up = "z"
+
+[[model]]
+file = "office.obj"
+
+[[material]]
+name = "pane"
+transmittance = 0.8
+
+[sun]
+direction = [-0.3, -0.6, 0.6]
+illuminance = 5000
+
+[sky]
+kind = "overcast"
+illuminance = 4000
+"""
+
 
 def faces_of(ply):
     """The corners of every face of a binary PLY by `patchlight solve`."""
@@ -55,6 +100,26 @@ class AccuracyTest(ToolTest):
     def body(self, name):
         """All of a PLY but its header, which holds the command line."""
         return (self.folder / name).read_bytes().split(b"end_header\n", 1)[1]
+
+    def test_inside_and_outside_are_stated_apart_and_may_be_named(self):
+        """A closed room, one wall of which is a pane, on lit ground."""
+        self.write("office.toml", OFFICE)
+        self.write("office.obj", OFFICE_MODEL)
+        self.write("office.mtl", OFFICE_MATERIALS)
+        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--report", "report.json")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        for space in ("inside", "outside"):
+            self.assertRegex(done.stdout, rf"\n  {space}, \d+ patches, of the light that is reflected there: \S+ %")
+        spaces = json.loads((self.folder / "report.json").read_text())["relative_error_by_space"]
+        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--report", "report.json",
+                             "--interest", "room.inside")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertAlmostEqual(report["relative_error"]["total"], spaces["inside"]["total"], 9)
+        self.assertIsNone(report["relative_error_by_space"])
+        done = self.run_tool("solve", "office.toml", "--error-bars", "--interest", "house.inside")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("house.inside", done.stderr)
 
     def names(self):
         return {path.name for path in self.folder.iterdir()} - {"room.obj", "room.mtl"}

@@ -81,8 +81,8 @@ Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProb
 /// sqrt(3) of those inside a patch where the irradiance is linear.
 Field display_errors(const NestedMesh& mesh, const SolvedProblem& solved);
 
-/// The solver's bound |dB_i| / rho_i; for patches that reflect nothing the largest of the others. 0 where none is
-/// known.
+/// The solver's bound |dB_i| / rho_i; for patches that reflect nothing the largest of the others. Infinite where none
+/// is known.
 Field solver_errors(const SolvedProblem& solved);
 
 /// The problem for the parents of a mesh.

@@ -21,7 +21,8 @@ struct Request {
   Sides sides = Sides::automatic;
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
   Solver solver = Solver::cg;
-  double tolerance = 1e-6;                ///< the solver's relative error
+  std::optional<double> tolerance = {};   ///< the solver's relative error; left open default_tolerance, and with an
+                                          ///< accuracy what that takes
   int max_iterations = 1000;              ///< after which the solver gives up
   std::optional<double> max_rows = {};    ///< or, of progressive refinement, after so many rows, as a share of all
   std::optional<double> relaxation = {};  ///< of SOR; without it estimated
@@ -38,8 +39,9 @@ struct Request {
                                         ///< and samples are refined until the error bars are below. `patches` and
                                         ///< `samples` are where it starts
   std::optional<double> seconds = {};   ///< refine for so long instead, or at most
-  std::vector<std::string> interest = {};  ///< names of materials, objects or groups: the accuracy is that of their
-                                           ///< patches; none: of all
+  std::vector<std::string> interest = {};  ///< names of materials, objects or groups, or of a side of theirs, as
+                                           ///< "room.inside" and "room.outside": the accuracy is that of their patches;
+                                           ///< none: of all
   int threads = 0;                         ///< 0: all processors
   std::optional<double> memory;            ///< bytes that the run may take; without it 0.8 of the machine's memory
   std::vector<Effect> force = {};          ///< effects that are simulated whatever the scene is like
@@ -63,11 +65,16 @@ struct Plan {
   std::optional<double> seconds;
   std::vector<std::string> interest;
   SolverOptions solver;
+  std::optional<double> solver_part = {};  ///< what the solver may leave of the error of what is of interest: it is
+                                           ///< asked for a smaller relative error until it does
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else
                               ///< empty
   std::vector<std::string> notes;  ///< what was asked and cannot be
 };
+
+/// The solver's relative error when none is asked for.
+inline constexpr double default_tolerance = 1e-6;
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;

@@ -1,6 +1,6 @@
 #include "patchlight/verify/path_tracer.h"
 
-#include "support/scenes.h"
+#include "support/daylight_office.h"
 
 #include <array>
 #include <cmath>
@@ -19,29 +19,7 @@ constexpr double pi = std::numbers::pi;
 // Form factor of opposed unit squares at distance 1 (Howell C-11).
 constexpr double opposed = 0.19982489569838732;
 
-Spectrum watts(double value) { return Spectrum::Constant(1, value); }
-
-Material glass(double transmittance) {
-  Material material = grey(0);
-  material.transmittance = watts(transmittance);
-  return material;
-}
-
-// The same, turned and of another size: intensities go with the square of lengths, so that irradiances stay.
-Scene placed(Scene scene, double scale) {
-  const Eigen::AngleAxisd turn(0.7, Vector(1, 2, 3).normalized());
-  for (Point& vertex : scene.vertices) vertex = scale * (turn * vertex);
-  for (Luminaire& luminaire : scene.luminaires) {
-    luminaire.position = scale * (turn * luminaire.position);
-    if (auto* point = std::get_if<PointLight>(&luminaire.light)) point->intensity *= scale * scale;
-    if (auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) sphere->radius *= scale;
-  }
-  if (scene.sun) scene.sun->direction = turn * scene.sun->direction;
-  scene.up = turn * scene.up;
-  return scene;
-}
-
-std::array<Scene, 2> placings(const Scene& scene) { return {scene, placed(scene, 1e-3)}; }
+std::array<Scene, 2> placings(const Scene& scene) { return {scene, turned(scene, 1e-3)}; }
 
 PathEstimate on_front(const Scene& scene, PolygonIndex polygon) {
   const std::vector<Point> c = corner_points(scene, polygon);
@@ -100,7 +78,7 @@ TEST(PathLights, OneOfManyLuminairesStandsForAll) {
 TEST(PathLights, SunShinesThroughAClearFace) {
   // Through a clear ceiling of transmittance t the sun at the zenith gives E t on all of the floor.
   Scene scene = cube_room(0, 0);
-  scene.materials.push_back(glass(0.6));
+  scene.materials.push_back(named("glass", 0, 0.6));
   scene.polygons[1].material = 1;
   scene.sun = Sun{Vector::UnitZ(), watts(800)};
   expect_irradiance(scene, 0, 480, 1e-6);
@@ -113,7 +91,7 @@ TEST(PathLights, SkyIsSeenThroughHolesAndClearFaces) {
   // A uniform sky of radiance L over a black box whose ceiling is clear, or not there: pi L t F. Of 4,096 rays the
   // share F leaves: they scatter by no more than sqrt((1 - F) / F / 4096) = .031.
   Scene scene = cube_room(0, 0);
-  scene.materials.push_back(glass(0.7));
+  scene.materials.push_back(named("glass", 0, 0.7));
   scene.polygons[1].material = 1;
   Sky sky;
   sky.zenith_radiance = watts(3);
