@@ -18,6 +18,11 @@ namespace {
 
 std::string percent(double share) { return rounded(100 * share); }
 
+// An error that is not above what the reference is good to is told with a question mark.
+std::string judged(double error, const Study& study) {
+  return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");
+}
+
 std::string table(const Study& study) {
   std::vector<TextRow> rows{{"sweep", "patches", "samples", "tolerance", "seconds", "CPU", "MB", "error %", "display %",
                              "own %", "order", "front"}};
@@ -25,8 +30,9 @@ std::string table(const Study& study) {
     for (const StudySetting& setting : sweep.settings) {
       rows.push_back({sweep.name, std::to_string(setting.patches), std::to_string(setting.samples),
                       rounded(setting.tolerance, 1), rounded(seconds_of(setting)), rounded(cpu_seconds_of(setting)),
-                      rounded(setting.matrix_bytes / 1e6, 2), percent(setting.error), percent(setting.display_error),
-                      percent(setting.own_error), rounded(setting.order, 2), setting.on_time_front ? "*" : ""});
+                      rounded(setting.matrix_bytes / 1e6, 2), judged(setting.error, study),
+                      judged(setting.display_error, study), percent(setting.own_error), rounded(setting.order, 2),
+                      setting.on_time_front ? "*" : ""});
     }
   }
   return text_table(rows);
@@ -44,6 +50,7 @@ std::string facts(const Scene& scene, const Study& study) {
   }
   text << "\nerror: of the patch means; display: of the field, constant on each patch; own: due to the swept quantity "
           "alone; *: on the Pareto front of error and CPU seconds\n"
+       << (reference.bar > 0 ? "?: not known, as the reference is no better than that\n" : "")
        << "at the finest setting: mesh " << percent(study.parts.mesh) << " %, form factors "
        << percent(study.parts.form_factors) << " %, solver " << percent(study.parts.solver) << " %\n";
   return text.str();

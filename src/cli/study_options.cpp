@@ -35,7 +35,7 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
       });
   command.add_flag_callback(
       "--no-adaptive", [&options] { options.study.adaptive = false; },
-      "no solving to accuracies, with patches refined where it pays;\ndefault: 10, 3, 1 and 0.3 %, as far as twice "
+      "no solving to accuracies, with patches refined where it pays;\ndefault: 10, 3, 1 and 0.3 %, as far as "
       "--patches");
   command.add_flag_callback(
       "--no-estimators", [&options] { options.study.estimators = false; },

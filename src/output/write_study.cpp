@@ -108,13 +108,15 @@ const char* name_of(Finding finding) {
       return "extrapolated";
     case Finding::not_reached:
       return "not reached";
+    case Finding::not_known:
+      return "not known";
   }
   return "";
 }
 
 Json price_part(double error, const Study& study) {
   const Price price = price_of(error, study);
-  const bool known = price.finding != Finding::not_reached;
+  const bool known = price.finding != Finding::not_reached && price.finding != Finding::not_known;
   return {
       {"error", error}, {"finding", name_of(price.finding)}, {"cpu_seconds", known ? Json(price.cpu_seconds) : Json()}};
 }

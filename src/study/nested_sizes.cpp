@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/mesh/patch_lookup.h"
 #include "patchlight/mesh/refine.h"
 
 #include "memory.h"
@@ -85,6 +86,20 @@ NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) 
     result.sizes.push_back(std::move(all[k]));
   }
   return result;
+}
+
+PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other) {
+  constexpr double quarter = 0.25 * (1 + 1e-6);
+  const PatchLookup lookup(other);
+  for (;;) {
+    std::vector<std::uint8_t> cut(mesh.size(), 0);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      const auto there = lookup.patch_at(mesh.polygon[i], mesh.side[i], mesh.centroid[i]);
+      cut[i] = there && mesh.area[i] > quarter * other.area[*there] ? 1 : 0;
+    }
+    if (std::count(cut.begin(), cut.end(), 1) == 0) return mesh;
+    mesh = refine(mesh, cut).mesh;
+  }
 }
 
 }  // namespace patchlight

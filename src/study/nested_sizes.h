@@ -26,4 +26,8 @@ struct NestedSizes {
 /// `sizes` sizes at most. \throws MemoryError when the finer mesh would not fit.
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes);
 
+/// The mesh, cut until a patch has no more than a quarter of the area of the one of `other` at its centre. Both are cut
+/// from one tessellation: so each patch lies in one of `other`.
+PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other);
+
 }  // namespace patchlight

@@ -112,18 +112,21 @@ std::string text_of(const Price& price, PatchIndex patches) {
       return error + " costs about " + seconds + " CPU seconds (by the observed order " + rounded(price.order, 2) + ")";
     case Finding::not_reached:
       return error + " is not reached within " + std::to_string(patches) + " patches";
+    case Finding::not_known:
+      return "what " + error + " costs is not known, as the reference itself is no better than that";
   }
   return {};
 }
 
-std::string limit_of(const ErrorParts& parts) {
+std::string limit_of(const ErrorParts& parts, double bar) {
   const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
   if (!(largest > least_error)) return "nothing limits you";
   const std::string size = " (" + percent(largest, 2) + " of the light at the finest setting)";
   if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
   if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;
-  return "what limits you is the size of the patches" + size + ", most of all on `" + parts.worst_place + "`, " +
-         percent(parts.worst_share, 2) + " of the squared error";
+  const std::string known = parts.mesh > bar ? "" : ", by a reference that is itself good to " + percent(bar, 2);
+  return "what limits you is the size of the patches" + size + known + ", most of all on `" + parts.worst_place +
+         "`, " + percent(parts.worst_share, 2) + " of the squared error";
 }
 
 }  // namespace
@@ -146,7 +149,8 @@ double order_in_edge(const StudySetting& coarse, const StudySetting& fine, doubl
 }
 
 double patches_of(const StudyReference& reference) {
-  return reference.closed_form ? std::numeric_limits<double>::infinity() : static_cast<double>(reference.patches);
+  return reference.closed_form ? std::numeric_limits<double>::infinity()
+                               : static_cast<double>(reference.uniform_patches);
 }
 
 StudySweep with_orders(StudySweep sweep, double reference_patches) {
@@ -196,6 +200,7 @@ Study with_fronts(Study study) {
 
 Price price_of(double error, const Study& study) {
   const double bar = study.reference.bar;
+  if (bar >= error) return {error, Finding::not_known};
   const std::vector<StudySetting> front = time_front(study);
   const auto good = std::find_if(front.begin(), front.end(),
                                  [&](const StudySetting& setting) { return setting.error + bar <= error; });
@@ -213,7 +218,7 @@ std::string conclusion(const Study& study) {
   const PatchIndex patches =
       study.sweeps.empty() || study.sweeps.front().settings.empty() ? 0 : study.sweeps.front().settings.back().patches;
   return text_of(price_of(0.01, study), patches) + ", " + text_of(price_of(0.003, study), patches) + "; " +
-         limit_of(study.parts) + ".";
+         limit_of(study.parts, study.reference.bar) + ".";
 }
 
 }  // namespace patchlight

@@ -4,12 +4,14 @@
 #include "patchlight/study/price.h"
 #include "patchlight/study/reference.h"
 
+#include "memory.h"
 #include "study/bench.h"
 #include "study/error_parts.h"
 #include "study/sweeps.h"
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
@@ -20,18 +22,34 @@ struct Judge {
   StudyReference facts;
 };
 
-Judge judge_for(const Bench& bench, const Simulation& finest) {
+// A quarter of the patches' area of the finest size and of every adaptive mesh, so that means over the patches of all
+// can be taken of it. Adaptive meshes for which it would not fit into memory are given up, the finest first.
+SizedMesh mesh_of_reference(const Bench& bench, std::vector<Simulation>& adaptive) {
+  SizedMesh reference = bench.meshes.finer;
+  for (std::size_t k = 0; k < adaptive.size(); ++k) {
+    PatchMesh finer = finer_than(reference.mesh, adaptive[k].mesh);
+    if (static_cast<double>(memory_needed(finer.size(), bench.request)) > usable_memory(bench.request)) {
+      adaptive.resize(k);
+      break;
+    }
+    reference.mesh = std::move(finer);
+  }
+  return reference;
+}
+
+Judge judge_for(const Bench& bench, const Simulation& finest, std::vector<Simulation>& adaptive) {
   Judge judge;
   judge.reference.uniform = furnace_radiosity(finest.problem);
   judge.facts.closed_form = judge.reference.uniform && finest.transport.lost.closed();
   if (judge.facts.closed_form) return judge;
   Request asked = bench.request;
   asked.samples *= 4;
-  asked.tolerance = std::max(1e-12, 0.01 * asked.tolerance);
-  const Simulation finer = bench.run(bench.meshes.finer, asked);
+  asked.tolerance = std::max(1e-12, 0.01 * asked.tolerance.value_or(default_tolerance));
+  const Simulation finer = bench.run(mesh_of_reference(bench, adaptive), asked);
   judge.reference = reference_from(finer);
   const StudySetting setting = setting_of(finer);
   judge.facts.patches = setting.patches;
+  judge.facts.uniform_patches = bench.meshes.finer.mesh.size();
   judge.facts.samples = setting.samples;
   judge.facts.cpu_seconds = cpu_seconds_of(setting);
   judge.facts.converged = finer.solution.converged;
@@ -62,13 +80,15 @@ Study study(const Scene& scene, const Request& request, const StudyOptions& opti
   result.plan = finest.plan;
   result.trapped = finest.solution.trapped;
   if (!result.trapped.empty()) return result;
-  const Judge judge = judge_for(bench, finest);
+  std::vector<Simulation> adaptive;
+  if (options.adaptive) adaptive = solve_to_accuracies(bench);
+  const Judge judge = judge_for(bench, finest, adaptive);
   const Reference& reference = judge.reference;
   result.reference = judge.facts;
 
   // 2. One quantity at a time, all together, and the estimators.
   result.sweeps = competing_sweeps(bench, reference, tolerances);
-  if (options.adaptive) result.sweeps.push_back(adaptive_sweep(bench, reference));
+  if (options.adaptive) result.sweeps.push_back(adaptive_sweep(adaptive, reference));
   if (options.estimators) {
     for (StudySweep& sweep : estimator_sweeps(bench, reference)) result.sweeps.push_back(std::move(sweep));
   }

@@ -108,25 +108,31 @@ std::vector<StudySweep> competing_sweeps(const Bench& bench, const Reference& re
   return {std::move(usual), std::move(more), std::move(by_samples), sweep_tolerances(tolerances, reference)};
 }
 
-StudySweep adaptive_sweep(const Bench& bench, const Reference& reference) {
-  StudySweep sweep{"adaptive", Swept::patch_size, {}};
+std::vector<Simulation> solve_to_accuracies(const Bench& bench) {
+  std::vector<Simulation> solved;
   Request asked = bench.request;
   asked.patches.reset();
   asked.max_edge = bench.meshes.coarsest_edge / 2;
   asked.error_bars = true;
-  const std::size_t most = 2 * bench.finest().mesh.size();
+  const std::size_t most = bench.finest().mesh.size();
   for (const double accuracy : {0.1, 0.03, 0.01, 0.003}) {
     asked.accuracy = accuracy;
     asked.memory = std::min(usable_memory(bench.request), memory_needed(most, asked));
     try {
-      StudySetting setting = judged(simulate(bench.scene, asked, bench.observer), reference);
-      const bool new_one = sweep.settings.empty() || setting.patches != sweep.settings.back().patches ||
-                           setting.samples != sweep.settings.back().samples;
-      if (new_one) sweep.settings.push_back(std::move(setting));
+      Simulation simulation = simulate(bench.scene, asked, bench.observer);
+      const bool new_one = solved.empty() || simulation.mesh.size() != solved.back().mesh.size() ||
+                           simulation.plan.samples != solved.back().plan.samples;
+      if (new_one) solved.push_back(std::move(simulation));
     } catch (const MemoryError&) {
-      break;  // more than that is not to be judged by this reference
+      break;  // the reference of more than that would be too large
     }
   }
+  return solved;
+}
+
+StudySweep adaptive_sweep(const std::vector<Simulation>& solved, const Reference& reference) {
+  StudySweep sweep{"adaptive", Swept::patch_size, {}};
+  for (const Simulation& simulation : solved) sweep.settings.push_back(judged(simulation, reference));
   return sweep;
 }
 

@@ -20,8 +20,12 @@ Tolerances solve_to_tolerances(const Bench& bench);
 std::vector<StudySweep> competing_sweeps(const Bench& bench, const Reference& reference, const Tolerances& tolerances);
 
 /// As `solve --accuracy` does it: patches and samples are refined from the coarsest mesh on until an accuracy is met,
-/// as long as that takes no more than twice the patches of the finest size.
-StudySweep adaptive_sweep(const Bench& bench, const Reference& reference);
+/// as long as that takes no more than the patches of the finest size. Their meshes are cut from that of the bench's
+/// coarsest size.
+std::vector<Simulation> solve_to_accuracies(const Bench& bench);
+
+/// The same as a sweep.
+StudySweep adaptive_sweep(const std::vector<Simulation>& solved, const Reference& reference);
 
 /// The estimators of form factors on a small mesh, which do not compete.
 std::vector<StudySweep> estimator_sweeps(const Bench& bench, const Reference& reference);

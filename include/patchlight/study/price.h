@@ -20,7 +20,7 @@ StudySweep with_orders(StudySweep sweep, double reference_patches);
 /// patches, by the order observed from two sizes before on, taken as no less than 1/2 and no more than 2.
 double richardson_bar(const StudySweep& by_size, double reference_patches);
 
-/// The number of its patches; infinite for the closed form.
+/// The number of patches that its mesh has at least the fineness of a uniform one of; infinite for the closed form.
 double patches_of(const StudyReference& reference);
 
 /// Which of some points (cost, error) are on the Pareto front: no other one is at least as good in both and better in
@@ -35,7 +35,8 @@ enum class Finding {
   interpolated,  ///< between two settings of the front, in logarithms
   at_most,       ///< the cheapest setting is good enough
   extrapolated,  ///< beyond the finest mesh, by the observed order, no farther than 16 times its patches
-  not_reached    ///< farther, or no order is known
+  not_reached,   ///< farther, or no order is known
+  not_known      ///< the reference's own error is as large
 };
 
 /// What an error costs.

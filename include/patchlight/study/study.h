@@ -49,8 +49,9 @@ struct ErrorParts {
 struct StudyReference {
   bool closed_form = false;  ///< the furnace: nothing was computed
   PatchIndex patches = 0;
+  PatchIndex uniform_patches = 0;  ///< before it was cut where adaptive meshes are finer
   int samples = 0;
-  double bar = 0;  ///< its own error, by Richardson's extrapolation from two coarser ones
+  double bar = 0;  ///< its own error, by Richardson's extrapolation from two coarser ones: what is below is not known
   double cpu_seconds = 0;
   bool converged = true;
 };
@@ -73,9 +74,9 @@ struct StudyOptions {
 /// Solves a scene in many ways, one quantity changed at a time from the setting that `request` asks for: patches from
 /// coarser ones up to its number, with its samples and with four times as many, samples around its number, tolerances
 /// down to its own; and the estimators of form factors on a small mesh, on which they do not compete. The reference is
-/// the closed form where there is one (a closed room with E = 1 - rho), else a solution with half the edges, about four
-/// times the patches, and four times the samples. \throws InputError, MemoryError when the reference does not fit,
-/// Cancelled.
+/// the closed form where there is one (a closed room with E = 1 - rho), else a solution with half the edges of the
+/// finest size and, wherever adaptive meshes are, with a quarter of their patches' area, and four times the samples.
+/// \throws InputError, MemoryError when the reference does not fit, Cancelled.
 Study study(const Scene& scene, const Request& request, const StudyOptions& options = {},
             const Observer& observer = {});
 

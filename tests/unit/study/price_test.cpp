@@ -115,6 +115,21 @@ TEST(Price, CountsTheBarOfTheReference) {
   EXPECT_NEAR(price_of(0.025, study).cpu_seconds, 1, 1e-9);  // 2 % and .5 %
 }
 
+TEST(Price, IsNotKnownWhereTheReferenceIsNoBetter) {
+  // An error of 1.9 % against a reference that is itself good to 4.55 %: whether 1 % is near nobody can tell.
+  Study study = made_up(2, 0.019);
+  study.reference.bar = 0.0455;
+  EXPECT_EQ(price_of(0.01, study).finding, Finding::not_known);
+  EXPECT_EQ(price_of(0.0455, study).finding, Finding::not_known);
+  EXPECT_NE(price_of(0.1, study).finding, Finding::not_known);
+  EXPECT_EQ(
+      conclusion(study),
+      "what 1 % costs is not known, as the reference itself is no better than that, what 0.3 % costs is not known, "
+      "as the reference itself is no better than that; what limits you is the size of the patches (1.9 % of the "
+      "light at the finest setting), by a reference that is itself good to 4.5 %, most of all on `floor`, 50 % of "
+      "the squared error.");
+}
+
 TEST(Conclusion, SaysPricesAndWhatLimits) {
   EXPECT_EQ(conclusion(made_up(1, 0.01)),
             "1 % costs 16 CPU seconds here, 0.3 % costs about 1975 CPU seconds (by the observed order 1); what limits "

@@ -1,0 +1,48 @@
+#include "study/nested_sizes.h"
+
+#include "patchlight/mesh/patch_lookup.h"
+#include "patchlight/simulate.h"
+
+#include "support/daylight_office.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+TEST(FinerThan, HasFourPatchesOrMoreInEachOfBothMeshes) {
+  // Cut where a furnished room needs it, and a uniform mesh: means over the patches of both can be taken without an
+  // error of their own. In metres, and turned in millimetres.
+  for (const double unit : {1.0, 1e-3}) {
+    const Scene scene = turned(furnished_room(0.7), unit);
+    Request request;
+    request.patches = 600;
+    request.sides = Sides::front;
+    const NestedSizes sizes = nested_sizes(scene, request, 3);
+    Request asked = request;
+    asked.patches.reset();
+    asked.max_edge = sizes.coarsest_edge / 2;
+    asked.accuracy = 0.02;
+    const PatchMesh adaptive = simulate(scene, asked).mesh;
+    const PatchMesh finer = finer_than(sizes.finer.mesh, adaptive);
+    EXPECT_GT(finer.size(), sizes.finer.mesh.size());
+    for (const PatchMesh* mesh : {&adaptive, &sizes.sizes.back().mesh}) {
+      const PatchLookup lookup(*mesh);
+      for (PatchIndex i = 0; i < finer.size(); ++i) {
+        const PatchCorners corners = finer.corner_points(i);
+        const auto middle = lookup.patch_at(finer.polygon[i], finer.side[i], finer.centroid[i]);
+        ASSERT_TRUE(middle);
+        EXPECT_LT(finer.area[i], 0.2501 * mesh->area[*middle]);
+        for (int k = 0; k < corners.count; ++k) {
+          const Point near_corner = 0.999 * corners.points[static_cast<std::size_t>(k)] + 0.001 * finer.centroid[i];
+          EXPECT_EQ(lookup.patch_at(finer.polygon[i], finer.side[i], near_corner), middle);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace patchlight
