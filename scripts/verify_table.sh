@@ -13,7 +13,7 @@ tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 
 echo "| model, options | patches | paths | CPU s | error bars | z, rms | mean | chi-square | verdict |"
 echo "|---|---|---|---|---|---|---|---|---|"
-# row MODEL PATHS OPTIONS ...: one line; a verdict that disagrees is exit code 5.
+# row MODEL PATHS OPTIONS ...: one line; a verdict other than that both agree is exit code 5.
 row() {
   local json="$out/$1_$2_${*: -1}.json"
   TIMEFORMAT=%U
@@ -23,11 +23,13 @@ row() {
 import re, sys
 model, paths, cpu, text, options = sys.argv[1:]
 said = open(text).read()
-z, mean = re.search(r"root mean square (\S+) .*mean difference (\S+) %", said).groups()
+z = re.search(r"root mean square (\S+) ", said)[1]
+mean = re.search(r"mean difference (\S+) %", said)[1]
 bars = re.search(r"the patches, (\S+) % as a whole", said)[1]
-chi, p = re.search(r"chi-square (\S+) of .* p = (\S+)", said).groups()
+chi = re.search(r"chi-square (\S+) of", said)[1]
+p = re.search(r" p = ([0-9.e+-]+)", said)[1]
 patches = re.search(r"of (\d+) patches, \d+ paths", said)[1]
-verdict = f"agrees, p = {p}" if "\nagrees" in said else "disagrees"
+verdict = re.search(r"\n(agrees|disagrees|inconclusive):", said, re.IGNORECASE)[1].lower() + f", p = {p}"
 print(f"| {model} {options} | {patches} | {paths} | {cpu} | {bars} % | {z} | {mean} % | {chi} | {verdict} |")
 PY
 }

@@ -10,7 +10,8 @@ enum ExitCode : int {
   not_converged = 3,      ///< the solver did not reach the tolerance, or the error bars not the accuracy that was asked
                           ///< for; the results are written all the same
   out_of_memory = 4,      ///< the work would need more memory than there is
-  validation_failed = 5,  ///< a result differs from the known or traced one by more than its error bar
+  validation_failed = 5,  ///< a result differs from the known or traced one by more than its error bar, or the bars are
+                          ///< so wide that no difference could show
   output_error = 6,       ///< a result cannot be written
   internal_error = 70,    ///< a defect of patchlight
   interrupted_run = 130   ///< stopped by Ctrl-C or SIGTERM; nothing half-written is left

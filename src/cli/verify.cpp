@@ -81,15 +81,34 @@ std::string bars(const std::optional<double>& bar, const Simulation& simulation)
          rounded(100 * errors.solver, 1) + ")";
 }
 
+// What the differences of a part come to.
+std::string sums_of(const VerifiedPart& part) {
+  const bool all = part.name == "all";
+  Eigen::Index band = 0;
+  part.offset.abs().maxCoeff(&band);
+  std::ostringstream text;
+  text << std::setprecision(3) << (all ? "" : part.name + ": ") << "chi-square " << part.chi_square.maxCoeff() << " of "
+       << part.rows.size() << " patches in the worst band; mean difference "
+       << rounded(100 * part.mean_difference[band], 3) << " %, " << part.offset[band]
+       << " of its standard errors; bars " << rounded(100 * part.width, 2) << " % of the light\n";
+  return text.str();
+}
+
 std::string verdict(const Verification& verification, const std::string& granted) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
-       << root_mean_square(deviations_by_noise(verification)) << " (1 is noise); mean difference "
-       << rounded(100 * (verification.irradiance.sum() / verification.paths.irradiance.sum() - 1), 3) << " %\n"
-       << (verification.agrees ? "agrees" : "DISAGREES") << ": with " << granted << ", chi-square "
-       << verification.chi_square.maxCoeff() << " of " << verification.patches.size()
-       << " patches in the worst band, p = " << verification.probability << (verification.agrees ? " >= " : " < ")
-       << least_probability << "\n";
+       << root_mean_square(deviations_by_noise(verification)) << " (1 is noise)\n";
+  for (const VerifiedPart& part : verification.parts) text << sums_of(part);
+  const bool differs = verification.verdict == Verdict::disagrees;
+  const char* const words[] = {"agrees", "DISAGREES", "INCONCLUSIVE"};
+  text << words[static_cast<std::size_t>(verification.verdict)] << ": with " << granted
+       << ", p = " << verification.probability << (differs ? " < " : " >= ") << least_probability;
+  if (verification.verdict == Verdict::inconclusive) {
+    text << ", but bars above " << rounded(100 * widest_bar, 2)
+         << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
+            "what scatters";
+  }
+  text << "\n";
   return text.str();
 }
 
@@ -130,7 +149,7 @@ ExitCode verify(const VerifyArguments& arguments) {
             << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
             << " s; irradiance in W/m^2\n"
             << verdict(verification, bars(arguments.bar, simulation)) << std::flush;
-  return verification.agrees ? good : validation_failed;
+  return verification.verdict == Verdict::agrees ? good : validation_failed;
 }
 
 }  // namespace patchlight::cli

@@ -28,11 +28,22 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["version"] = version();
   json["command_line"] = provenance.command_line;
   json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}};
-  json["agrees"] = verification.agrees;
+  json["verdict"] = name_of(verification.verdict);
+  json["agrees"] = verification.verdict == Verdict::agrees;
   json["probability"] = verification.probability;
   json["least_probability"] = least_probability;
   json["relative_error"] = relative_errors(simulation);
-  json["chi_square"] = list(verification.chi_square);
+  json["relative_error_by_space"] = relative_errors_by_space(simulation);
+  json["widest_bar"] = widest_bar;
+  json["parts"] = Json::array();
+  for (const VerifiedPart& part : verification.parts) {
+    json["parts"].push_back({{"part", part.name},
+                             {"checked", part.rows.size()},
+                             {"chi_square", list(part.chi_square)},
+                             {"mean_difference", list(part.mean_difference)},
+                             {"offset", list(part.offset)},
+                             {"width", part.width}});
+  }
   json["patches"] = mesh.size();
   json["paths_per_patch"] = verification.paths.paths;
   json["rays"] = verification.paths.rays;

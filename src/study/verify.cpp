@@ -3,6 +3,8 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
+#include "spaces.h"
+
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cassert>
@@ -13,19 +15,46 @@
 namespace patchlight {
 namespace {
 
+// Patches of one space: 1 for each, else 0.
+struct Space {
+  std::string name;
+  Eigen::ArrayXd holds;
+};
+
+std::vector<Space> spaces_of(const Scene& scene, const Simulation& simulation) {
+  const Eigen::ArrayXd inside = inside_shells(scene, simulation.mesh, Dividing::with_openings).array();
+  const double count = inside.sum();
+  if (count == 0 || count == static_cast<double>(inside.size())) return {{"all", Eigen::ArrayXd::Ones(inside.size())}};
+  return {{"inside", inside}, {"outside", 1 - inside}};
+}
+
 // Without replacement, in proportion to the exposed area: those with the largest log(u) / area, u uniform in (0, 1)
 // (Efraimidis and Spirakis 2006).
-std::vector<PatchIndex> choose_by_area(const Eigen::VectorXd& area, std::size_t count, std::uint64_t seed) {
+std::vector<PatchIndex> choose_by_area(const Eigen::VectorXd& area, const Space& space, std::size_t count,
+                                       std::uint64_t seed) {
   std::vector<std::pair<double, PatchIndex>> keys;
   for (PatchIndex i = 0; i < static_cast<PatchIndex>(area.size()); ++i) {
+    if (space.holds[i] == 0) continue;
     const double u = (hash({seed, 0x63686f6f7365, i}) + 0.5) * 0x1p-32;
     keys.emplace_back(-std::log(u) / area[i], i);
   }
   std::sort(keys.begin(), keys.end());
   std::vector<PatchIndex> chosen;
   for (std::size_t k = 0; k < std::min(count, keys.size()); ++k) chosen.push_back(keys[k].second);
-  std::sort(chosen.begin(), chosen.end());
   return chosen;
+}
+
+// As many of each space.
+std::vector<PatchIndex> choose(const Eigen::VectorXd& area, const std::vector<Space>& spaces,
+                               const VerifyOptions& options) {
+  const std::size_t each = (options.checked + spaces.size() - 1) / spaces.size();
+  std::vector<PatchIndex> all;
+  for (const Space& space : spaces) {
+    const std::vector<PatchIndex> chosen = choose_by_area(area, space, each, options.seed);
+    all.insert(all.end(), chosen.begin(), chosen.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 std::vector<PathReceiver> receivers_of(const PatchMesh& mesh, const std::vector<PatchIndex>& patches) {
@@ -47,7 +76,88 @@ double upper_tail(double chi_square, std::size_t degrees) {
   return boost::math::gamma_q(static_cast<double>(degrees) / 2, chi_square / 2);
 }
 
+// That of a normal deviate this far from 0 or farther, either way.
+double both_tails(double deviate) { return std::isnan(deviate) ? 0 : std::erfc(std::abs(deviate) / std::sqrt(2.0)); }
+
+// a / b per band; 0 where nothing is over nothing.
+Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (a == 0).select(a, a / b); }
+
+Eigen::ArrayXd sums(const Field& values) { return values.colwise().sum().transpose(); }
+
+// The variance of Student's t beside that of the noise which batches tell. Of n paths that met no light the bound of 95
+// % on the share that would have is 3 / n (Hanley and Lippman-Hand 1983): of the brightest light that was traced.
+Field variance_of(const PathEstimate& paths) {
+  constexpr double degrees = path_batches - 1;
+  const Field noise = paths.standard_error.square() * (degrees / (degrees - 2));
+  if (noise.rows() == 0) return noise;
+  const Spectrum of_none = (3 * paths.irradiance.colwise().maxCoeff() / paths.paths).square();
+  return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
+}
+
+Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
+  Field chosen(static_cast<Eigen::Index>(rows.size()), field.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = field.row(rows[k]);
+  return chosen;
+}
+
+VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
+                     const FieldView& bars) {
+  VerifiedPart part{.name = space.name, .rows = {}, .chi_square = {}, .mean_difference = {}, .offset = {}};
+  for (std::size_t k = 0; k < result.patches.size(); ++k) {
+    if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
+  }
+  const Field solved = rows_at(result.irradiance, part.rows);
+  const Field traced = rows_at(result.paths.irradiance, part.rows);
+  const Field bar = rows_at(result.bar, part.rows);
+  const Field variance = rows_at(variance_of(result.paths), part.rows);
+  part.chi_square = sums(rows_at(deviations(result), part.rows).square());
+
+  // The common offset. Bars of different patches hang together, one cannot say how: as if they were the same.
+  const Eigen::ArrayXd difference = sums(solved - traced);
+  part.mean_difference = ratio(difference, sums(traced));
+  part.offset = ratio(difference, (sums(variance) + sums(bar).square()).sqrt());
+
+  // How much that would grant.
+  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(space.holds.matrix());
+  const Eigen::ArrayXd of_checked = ratio(sums(bar.square()).sqrt(), sums(traced.square()).sqrt());
+  const Eigen::ArrayXd of_all = ratio(area_norm(bars, area), area_norm(simulation.solution.irradiance, area));
+  const Eigen::ArrayXd of_noise = ratio(sums(variance).sqrt(), sums(traced));
+  part.width = of_checked.max(of_all).max(of_noise).maxCoeff();
+  return part;
+}
+
+// Bands and parts go together, so that they are not added up: the least likely one decides, among so many (Bonferroni).
+Verification judged(Verification result) {
+  double least = 1;
+  double tests = 0;
+  bool wide = false;
+  for (const VerifiedPart& part : result.parts) {
+    for (Eigen::Index band = 0; band < part.chi_square.size(); ++band) {
+      least = std::min({least, upper_tail(part.chi_square[band], part.rows.size()), both_tails(part.offset[band])});
+      tests += 2;
+    }
+    wide = wide || !(part.width <= widest_bar);
+  }
+  result.probability = std::min(1.0, tests * least);
+  result.verdict = result.probability < least_probability ? Verdict::disagrees
+                   : wide                                 ? Verdict::inconclusive
+                                                          : Verdict::agrees;
+  return result;
+}
+
 }  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::disagrees:
+      return "disagrees";
+    case Verdict::inconclusive:
+      return "inconclusive";
+  }
+  return "";
+}
 
 Field irradiance_bar(const Simulation& simulation, double relative) {
   const Solution& solution = simulation.solution;
@@ -63,8 +173,7 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
 }
 
 Field deviations(const Verification& verification) {
-  constexpr double degrees = path_batches - 1;
-  const Field noise = verification.paths.standard_error.square() * (degrees / (degrees - 2));
+  const Field noise = variance_of(verification.paths);
   const Field difference = verification.irradiance - verification.paths.irradiance;
   const Field none = Field::Zero(difference.rows(), difference.cols());
   return (difference == 0).select(none, difference / (noise + verification.bar.square()).sqrt());
@@ -79,19 +188,16 @@ Field deviations_by_noise(const Verification& verification) {
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options, const Observer& observer) {
   assert(bar.rows() == simulation.mesh.size());
+  const std::vector<Space> spaces = spaces_of(scene, simulation);
   Verification result;
-  result.patches = choose_by_area(simulation.problem.area, options.checked, options.seed);
+  result.patches = choose(simulation.problem.area, spaces, options);
   result.irradiance = rows_of(simulation.solution.irradiance, result.patches);
   result.bar = rows_of(bar, result.patches);
   result.paths = trace_irradiance(scene, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
                                   {.paths = options.paths, .seed = options.seed}, observer);
 
-  // Bands go together, so that they are not added up: the worst one decides, among so many (Bonferroni).
-  result.chi_square = deviations(result).square().colwise().sum().transpose();
-  const double bands = static_cast<double>(result.chi_square.size());
-  result.probability = std::min(1.0, bands * upper_tail(result.chi_square.maxCoeff(), result.patches.size()));
-  result.agrees = result.probability >= least_probability;
-  return result;
+  for (const Space& space : spaces) result.parts.push_back(part_of(space, result, simulation, bar));
+  return judged(std::move(result));
 }
 
 }  // namespace patchlight

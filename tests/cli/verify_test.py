@@ -27,8 +27,10 @@ class VerifyTest(ToolTest):
                 error, bar = patch["standard_error_W_m2"][band], patch["bar_W_m2"][band]
                 self.assertAlmostEqual(patch["z"][band], (ours - traced) / error, 6)
                 chi_square[band] += (ours - traced) ** 2 / (error ** 2 * 31 / 29 + bar ** 2)
+        part, = facts["parts"]
+        self.assertEqual((part["part"], part["checked"]), ("all", 64))
         for band in range(3):
-            self.assertAlmostEqual(facts["chi_square"][band] / chi_square[band], 1, 9)
+            self.assertAlmostEqual(part["chi_square"][band] / chi_square[band], 1, 9)
         # The worst patches come first, each with its place.
         rows = done.stdout.splitlines()[1:11]
         sizes = [abs(float(row.split()[-1])) for row in rows]
@@ -47,6 +49,15 @@ class VerifyTest(ToolTest):
         for patch in facts["checked"]:
             for ours, bar in zip(patch["irradiance_W_m2"], patch["bar_W_m2"]):
                 self.assertGreaterEqual(bar, 0.05 * ours)
+
+    def test_wide_bars_are_inconclusive(self):
+        """Bars of 45 % grant a coarse mesh whatever it is off by."""
+        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "45%", "--paths", 256, "--json", "out.json")
+        self.assertEqual(done.returncode, DIFFERS, done.stdout)
+        self.assertRegex(done.stdout, r"INCONCLUSIVE: with a bar of 45 % .*, but bars above 10 % of the light")
+        facts = json.loads((self.folder / "out.json").read_text())
+        self.assertEqual((facts["verdict"], facts["agrees"]), ("inconclusive", False))
+        self.assertGreater(facts["parts"][0]["width"], facts["widest_bar"])
 
     def test_too_few_patches_disagree(self):
         """Without a bar the error of a coarse mesh is many times the noise."""

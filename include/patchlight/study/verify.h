@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -12,10 +13,32 @@ namespace patchlight {
 /// Agreement means that a right solution would differ by so much or more with at least this probability.
 inline constexpr double least_probability = 0.01;
 
+/// And says nothing where bars, or what the noise of the paths leaves of the mean, are a larger share of the light.
+inline constexpr double widest_bar = 0.1;
+
+enum class Verdict : std::uint8_t { agrees, disagrees, inconclusive };
+
+/// "agrees", "disagrees" or "inconclusive".
+const char* name_of(Verdict verdict);
+
 struct VerifyOptions {
   std::uint32_t paths = 4096;  ///< per patch; rounded up to path_batches times a power of two
-  std::size_t checked = 64;    ///< patches; all of them when there are fewer
+  std::size_t checked = 64;    ///< patches, half of them inside closed shells with openings where these divide the
+                               ///< scene; all when there are fewer
   std::uint64_t seed = 1;
+};
+
+/// The checked patches inside closed shells with openings, those outside, or all where none divide them. Per band: sums
+/// over these patches.
+struct VerifiedPart {
+  std::string name;                ///< "inside", "outside" or "all"
+  std::vector<Eigen::Index> rows;  ///< of the verification
+  Eigen::ArrayXd chi_square;       ///< sum of deviations() squared
+  Eigen::ArrayXd mean_difference;  ///< sum of what is solved over the sum of what is traced, less 1
+  Eigen::ArrayXd offset;           ///< the difference of both sums over its standard error: sigma_path^2 31/29 in
+                                   ///< quadrature, and the bars as if all were of one sign
+  double width = 0;  ///< bars as a share of the light, worst band: ||bar|| / ||H|| of the checked patches, traced, or
+                     ///< of all patches of the part by area, solved, or the noise of the sum, whichever is largest
 };
 
 /// Irradiances of some patches, solved and traced: a row per patch, a column per band.
@@ -24,9 +47,11 @@ struct Verification {
   Field irradiance;                 ///< of the solution, W/m^2
   Field bar;                        ///< the standard error it is given, W/m^2
   PathEstimate paths;               ///< by path tracing
-  Eigen::ArrayXd chi_square;        ///< per band: sum over patches of deviations() squared
-  double probability = 0;  ///< of the worst band's chi-square or a larger one in a right solution, times the bands
-  bool agrees = false;     ///< probability >= least_probability
+  std::vector<VerifiedPart> parts;
+  double probability = 0;  ///< of the least likely chi-square or offset of a part and band, or a larger one, in a right
+                           ///< solution, times their number
+  Verdict verdict = Verdict::inconclusive;  ///< disagrees below least_probability; else inconclusive where a part is
+                                            ///< wider than widest_bar
 };
 
 /// A bar on the irradiance of every patch, W/m^2: `relative` of it or of the mean by area, whichever is larger, as what
@@ -35,13 +60,14 @@ struct Verification {
 Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares the irradiance of randomly chosen patches, the larger the likelier, with path tracing in `scene`. Bars are
-/// per patch of the simulation and band, one standard deviation each. One-sided: too good an agreement is none the less
-/// one. The same bits for any number of threads. \throws Cancelled.
+/// per patch of the simulation and band, one standard deviation each. Both their differences and their common offset
+/// are tested. Too good an agreement is none the less one. The same bits for any number of threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 
 /// (solved - traced) / sqrt(sigma_path^2 31/29 + bar^2): 31/29 is the variance of Student's t with path_batches - 1
-/// degrees of freedom. 0 where nothing differs.
+/// degrees of freedom. Where no path has met light sigma_path is 3 / paths of the brightest irradiance that was traced,
+/// without the 31/29. 0 where nothing differs.
 Field deviations(const Verification& verification);
 
 /// z: the same by the noise of the paths alone, (solved - traced) / sigma_path. Not a number where no two batches

@@ -49,17 +49,17 @@ double sigmas_of_mean(const Verification& verification) {
 // How far the worst band's chi-square is above its mean, in standard deviations.
 double sigmas_of_verdict(const Verification& verification) {
   const auto degrees = static_cast<double>(verification.patches.size());
-  return (verification.chi_square.maxCoeff() - degrees) / std::sqrt(2 * degrees);
+  return (verification.parts.front().chi_square.maxCoeff() - degrees) / std::sqrt(2 * degrees);
 }
 
 void expect_agreement(const Verification& verification) {
-  EXPECT_TRUE(verification.agrees) << "p = " << verification.probability;
+  EXPECT_EQ(verification.verdict, Verdict::agrees) << "p = " << verification.probability;
   EXPECT_LT(sigmas_of_verdict(verification), 2);
 }
 
 // By the noise of the paths alone, and by the verdict, which grants the bars as well.
 void expect_disagreement_by_five_sigma(const Verification& verification) {
-  EXPECT_FALSE(verification.agrees) << "p = " << verification.probability;
+  EXPECT_EQ(verification.verdict, Verdict::disagrees) << "p = " << verification.probability;
   EXPECT_GT(sigmas_of_mean(verification), 5);
   EXPECT_GT(sigmas_of_verdict(verification), 5);
 }
@@ -96,7 +96,7 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   const Simulation simulation = simulate(scene, request);
   const Verification verification = verify(scene, simulation, irradiance_bar(simulation, 0));
   ASSERT_EQ(verification.patches.size(), simulation.mesh.size());
-  EXPECT_TRUE(verification.agrees);
+  EXPECT_EQ(verification.verdict, Verdict::agrees);
   EXPECT_LT(verification.bar.maxCoeff(), 1e-6);
   // Without bars both deviations are the same but for the variance of Student's t.
   const Field ratio = deviations_by_noise(verification) / deviations(verification);
