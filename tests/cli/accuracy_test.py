@@ -117,7 +117,8 @@ class AccuracyTest(ToolTest):
         report = json.loads((self.folder / "report.json").read_text())
         self.assertAlmostEqual(report["relative_error"]["total"], spaces["inside"]["total"], 9)
         self.assertIsNone(report["relative_error_by_space"])
-        done = self.run_tool("solve", "office.toml", "--error-bars", "--interest", "house.inside")
+        done = self.run_tool("solve", "office.toml", "--error-bars", "--report", "report.json",
+                             "--interest", "house.inside")
         self.assertEqual(done.returncode, INPUT)
         self.assertIn("house.inside", done.stderr)
 
