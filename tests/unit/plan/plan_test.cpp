@@ -5,6 +5,7 @@
 
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -56,11 +57,13 @@ TEST(MakePlan, NamesALuminaireJustBehindTheCeilingThatItShinesThrough) {
       scene.luminaires[0].position = {2, 1.5, height};
       const std::vector<std::string> notes = make_plan(scene, {}).notes;
       return std::count_if(notes.begin(), notes.end(), [](const std::string& note) {
-        return note.find("'downlight'") != std::string::npos && note.find("behind a face") != std::string::npos;
+        return note.find("'downlight'") != std::string::npos && note.find("mm behind a face") != std::string::npos;
       });
     };
     EXPECT_EQ(notes_at(2.5), 0);
     EXPECT_EQ(notes_at(std::nextafter(2.5, 3)), 0);
+    EXPECT_EQ(make_plan(scene, {}).notes.size(), 1U) << "half of its light goes to either side";
+    EXPECT_EQ(notes_at(2.501), 1);
     EXPECT_EQ(notes_at(2.4995), 0) << "in the room";
     EXPECT_EQ(notes_at(2.5005), 1) << "it lights the roof";
     EXPECT_EQ(notes_at(2.502), 0) << "it is meant to";
