@@ -50,6 +50,32 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
   return all;
 }
 
+// Of the radiosities, by the error bars of the solution where it has any. Else sampling errors are taken from how far
+// the row sums were off before closure, and those of the mesh are not known.
+RadiosityErrors radiosity_errors(const Simulation& simulation) {
+  if (!simulates(simulation.plan, Effect::interreflection)) return {};
+  const RadiosityProblem& problem = simulation.problem;
+  const Solution& solution = simulation.solution;
+  RadiosityErrors errors;
+  errors.reflected = solution.radiosity - problem.exitance;
+  errors.solver = solution.error;
+  if (simulation.error_bars) {
+    errors.sampling = problem.reflectance * simulation.error_bars->form_factor;
+    errors.mesh = problem.reflectance * simulation.error_bars->mesh;
+    return errors;
+  }
+  Field squares = Field::Zero(problem.reflectance.rows(), problem.reflectance.cols());
+  if (simulation.direct_standard_error.size() > 0) squares += simulation.direct_standard_error.square();
+  if (simulation.transport.raw_row_sum.size() > 0) {
+    const Eigen::ArrayXd expected = expected_row_sum(simulation.transport.lost).array();
+    const Eigen::ArrayXd defect = simulation.transport.raw_row_sum.array() - expected;
+    const Eigen::ArrayXd relative = (expected > 0).select(defect / expected, 0.0);
+    squares += (solution.irradiance.colwise() * relative).square();
+  }
+  errors.sampling = problem.reflectance * squares.sqrt();
+  return errors;
+}
+
 }  // namespace
 
 Scene with_points(Scene scene, const SolveArguments& arguments) {
@@ -77,16 +103,22 @@ Readings read_sensors(const Scene& whole, const Simulation& simulation, std::spa
   const std::uint64_t seed = simulation.plan.seed;
   const Coverings coverings = find_coverings(scene, simulation.plan.sides);
   const Occluder occluder(scene, Occluder::Blockers::all, coverings);
-  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors, {.seed = seed}, observer);
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors,
+                                                  {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
+  SensorErrors& errors = gathered.errors;
   if (has_point_or_daylight(scene)) {
     std::vector<SurfacePoint> points;
     for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
     const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
     gathered.irradiance += direct.irradiance;
-    gathered.standard_error = (gathered.standard_error.square() + direct.standard_error.square()).sqrt();
+    errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
   }
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),
-                       .standard_error = at_places(gathered.standard_error, places),
+                       .standard_error = at_places(errors.total(), places),
+                       .errors = {.rays = at_places(errors.rays, places),
+                                  .sampling = at_places(errors.sampling, places),
+                                  .mesh = at_places(errors.mesh, places),
+                                  .solver = at_places(errors.solver, places)},
                        .photometric = scene.photometric,
                        .outside_by_sky = only_overcast_sky(scene)};
   for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "gather/gradients.h"
 #include "gather/sources.h"
 
 #include <algorithm>
@@ -14,17 +15,31 @@ namespace {
 // A sensor that is nearer to a polygon's plane lies on it, as a share of the scene's extent: the occluder's own limit.
 constexpr double on_plane_tolerance = 1e-9;
 
+// What is gathered, and how far that may be off.
+struct Light {
+  const PatchMesh& mesh;
+  const FieldView& radiosity;
+  const Field gradient;
+  const RadiosityErrors& errors;
+};
+
 // Irradiance at one sensor.
 struct Reading {
   Spectrum mean;
-  Spectrum variance;  // of the mean
+  Spectrum variance;   // of the mean, by the rays
+  Spectrum sampling;   // variance by errors of the patches
+  Spectrum mesh;       // by errors of the patches
+  Spectrum solver;     // bound
+  Spectrum by_slopes;  // what the gradients on patches add
+  Spectrum reflected;  // the part that patches have reflected
 };
 
 // E = sum_j F(x, j) V_j B_j, and its variance sum_j (F(x, j) B_j)^2 var V_j. Rays to a patch that agree may miss what
 // the others of it would meet: of all such rays the heaviest counts as an error.
 Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const FieldView& radiosity) {
-  Reading reading{Spectrum::Zero(radiosity.cols()), Spectrum::Zero(radiosity.cols())};
-  Spectrum heaviest = reading.mean;
+  const Spectrum zero = Spectrum::Zero(radiosity.cols());
+  Reading reading{zero, zero, zero, zero, zero, zero, zero};
+  Spectrum heaviest = zero;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Spectrum unoccluded = sources[s].form_factor * radiosity.row(sources[s].patch);
     reading.mean += unoccluded * shares[s].mean;
@@ -32,6 +47,24 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
     if (!(shares[s].variance > 0)) heaviest = heaviest.max(unoccluded / shares[s].rays);
   }
   reading.variance += heaviest.square();
+  return reading;
+}
+
+Reading with_errors_of_patches(Reading reading, std::span<const Source> sources, std::span<const VisibleShare> shares,
+                               const Light& light) {
+  const auto& [sampling, mesh, solver, reflected] = light.errors;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const PatchIndex j = sources[s].patch;
+    const double weight = sources[s].form_factor * shares[s].mean;
+    if (!(weight > 0)) continue;
+    if (sampling.size() > 0) reading.sampling += (weight * sampling.row(j)).square();
+    if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
+    if (solver.size() > 0) reading.solver += weight * solver.row(j);
+    if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
+    const Vector offset = shares[s].centre - light.mesh.centroid[j];
+    for (Eigen::Index band = 0; band < reading.mean.size(); ++band)
+      reading.by_slopes[band] += weight * light.gradient.row(j).segment(3 * band, 3).matrix().dot(offset);
+  }
   return reading;
 }
 
@@ -51,7 +84,10 @@ std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<co
     const double rays = first[s].rays + second[s].rays;
     const double a = first[s].rays / rays;
     const double b = second[s].rays / rays;
-    first[s] = {a * first[s].mean + b * second[s].mean, a * a * first[s].variance + b * b * second[s].variance, rays};
+    const double mean = a * first[s].mean + b * second[s].mean;
+    const Vector moment = a * first[s].mean * first[s].centre + b * second[s].mean * second[s].centre;
+    first[s] = {mean, a * a * first[s].variance + b * b * second[s].variance, rays,
+                mean > 0 ? Point(moment / mean) : Point(Point::Zero())};
   }
   return first;
 }
@@ -63,37 +99,65 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
   return std::max(1.0, factor.maxCoeff());
 }
 
-Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const FieldView& radiosity,
-                    const ShadowRays& rays, const GatherOptions& options) {
+Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const Light& light, const ShadowRays& rays,
+                    const GatherOptions& options) {
+  const FieldView& radiosity = light.radiosity;
   const std::vector<RayCounts> first = counts_for(sources, options.rays, options.least_rays);
   std::vector<VisibleShare> shares = rays.visible_shares(sensor, sources, first, 0);
-  const Reading reading = reading_of(sources, shares, radiosity);
+  Reading reading = reading_of(sources, shares, radiosity);
   double traced = 0;
   for (const VisibleShare& share : shares) traced += share.rays;
   const double more = std::min((wanted_factor(reading, options) - 1) * traced, options.most_rays - traced);
-  if (!(more > traced / 2)) return reading;
-  const double share = more / traced;
-  const std::vector<RayCounts> second = counts_for(sources, share * options.rays, share * options.least_rays);
-  shares = together(std::move(shares), rays.visible_shares(sensor, sources, second, 1));
-  return reading_of(sources, shares, radiosity);
+  if (more > traced / 2) {
+    const double share = more / traced;
+    const std::vector<RayCounts> second = counts_for(sources, share * options.rays, share * options.least_rays);
+    shares = together(std::move(shares), rays.visible_shares(sensor, sources, second, 1));
+    reading = reading_of(sources, shares, radiosity);
+  }
+  return with_errors_of_patches(std::move(reading), sources, shares, light);
+}
+
+// A column for each band of what a reading has.
+Field column_of(std::span<const Reading> readings, Spectrum Reading::*part, Eigen::Index bands) {
+  Field all(static_cast<Eigen::Index>(readings.size()), bands);
+  for (std::size_t k = 0; k < readings.size(); ++k) all.row(static_cast<Eigen::Index>(k)) = readings[k].*part;
+  return all;
+}
+
+// What slopes add, and what patches of the same mesh may be off themselves.
+Field mesh_part(std::span<const Reading> readings, const Field& irradiance, const RadiosityErrors& errors) {
+  const Eigen::Index bands = irradiance.cols();
+  const Field slopes = column_of(readings, &Reading::by_slopes, bands);
+  if (errors.mesh.size() > 0) return (slopes.square() + column_of(readings, &Reading::mesh, bands).square()).sqrt();
+  const Spectrum squares = irradiance.square().colwise().sum();
+  const Spectrum share = (squares > 0).select(slopes.square().colwise().sum() / squares, 0.0);
+  return (slopes.square() + column_of(readings, &Reading::reflected, bands).square().rowwise() * share).sqrt();
 }
 
 }  // namespace
+
+Field SensorErrors::total() const {
+  return (rays.square() + sampling.square() + mesh.square() + solver.square()).sqrt();
+}
 
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
   const ShadowRays rays(mesh, occluder, options.seed);
+  const Light light{mesh, radiosity, gradients(mesh, radiosity), options.errors};
   const double tolerance = on_plane_tolerance / occluder.frame().scale;
-  const Field zero = Field::Zero(static_cast<Eigen::Index>(sensors.size()), radiosity.cols());
-  GatheredIrradiance result{zero, zero};
+  std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {
     const std::vector<Source> sources = sources_before(sensors[k], mesh, radiosity, tolerance);
-    const Reading reading = read_sensor(sensors[k], sources, radiosity, rays, options);
-    result.irradiance.row(static_cast<Eigen::Index>(k)) = reading.mean;
-    result.standard_error.row(static_cast<Eigen::Index>(k)) = reading.variance.sqrt();
+    readings[k] = read_sensor(sensors[k], sources, light, rays, options);
   });
-  return result;
+  const Eigen::Index bands = radiosity.cols();
+  const Field irradiance = column_of(readings, &Reading::mean, bands);
+  return {irradiance,
+          {.rays = column_of(readings, &Reading::variance, bands).sqrt(),
+           .sampling = column_of(readings, &Reading::sampling, bands).sqrt(),
+           .mesh = mesh_part(readings, irradiance, options.errors),
+           .solver = column_of(readings, &Reading::solver, bands)}};
 }
 
 }  // namespace patchlight

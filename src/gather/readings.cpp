@@ -7,6 +7,10 @@
 
 namespace patchlight {
 
+std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors& errors) {
+  return {{{"rays", &errors.rays}, {"sampling", &errors.sampling}, {"mesh", &errors.mesh}, {"solver", &errors.solver}}};
+}
+
 bool is_inside_wall(const Readings& readings, std::size_t sensor) {
   return !readings.inside_wall.empty() && readings.inside_wall[sensor] != 0;
 }

@@ -51,6 +51,7 @@ double shifted(double u, std::uint32_t shift) {
 struct Weights {
   double reached = 0;
   double all = 0;
+  Vector moment = Vector::Zero();  // sum of reached points by their weights
 };
 
 // The ratio of what is reached to all, with its variance by the scatter of the replicates about it (Cochran 1977,
@@ -58,16 +59,19 @@ struct Weights {
 VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   double reached = 0;
   double all = 0;
+  Vector moment = Vector::Zero();
   for (const Weights& one : replicates) {
     reached += one.reached;
     all += one.all;
+    moment += one.moment;
   }
   if (!(all > 0)) return {0, 0, rays};
   const double mean = reached / all;
   double squares = 0;
   for (const Weights& one : replicates) squares += std::pow(one.reached - mean * one.all, 2);
   const auto count = static_cast<double>(replicates.size());
-  return {mean, squares / (all * all) * count / (count - 1), rays};
+  const Point centre = reached > 0 ? Point(moment / reached) : Point(Point::Zero());
+  return {mean, squares / (all * all) * count / (count - 1), rays, centre};
 }
 
 }  // namespace
@@ -139,7 +143,9 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
     for (std::uint32_t r = 0; r < count.replicates; ++r) {
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
-        if (blocked[ray] == 0) replicates[r].reached += weights[ray];
+        if (blocked[ray] != 0) continue;
+        replicates[r].reached += weights[ray];
+        replicates[r].moment += weights[ray] * segments[ray].to;
       }
     }
     shares.push_back(share_of(std::span(replicates).first(count.replicates), count.replicates * count.each));

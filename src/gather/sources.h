@@ -30,6 +30,7 @@ struct VisibleShare {
   double mean = 0;
   double variance = 0;  ///< of the mean
   double rays = 0;
+  Point centre = Point::Zero();  ///< of what is visible, as seen from the sensor, metres; where anything is
 };
 
 /// Shadow rays to a source: so many replicates of so many.

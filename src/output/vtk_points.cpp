@@ -72,6 +72,10 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   vtkCellData& data = *shape.GetCellData();
   data.AddArray(floats("irradiance", in_order(readings.irradiance, rows)));
   data.AddArray(floats("irradiance_standard_error", in_order(readings.standard_error, rows)));
+  for (const auto& [name, part] : parts_of(readings.errors)) {
+    if (part->size() > 0)
+      data.AddArray(floats((std::string("irradiance_standard_error_") + name).c_str(), in_order(*part, rows)));
+  }
   std::vector<double> values, errors, daylight;
   std::vector<int> groups, sensors, inside_walls;
   Field normals(static_cast<Eigen::Index>(rows.size()), 3);

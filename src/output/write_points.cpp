@@ -21,6 +21,9 @@ std::string band_columns(const std::string& quantity, Eigen::Index bands) {
 std::string header(const Readings& readings) {
   const Eigen::Index bands = readings.irradiance.cols();
   std::string names = "x,y,z,nx,ny,nz" + band_columns("E", bands) + band_columns("SE", bands);
+  for (const auto& [name, part] : parts_of(readings.errors)) {
+    if (part->size() > 0) names += band_columns(std::string("SE_") + name, bands);
+  }
   if (readings.photometric) names += ",E_v_lx,SE_v_lx";
   if (readings.outside_by_sky) names += ",daylight_factor_percent";
   return names + ",inside_wall,group\n";
@@ -48,6 +51,10 @@ void add_values(std::ostream& text, const Readings& readings, std::size_t sensor
   const auto row = static_cast<Eigen::Index>(sensor);
   for (const Field* const field : {&readings.irradiance, &readings.standard_error}) {
     for (const double value : field->row(row)) text << ',' << value;
+  }
+  for (const auto& [name, part] : parts_of(readings.errors)) {
+    if (part->size() == 0) continue;
+    for (const double value : part->row(row)) text << ',' << value;
   }
   const SensorValue value = sensor_value(readings, sensor);
   if (readings.photometric) text << ',' << value.value << ',' << value.standard_error;

@@ -11,18 +11,38 @@
 
 namespace patchlight {
 
+/// What may be wrong with the radiosities that are gathered, per patch and band, W/m^2. Empty fields: nothing.
+struct RadiosityErrors {
+  Field sampling;   ///< standard deviations of errors that have nothing to do with each other
+  Field mesh;       ///< standard deviations of errors that patches share; empty where not known
+  Field solver;     ///< bounds
+  Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
+};
+
 struct GatherOptions {
   int least_rays = 4;          ///< shadow rays to a patch before the sensor
   int rays = 8192;             ///< more of them to all patches together, in proportion to what patches may give
   int most_rays = 1 << 18;     ///< where these leave more than the following relative standard error
   double wanted_error = 0.01;  ///< relative standard error of a sensor
   std::uint64_t seed = 1;
+  RadiosityErrors errors = {};
+};
+
+/// Standard errors of irradiances by where they come from, W/m^2.
+struct SensorErrors {
+  Field rays;      ///< shadow rays from the sensor
+  Field sampling;  ///< what patches reflect of light that was sampled
+  Field mesh;      ///< that light was taken to be constant on patches
+  Field solver;    ///< a bound
+
+  /// The root of the sum of their squares.
+  Field total() const;
 };
 
 /// Irradiance at points (rows) per band (columns), W/m^2.
 struct GatheredIrradiance {
   Field irradiance;
-  Field standard_error;  ///< of the shadow rays; the radiosities are taken as they are
+  SensorErrors errors;
 };
 
 /// Irradiance at points by gathering the solved radiosity: every patch by its closed-form form factor times the share
@@ -31,7 +51,12 @@ struct GatheredIrradiance {
 /// replicates with random shifts of their own, whose scatter is the standard error; it is at least what the heaviest
 /// ray would give of those patches whose rays agree, as no hit in n rays means at most a few in n. Sensors of which the
 /// standard error is too large get more rays, in proportion to its square. The random numbers follow from the sensor's
-/// place. O(points x patches). \throws Cancelled.
+/// place.
+///
+/// The patches' own errors are gathered as their light is: sampling errors add up in squares, mesh errors and the
+/// solver's bounds as they are. To the mesh's part belongs what gradients of the radiosity inside the visible parts of
+/// patches do to the sensor. Where the patches' mesh errors are not known, what they reflect is taken to be off by the
+/// root mean square of that over all sensors, as a share. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});

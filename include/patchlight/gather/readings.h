@@ -1,13 +1,16 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/gather/gather.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/sensor.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -15,7 +18,8 @@ namespace patchlight {
 /// What the sensors of a scene read: a row for each, group after group, a column for each band, W/m^2.
 struct Readings {
   Field irradiance;
-  Field standard_error;
+  Field standard_error;                      ///< in all
+  SensorErrors errors{};                     ///< what it is made of; empty fields: not known
   std::vector<std::uint8_t> inside_wall{};   ///< per sensor: 1 where there is nothing to read, values are NaN; or empty
   bool photometric = false;                  ///< the lights are stated in lumens or lux: illuminance has a meaning
   std::optional<Spectrum> outside_by_sky{};  ///< irradiance of an unobstructed horizontal plane; given when a CIE
@@ -28,6 +32,9 @@ struct SensorValue {
   double value = 0;
   double standard_error = 0;  ///< that of bands whose errors go together, as those of the same shadow rays do
 };
+
+/// The parts of standard errors by name.
+std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors& errors);
 
 /// True for a sensor inside a wall (place_sensors()): it has no part in statistics.
 bool is_inside_wall(const Readings& readings, std::size_t sensor);

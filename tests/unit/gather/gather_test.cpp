@@ -77,7 +77,7 @@ TEST(GatherIrradiance, StandardErrorIsThatOfTheShadowRays) {
     options.seed = static_cast<std::uint64_t>(seed);
     const GatheredIrradiance found = gather_irradiance(mesh, exitance, occluder, sensors, options);
     squared_errors += std::pow(found.irradiance(0, 0) - half, 2);
-    variances += std::pow(found.standard_error(0, 0), 2);
+    variances += std::pow(found.errors.rays(0, 0), 2);
   }
   const double ratio = std::sqrt(variances / squared_errors);
   EXPECT_GT(ratio, 0.85) << "the error bars are too short";  // 400 seeds: 4 % statistical error
@@ -97,10 +97,10 @@ TEST(GatherIrradiance, StandardErrorsHoldInAFurnishedRoom) {
   const GatherOptions many{.least_rays = 32, .rays = 1 << 16, .seed = 2};
   const GatheredIrradiance exact = gather_irradiance(mesh, radiosity, occluder, grid.sensors, many);
   const Field error = (found.irradiance - exact.irradiance).abs();
-  const double ratio = found.standard_error.matrix().norm() / error.matrix().norm();
+  const double ratio = found.errors.rays.matrix().norm() / error.matrix().norm();
   EXPECT_GT(ratio, 0.6) << "the error bars are too short";
   EXPECT_LT(ratio, 1.6) << "the error bars are too long";
-  const auto outside = (error > 3 * found.standard_error + 1e-9).count();
+  const auto outside = (error > 3 * found.errors.rays + 1e-9).count();
   EXPECT_LE(outside, static_cast<Eigen::Index>(grid.sensors.size() / 20)) << "of " << grid.sensors.size();
 }
 
@@ -113,6 +113,52 @@ TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
   const Field irradiance = gather_irradiance(mesh, ones, occluder, below).irradiance;
   EXPECT_EQ(irradiance(0, 0), 0);
   EXPECT_EQ(irradiance(1, 0), 0);
+}
+
+TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
+  // In a closed room of unit radiosity the form factors of all patches add up to 1: so do errors of one sign, and those
+  // that have nothing to do with each other to less.
+  const Scene scene = cube_room(0.5, 0.5);
+  const PatchMesh mesh = fronts(scene, 0.2);
+  const Field ones = Field::Ones(mesh.size(), 1);
+  GatherOptions options;
+  options.errors = {.sampling = 0.1 * ones, .mesh = 0.2 * ones, .solver = 0.3 * ones, .reflected = ones};
+  const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()}};
+  const SensorErrors errors = gather_irradiance(mesh, ones, Occluder(scene), sensors, options).errors;
+  EXPECT_NEAR(errors.mesh(0, 0), 0.2, 1e-9);
+  EXPECT_NEAR(errors.solver(0, 0), 0.3, 1e-9);
+  EXPECT_GT(errors.sampling(0, 0), 0.001);
+  EXPECT_LT(errors.sampling(0, 0), 0.03);
+  EXPECT_NEAR(errors.total()(0, 0), std::sqrt((errors.rays.square() + errors.sampling.square()).value() + 0.13), 1e-9);
+}
+
+// A floor of 4 x 4 m whose radiosity falls off towards its middle, as the means of patches, in two units. Patches of
+// 5 cm err a hundredth of those of 50 cm: they are the reference.
+TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
+  for (const double scale : {1.0, 1e-3}) {
+    Scene scene =
+        with_quad(empty_scene({grey(0)}), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
+    scene = moved(std::move(scene), Eigen::Affine3d(Eigen::Scaling(scale)));
+    const auto light_on = [&](const PatchMesh& mesh) {
+      Field radiosity(mesh.size(), 1);
+      for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = std::abs(mesh.centroid[i].x() / scale);
+      return radiosity;
+    };
+    std::vector<Sensor> sensors;
+    for (double x = -1.9; x < 2; x += 0.17) {
+      for (const double z : {0.2, 0.5, 1.0}) sensors.push_back({scale * Point(x, 0.1, z), -Vector::UnitZ()});
+    }
+    const Occluder occluder(scene, Occluder::Blockers::all);
+    const PatchMesh coarse = fronts(scene, 0.5 * scale);
+    const PatchMesh fine = fronts(scene, 0.05 * scale);
+    const GatheredIrradiance found = gather_irradiance(coarse, light_on(coarse), occluder, sensors);
+    const GatheredIrradiance exact = gather_irradiance(fine, light_on(fine), occluder, sensors);
+    const Field error = (found.irradiance - exact.irradiance).abs();
+    const auto outside = (error > 2.6 * found.errors.total()).count();
+    EXPECT_LE(outside, static_cast<Eigen::Index>(sensors.size() / 20)) << "of " << sensors.size();
+    // By the rays alone, of which none is blocked, most would be outside.
+    EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 2));
+  }
 }
 
 Readings constant_readings(std::initializer_list<double> values) {

@@ -129,7 +129,7 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsIsTheirFormFactor) {
     for (std::size_t k = 0; k < lit.sensors.size(); ++k) {
       const double E = found.irradiance(static_cast<Eigen::Index>(k), 0);
       // Of 24 sensors one in fifteen runs would have one beyond three standard errors; the seed is fixed.
-      EXPECT_NEAR(E, lit.exact[k], 3 * found.standard_error(static_cast<Eigen::Index>(k), 0)) << c.name << ' ' << k;
+      EXPECT_NEAR(E, lit.exact[k], 3 * found.errors.rays(static_cast<Eigen::Index>(k), 0)) << c.name << ' ' << k;
       EXPECT_NEAR(E, lit.exact[k], 0.05 * lit.exact[k]) << c.name << ' ' << k;
     }
   }
@@ -149,9 +149,9 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsErrsAsItStates) {
       for (std::size_t k = 0; k < lit.sensors.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         const double relative = found.irradiance(row, 0) / lit.exact[k] - 1;
-        sum += relative * lit.exact[k] / found.standard_error(row, 0);
+        sum += relative * lit.exact[k] / found.errors.rays(row, 0);
         errors += relative * relative;
-        variances += std::pow(found.standard_error(row, 0) / lit.exact[k], 2);
+        variances += std::pow(found.errors.rays(row, 0) / lit.exact[k], 2);
       }
     }
     const double n = seeds * static_cast<double>(lit.sensors.size());
