@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes ten rooms in which accuracy is measured, as OBJ models.
+"""Writes twelve rooms in which accuracy is measured, as OBJ models.
 
 usage: scripts/make_varied_rooms.py FOLDER
 Metres, z up; each room stresses something else: see the comment in its file.
@@ -152,10 +152,40 @@ def colours():
     return model
 
 
+def slits():
+    model = room_with("slits", "Two halves of a room with a wall of 20 slits between them, 2 % open.", (4, 2, 2))
+    hang_lamp(model, (1, 1), (0.6, 0.6), 1.9)
+    model.group("slit_wall")
+    period, gap = 0.1, 0.002
+    for k in range(20):
+        y0, y1 = k * period + (gap / 2 if k else 0), (k + 1) * period - (gap / 2 if k < 19 else 0)
+        corners = [(2, y0, 0), (2, y1, 0), (2, y1, 2), (2, y0, 2)]
+        model.face("wall", *corners)
+        model.face("wall", *reversed(corners))
+    return model
+
+
+def louvres():
+    model = room_with("louvres", "A room lit by a glowing wall behind 40 tilted slats.", (4, 3, 2.5))
+    for material in model.materials:
+        if material.name == "lamp":
+            material.ke = (2, 2, 2)
+    model.group("lamp")
+    model.face("lamp", (0.01, 0.5, 0.5), (0.01, 2.5, 0.5), (0.01, 2.5, 2.1), (0.01, 0.5, 2.1))
+    model.group("slats")
+    for k in range(40):
+        z = 0.5 + 0.04 * k
+        corners = [(0.1, 0.5, z), (0.13, 0.5, z + 0.03), (0.13, 2.5, z + 0.03), (0.1, 2.5, z)]
+        model.face("ceiling", *corners)
+        model.face("ceiling", *reversed(corners))
+    return model
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (empty, blocks, open_side, contact, door_ajar, bright, tiny_lamp, thin_walls, corridor, colours):
+    for make in (empty, blocks, open_side, contact, door_ajar, bright, tiny_lamp, thin_walls, corridor, colours, slits,
+                 louvres):
         model = make()
         (folder / f"{model.name}.obj").write_text(model.obj())
         (folder / f"{model.name}.mtl").write_text(model.mtl())
