@@ -1,5 +1,7 @@
 #include "problem_of.h"
 
+#include "patchlight/scene/transmittance.h"
+
 namespace patchlight {
 
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
@@ -11,8 +13,24 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
     problem.reflectance.row(i) = material.reflectance;
     const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
     if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
+    const double held = held_of(mean_transmittance(scene, mesh.polygon[i]));
+    problem.reflectance.row(i) = (problem.reflectance.row(i) / held).min(1.0);
+    problem.exitance.row(i) /= held;
   }
   return problem;
+}
+
+Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    const double held = held_of(mean_transmittance(scene, simulation.mesh.polygon[i]));
+    if (held == 1) continue;
+    RadiosityProblem& problem = simulation.problem;
+    Solution& solution = simulation.solution;
+    problem.area[i] /= held;
+    for (Field* field : {&problem.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
+      if (field->rows() > 0) field->row(i) *= held;
+  }
+  return simulation;
 }
 
 }  // namespace patchlight

@@ -8,7 +8,11 @@
 #include "effects.h"
 #include "interest.h"
 #include "memory.h"
+<<<<<<< HEAD
 #include "relative_errors.h"
+=======
+#include "problem_of.h"
+>>>>>>> 20f0caf (Light that patches send goes through clear faces, which hold back a share of it like sheets with holes, so that a pane of transmittance 1 and a hole give the same)
 #include "solve_mesh.h"
 #include "stage_clock.h"
 #include "to_accuracy.h"
@@ -51,7 +55,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
                                        : solve_mesh(setting, planned, plan, clock).simulation;
   result.spaces = errors_by_space(lit, result);
   result.costs = clock.costs();
-  return result;
+  return of_whole_patches(std::move(result), lit);
 }
 
 }  // namespace patchlight

@@ -135,7 +135,7 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
   }
 
   // 2. What they reach
-  const std::vector<std::uint8_t> blocked = occluder_.occluded(segments);
+  const std::vector<float> arriving = occluder_.transmittance(segments);
   std::vector<VisibleShare> shares;
   std::size_t ray = 0;
   for (const RayCounts& count : counts) {
@@ -143,9 +143,9 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
     for (std::uint32_t r = 0; r < count.replicates; ++r) {
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
-        if (blocked[ray] != 0) continue;
-        replicates[r].reached += weights[ray];
-        replicates[r].moment += weights[ray] * segments[ray].to;
+        const double reached = static_cast<double>(arriving[ray]) * weights[ray];
+        replicates[r].reached += reached;
+        replicates[r].moment += reached * segments[ray].to;
       }
     }
     shares.push_back(share_of(std::span(replicates).first(count.replicates), count.replicates * count.each));

@@ -151,7 +151,8 @@ std::vector<Decision> not_simulated(const EffectFacts& facts) {
     if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
   };
   add(Effect::sheets, facts.openings,
-      counted(facts.openings, "clear face") + " let light in from outside, but none through that patches send");
+      counted(facts.openings, "clear face") +
+          " let the same share through at every angle, of light between patches in every band");
   add(Effect::mirrors, facts.mirrors, counted(facts.mirrors, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;

@@ -81,29 +81,36 @@ std::vector<Ray> camera_rays(const PicturePlane& plane, const RenderOptions& opt
   return rays;
 }
 
+// A patch that a ray sees, behind clear faces or not.
 struct Seen {
-  PatchIndex patch;
+  std::size_t ray = 0;
+  PatchIndex patch = 0;
   Point point;
+  double share = 1;  // of its light that gets through what is before it
 };
 
-// The first patch that each ray meets. Rays pass sides without patches: they go on from there.
-std::vector<std::optional<Seen>> first_patches(const Occluder& occluder, const PatchLookup& lookup,
-                                               std::vector<Ray> rays) {
-  std::vector<std::optional<Seen>> seen(rays.size());
+// The patches that rays see: the first that each meets and, as long as that is clear, those behind it. Rays pass sides
+// without patches: they go on from there.
+std::vector<Seen> seen_patches(const Occluder& occluder, const PatchLookup& lookup, std::vector<Ray> rays) {
+  std::vector<Seen> seen;
   std::vector<std::size_t> under_way(rays.size());  // whose ray is rays[k]
   std::iota(under_way.begin(), under_way.end(), std::size_t{0});
+  std::vector<double> shares(rays.size(), 1);
   for (int crossing = 0; crossing <= most_crossings && !rays.empty(); ++crossing) {
     const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
     std::size_t left = 0;
     for (std::size_t k = 0; k < rays.size(); ++k) {
       const std::optional<Hit>& hit = hits[k];
       if (!hit) continue;
+      double share = shares[k];
       if (const std::optional<PatchIndex> patch = lookup.patch_at(hit->polygon, hit->side, hit->point)) {
-        seen[under_way[k]] = Seen{*patch, hit->point};
-        continue;
+        seen.push_back({under_way[k], *patch, hit->point, share});
+        share *= occluder.transmittance(hit->polygon);
+        if (!(share > 0)) continue;
       }
       rays[left] = {hit->point, rays[k].direction, hit->polygon};
       under_way[left] = under_way[k];
+      shares[left] = share;
       ++left;
     }
     rays.resize(left);
@@ -125,14 +132,12 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   const std::vector<Tile> tiles = tiles_of(options);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const Tile& tile = tiles[index];
-    const auto seen = first_patches(occluder, lookup, camera_rays(plane, options, tile));
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (!seen[k]) continue;
-      const int pixel = static_cast<int>(k / rays_per_pixel);
+    for (const Seen& seen : seen_patches(occluder, lookup, camera_rays(plane, options, tile))) {
+      const int pixel = static_cast<int>(seen.ray / rays_per_pixel);
       const Eigen::Index x = tile.left + pixel % tile.width();
       const Eigen::Index y = tile.top + pixel / tile.width();
-      image.pixels.row(y * options.width + x) +=
-          value_at(mesh, radiance, occluder, seen[k]->patch, seen[k]->point) / static_cast<double>(rays_per_pixel);
+      image.pixels.row(y * options.width + x) += value_at(mesh, radiance, occluder, seen.patch, seen.point) *
+                                                 (seen.share / static_cast<double>(rays_per_pixel));
     }
   });
   return image;

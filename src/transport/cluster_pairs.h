@@ -78,7 +78,7 @@ void ClusterPairs::for_facing(const ClusterPair& pair, LaneMask rows, LaneMask c
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const PatchIndex j = b.patches[k];
       if (mesh_.polygon[i] == mesh_.polygon[j] || (pair.row == pair.column && j <= i)) continue;
-      float unoccluded = row.unoccluded.at[k];
+      float unoccluded = row.unoccluded.at[k] * sampler_.held(i, j);
       if ((row.exact >> k & 1) != 0 || !short_cuts_.far) {
         if (orientation(shapes_[i], shapes_[j]) == Orientation::averted) continue;
         unoccluded = -1;

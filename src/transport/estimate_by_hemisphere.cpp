@@ -24,10 +24,11 @@ struct Hemisphere {
   const Occluder& occluder;
   const PatchLookup& patches;
 
-  Arrivals arrivals(PatchIndex from, const std::vector<std::array<double, 4>>& points) const;
+  Arrivals arrivals(PatchIndex from, const std::vector<std::array<double, 4>>& points, std::uint32_t seed) const;
 };
 
-Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<double, 4>>& points) const {
+Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<double, 4>>& points,
+                              std::uint32_t seed) const {
   const PatchCorners corners = mesh.corner_points(from);
   const Eigen::Matrix3d frame = patch_frame(mesh, from);
   Arrivals arrived;
@@ -39,7 +40,7 @@ Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<doub
       rays.push_back({start, frame * square_to_cosine_hemisphere(s, t), mesh.polygon[from]});
     }
     if (rays.size() < batch && k + 1 < points.size()) continue;
-    for (const auto& hit : occluder.first_hits(rays)) {
+    for (const auto& hit : occluder.first_held_hits(rays, hash({seed, k}))) {
       const auto patch = hit ? patches.patch_at(hit->polygon, hit->side, hit->point) : std::nullopt;
       if (patch) ++arrived[*patch];
     }
@@ -57,8 +58,9 @@ Assembly estimate_by_hemisphere(const PatchMesh& mesh, const Occluder& occluder,
   const Hemisphere hemisphere{mesh, occluder, patches};
   std::vector<Arrivals> arrived(mesh.size());
   parallel_for(arrived.size(), Stage::form_factors, observer, [&](std::size_t i) {
-    const auto points = scrambled_sobol(static_cast<std::uint32_t>(options.samples), hash({options.seed, keys[i], 2}));
-    arrived[i] = hemisphere.arrivals(static_cast<PatchIndex>(i), points);
+    const std::uint32_t seed = hash({options.seed, keys[i], 2});
+    const auto points = scrambled_sobol(static_cast<std::uint32_t>(options.samples), seed);
+    arrived[i] = hemisphere.arrivals(static_cast<PatchIndex>(i), points, seed);
   });
 
   // S_ij = (A_i n_ij + A_j n_ji) / (2 s)
@@ -67,7 +69,8 @@ Assembly estimate_by_hemisphere(const PatchMesh& mesh, const Occluder& occluder,
     for (const auto& [j, count] : arrived[i]) {
       const double before = static_cast<double>(result.exchange_areas.at(i, j));
       result.counts.facing_pairs += before == 0 ? 1 : 0;
-      const double area = before + mesh.area[i] * count / (2.0 * options.samples);
+      const double held = occluder.held_share(mesh.polygon[i]);
+      const double area = before + held * mesh.area[i] * count / (2.0 * options.samples);
       result.exchange_areas.set(i, j, narrow_toward_zero(area));
     }
   }

@@ -41,8 +41,8 @@ struct Observatory {
   const Occluder& occluder;
   double extent;
 
-  std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays) const;
-  Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays) const;
+  std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
+  Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
@@ -72,7 +72,7 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& rays) const {
+std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   const auto sight_of = [&](const Hit& hit) {
     const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
     return range.begin == range.end ? Sight::back : Sight::patch;
@@ -80,7 +80,7 @@ std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& r
   std::vector<Sight> sights(rays.size(), Sight::nothing);
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
-  const auto hits = occluder.first_hits(rays);
+  const auto hits = occluder.first_held_hits(rays, seed);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) {
       sights[k] = Sight::contact;
@@ -95,7 +95,7 @@ std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& r
     second_tries.push_back(moved);
     tried_again.push_back(k);
   }
-  const auto second_hits = occluder.first_hits(second_tries);
+  const auto second_hits = occluder.first_held_hits(second_tries, hash({seed, 1}));
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (!second_hits[k]) continue;
     const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh.normal[patch]);
@@ -112,8 +112,8 @@ int unseen(std::span<const Sight> sights) { return count(sights, Sight::back) + 
 
 // What groups of rays from one point each tell. A point is covered when every ray from it meets a back or a face that
 // lies against the patch.
-Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& rays) const {
-  const std::vector<Sight> sights = look(patch, rays);
+Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+  const std::vector<Sight> sights = look(patch, rays, seed);
   int covered = 0;
   int exposed = 0;
   int escaped = 0;
@@ -123,7 +123,7 @@ Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& ray
     const auto group = std::span(sights).subspan(first, rays_per_point);
     if (unseen(group) == rays_per_point) {
       const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
-      if (unseen(look(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}))) == rays_per_point) {
+      if (unseen(look(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}), seed)) == rays_per_point) {
         ++covered;
         continue;
       }
@@ -140,13 +140,19 @@ Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& ray
 
 Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Sight> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed));
+  const std::vector<Sight> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
   if (unseen(sights) == 0) return {static_cast<double>(count(sights, Sight::nothing)) / rays, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
-  return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed));
+  return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed), seed);
 }
 
 }  // namespace
+
+Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
+  Eigen::VectorXd clear(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i]);
+  return clear.isZero(0) ? Eigen::VectorXd() : clear;
+}
 
 Eigen::VectorXd expected_row_sum(const LostShare& lost) { return 1 - lost.escaped.array() - lost.at_backs.array(); }
 
@@ -178,12 +184,14 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
     lost.covered[i] = shares.covered;
     lost.dark[i] = shares.dark;
   });
+  lost.clear = clear_shares(mesh, occluder);
   return lost;
 }
 
 Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen) {
   constexpr double smallest_share = 1e-6;
-  const Eigen::Map<const Eigen::ArrayXd> area(mesh.area.data(), mesh.size());
+  Eigen::ArrayXd area = Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), mesh.size());
+  if (lost.clear.size() > 0) area *= 1 - lost.clear.array();
   const Eigen::ArrayXd measured = area * (1 - lost.covered.array());
   const Eigen::ArrayXd shown = (lost.covered.array() > 0).select(seen.array(), 0.0);
   return measured.max(shown.min(area)).max(smallest_share * area);

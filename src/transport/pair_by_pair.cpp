@@ -55,7 +55,7 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
       segments.push_back({sample.from, sample.to, mesh.polygon[pair.patches[0]], mesh.polygon[pair.patches[1]]});
     }
   }
-  const std::vector<std::uint8_t> blocked = occluder.occluded(segments);
+  const std::vector<float> arriving = occluder.transmittance(segments);
   counts.shadow_rays = segments.size();
 
   // 2. What they add up to.
@@ -64,12 +64,16 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
     SampleMeans sums;
     for (const PairSample& sample : pair.samples) {
       sums.unoccluded += sample.unoccluded;
-      if (sample.weight > 0) (blocked[next++] != 0 ? sums.blocked : sums.visible) += sample.weight;
+      if (!(sample.weight > 0)) continue;
+      const double share = arriving[next++];
+      sums.visible += share * sample.weight;
+      sums.blocked += (1 - share) * sample.weight;
     }
     const auto count = static_cast<double>(pair.samples.size());
     const SampleMeans means{sums.visible / count, sums.blocked / count, sums.unoccluded / count};
     const auto [i, j] = pair.patches;
-    S.set(i, j, narrow_toward_zero(estimator.use(shapes[i], shapes[j], means)));
+    const double held = occluder.held_share(mesh.polygon[i]) * occluder.held_share(mesh.polygon[j]);
+    S.set(i, j, narrow_toward_zero(held * estimator.use(shapes[i], shapes[j], means)));
     counts.partial_pairs += sums.visible > 0 && sums.blocked > 0 ? 1 : 0;
     counts.blocked_pairs += sums.visible == 0 && sums.blocked > 0 ? 1 : 0;
   }

@@ -7,6 +7,7 @@
 #include "transport/narrow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -44,6 +45,13 @@ void for_groups(std::span<Pair> pairs, Use use) {
   }
 }
 
+std::vector<float> held_shares(const PatchMesh& mesh, const Occluder& occluder) {
+  std::vector<float> held;
+  held.reserve(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) held.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i])));
+  return held;
+}
+
 std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
                                           const TracingFrame& frame) {
   std::vector<SampledPatch> patches;
@@ -69,10 +77,12 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),
+      held_(held_shares(mesh, occluder)),
       table_(most_effort * samples_, options.seed) {}
 
 float PairSampler::exact(PatchIndex i, PatchIndex j) const {
-  return narrow_toward_zero(unoccluded_exchange_area(shapes_[i], shapes_[j], far_rule_));
+  return narrow_toward_zero(static_cast<double>(held(i, j)) *
+                            unoccluded_exchange_area(shapes_[i], shapes_[j], far_rule_));
 }
 
 // The two patches come in an order that does not depend on their numbers: of adjacent pairs the smaller first, else by
@@ -107,9 +117,9 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
         add_samples(next, static_cast<int>(n * step), static_cast<int>(step), patches_[pair.first],
                     patches_[pair.second], pair.set, k, scale_);
       }
-      const unsigned blocked = occluder_.occluded(next.rays);
+      const std::array<float, packet> arriving = occluder_.transmittance(next.rays);
       for (std::size_t lane = 0; lane < packet && p + lane / step < pairs.size(); ++lane) {
-        add(pairs[p + lane / step], next.weight[lane], (blocked >> lane & 1) != 0 ? 0.0F : 1.0F);
+        add(pairs[p + lane / step], next.weight[lane], arriving[lane]);
       }
     }
     k += static_cast<std::uint32_t>(step);
@@ -142,8 +152,8 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
       weights.push_back(static_cast<float>(y.weight / b.area));
     }
   }
-  const std::vector<std::uint8_t> blocked = occluder_.occluded(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], blocked[k] != 0 ? 0.0F : 1.0F);
+  const std::vector<float> arriving = occluder_.transmittance(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], arriving[k]);
 }
 
 // Samples [begin, end) of pairs that are sampled in one way; none when there are that many already.
@@ -202,7 +212,8 @@ double PairSampler::exchange_area(const Pair& pair) const {
   if (share == 1 || m < 2) return share * U;
   // U less the mean weight has the expectation 0. Times the visible share of the other samples, which it does not
   // depend on, it takes away what the weights scatter; without those other samples it would be a bias.
-  const double areas = shapes_[pair.first].area * shapes_[pair.second].area;
+  const double areas =
+      static_cast<double>(held(pair.first, pair.second)) * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
   const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
   return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U);

@@ -41,7 +41,11 @@ class PairSampler {
   /// `unoccluded` is -1 where it takes exact() to find it, which happens when a ray is free.
   Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
 
-  /// The exchange area without occluders, by closed form or quadrature in double precision.
+  /// The share of the light between two patches that counts as exchanged: of what arrives at a clear one, that it
+  /// holds back.
+  float held(PatchIndex i, PatchIndex j) const { return held_[i] * held_[j]; }
+
+  /// The exchange area without occluders, by closed form or quadrature in double precision, times held().
   float exact(PatchIndex i, PatchIndex j) const;
 
   /// Traces as many rays for every pair as its form factor calls for, whatever they meet: were it to depend on what the
@@ -68,6 +72,7 @@ class PairSampler {
   double scale_;
   std::vector<std::uint32_t> keys_;
   std::vector<SampledPatch> patches_;
+  std::vector<float> held_;
   SampleTable table_;
 };
 

@@ -82,6 +82,7 @@ struct PathTracer {
   Surfaces surfaces;
   Lamps lamps;
   std::optional<Lighting> lights;   // where there are luminaires, sun or sky
+  LightPaths straight;              // between two points
   std::vector<std::uint8_t> clear;  // per polygon: 1 for an opening
   Eigen::Index bands;
 
@@ -93,6 +94,13 @@ struct PathTracer {
   Spectrum light_from_outside(const std::vector<Vertex>& vertices, const std::vector<Ray>& rays,
                               const std::vector<std::optional<Hit>>& hits) const;
   Step scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
+
+  // The end of a ray, and what its light is multiplied with.
+  struct End {
+    std::optional<Hit> hit;
+    Spectrum factor;
+  };
+  End end_of(const Ray& ray, std::optional<Hit> hit, std::uint32_t seed) const;
 };
 
 // Points spread over the exposed part of the receiver.
@@ -127,10 +135,9 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
     segments.push_back({vertex.point, lamp.point, vertex.polygon, lamp.polygon});
     unoccluded.emplace_back(vertex.throughput * there.exitance * g / (sampling_density(lamps, there) + g));
   }
-  const std::vector<std::uint8_t> blocked = occluder.occluded(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    if (blocked[k] == 0) sum += unoccluded[k];
-  }
+  const Field transmittance = straight.transmittance(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    sum += unoccluded[k] * transmittance.row(static_cast<Eigen::Index>(k));
   return sum;
 }
 
@@ -170,6 +177,27 @@ Spectrum PathTracer::light_from_outside(const std::vector<Vertex>& vertices, con
   return sum;
 }
 
+// Where a ray ends that goes through each clear face with the probability of its mean transmittance, and by how much
+// what it carries changes: by the transmittance over that probability, or by one over what is left.
+PathTracer::End PathTracer::end_of(const Ray& ray, std::optional<Hit> hit, std::uint32_t seed) const {
+  Spectrum factor = Spectrum::Ones(bands);
+  double gone = 0;
+  for (std::uint64_t crossing = 0; hit; ++crossing) {
+    hit->distance += gone;
+    const double passing = occluder.transmittance(hit->polygon);
+    if (!(passing > 0)) break;
+    if (uniform({seed, crossing, 6}) >= passing) {
+      factor /= 1 - passing;
+      break;
+    }
+    factor *= surfaces.at(hit->polygon, hit->side).transmittance / passing;
+    gone = hit->distance;
+    const Ray onward{hit->point, ray.direction, hit->polygon};
+    hit = occluder.first_hits({&onward, 1}).front();
+  }
+  return {hit, factor};
+}
+
 // One scattered ray from each vertex, backward along the light's way. A side that is not kept is black.
 Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const {
   std::vector<Ray> rays;
@@ -182,9 +210,11 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
 
   Step step{{}, light_from_outside(vertices, rays, hits)};
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    if (!hits[k] || !surfaces.at(hits[k]->polygon, hits[k]->side).kept) continue;
+    const End end = end_of(rays[k], hits[k], hash({seed, vertices[k].path}));
+    if (!end.hit || !surfaces.at(end.hit->polygon, end.hit->side).kept) continue;
     const Vertex& vertex = vertices[k];
-    const Hit& hit = *hits[k];
+    const Hit& hit = *end.hit;
+    const Spectrum throughput = vertex.throughput * end.factor;
     const Surface& there = surfaces.at(hit.polygon, hit.side);
 
     // 1. A lamp: E(y) with the weight G / (p + G)
@@ -194,11 +224,11 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
       // G / (p + G) with G = a / distance^2, as a / (p distance^2 + a): finite where a ray hardly gets off.
       const double a = std::max(0.0, cosine * cosine_there) / std::numbers::pi;
       const double by_area = sampling_density(lamps, there) * hit.distance * hit.distance;
-      if (a > 0) step.irradiance += vertex.throughput * there.exitance * (a / (by_area + a));
+      if (a > 0) step.irradiance += throughput * there.exitance * (a / (by_area + a));
     }
 
     // 2. What it reflects: go on with the probability of the band that carries most, which then carries all it did
-    const Spectrum reflected = vertex.throughput * there.reflectance;
+    const Spectrum reflected = throughput * there.reflectance;
     const double survival = std::min(reflected.maxCoeff(), highest_survival);
     if (uniform({seed, vertex.path}) >= survival) continue;
     step.vertices.push_back({hit.point, hit.polygon, hit.side, vertex.path, reflected / survival});
@@ -250,7 +280,12 @@ Field mean_and_error(std::span<const Batch> batches) {
 PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
   const Surfaces surfaces = surfaces_of(scene, sides);
   const Coverings coverings = find_coverings(scene, sides);
-  PathTracer tracer{Occluder(scene, Occluder::Blockers::all, coverings), surfaces, lamps_of(scene, surfaces), {}, {},
+  PathTracer tracer{Occluder(scene, Occluder::Blockers::all, coverings),
+                    surfaces,
+                    lamps_of(scene, surfaces),
+                    {},
+                    LightPaths(scene, coverings),
+                    {},
                     scene.materials.front().reflectance.size()};
   if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);

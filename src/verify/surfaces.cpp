@@ -11,6 +11,8 @@ Surface surface_of(const Scene& scene, PolygonIndex index, Side side, const Kept
   surface.kept = (is_front ? kept.front : kept.back)[index] != 0;
   surface.normal = is_front ? front_normal(scene, index) : Vector(-front_normal(scene, index));
   surface.reflectance = material.reflectance;
+  surface.transmittance = material.transmittance.size() > 0 ? material.transmittance
+                                                            : Spectrum(Spectrum::Zero(material.reflectance.size()));
   const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
   surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
   return surface;

@@ -14,7 +14,8 @@ struct Surface {
   bool kept = false;  ///< false: it absorbs all light and emits none
   Vector normal;      ///< unit, out of this side
   Spectrum reflectance;
-  Spectrum exitance;  ///< W/m^2; 0 for a side that does not emit
+  Spectrum transmittance;  ///< 0 for an opaque side
+  Spectrum exitance;       ///< W/m^2; 0 for a side that does not emit
 };
 
 /// The sides of a scene's polygons.

@@ -81,4 +81,22 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
+void list_crossed(const RTCFilterFunctionNArguments* arguments) {
+  const auto* context = reinterpret_cast<const Context*>(arguments->context);
+  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
+  for (unsigned k = 0; k < arguments->N; ++k) {
+    if (arguments->valid[k] != -1) continue;
+    arguments->valid[k] = 0;
+    const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
+    const Plane& plane = planes[RTCHitN_primID(arguments->hit, arguments->N, k)];
+    const bool crosses = context->packet != nullptr
+                             ? separates(plane, exact_ray(*context->packet, ray), in_plane_tolerance)
+                             : separates(plane, context->rays[ray], on_plane_tolerance);
+    Crossed& crossed = context->crossed[ray];
+    const auto end = crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count);
+    if (!crosses || std::find(crossed.polygons.begin(), end, plane.polygon) != end) continue;
+    if (crossed.count < Crossed::most) crossed.polygons[crossed.count++] = plane.polygon;
+  }
+}
+
 }  // namespace patchlight

@@ -6,6 +6,8 @@
 
 #include "visibility/covered_places.h"
 
+#include <array>
+#include <cstddef>
 #include <embree3/rtcore.h>
 
 namespace patchlight {
@@ -30,16 +32,28 @@ struct ExactRay {
 /// Ray k of a packet.
 ExactRay exact_ray(const ShadowPacket& rays, std::size_t k);
 
+/// The clear polygons that one ray crosses.
+struct Crossed {
+  static constexpr std::size_t most = 64;
+  std::array<PolygonIndex, most> polygons;
+  std::size_t count = 0;
+};
+
 /// What the filter needs beside Embree's own context.
 struct Context {
   RTCIntersectContext embree;  ///< first, so that a pointer to it is a pointer to the whole
   const ExactRay* rays = nullptr;
   const ShadowPacket* packet = nullptr;           ///< in place of rays
   const CoveredPlaces* covered_places = nullptr;  ///< hits on these do not count, if given
+  Crossed* crossed = nullptr;                     ///< per ray: what list_crossed() finds
 };
 
 /// Embree's filter: drops the hits on polygons whose plane does not separate the two ends of the ray, and on those that
 /// it starts or ends on. The user data of the geometry are the planes of its triangles.
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments);
+
+/// Embree's filter for clear polygons: lists each of those whose plane separates the two ends of the ray once, and
+/// drops the hit, so that the ray goes on.
+void list_crossed(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace patchlight

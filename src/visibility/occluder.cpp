@@ -1,5 +1,7 @@
 #include "patchlight/visibility/occluder.h"
 
+#include "patchlight/base/sampling.h"
+#include "patchlight/scene/transmittance.h"
 #include "patchlight/scene/triangulate.h"
 #include "patchlight/visibility/convex_hull.h"
 
@@ -12,6 +14,7 @@
 #include <array>
 #include <cassert>
 #include <embree3/rtcore.h>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -47,7 +50,28 @@ RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
 
 std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
 
-// The polygons that cannot block a segment.
+// Whether clear polygons let light through.
+bool lets_through(Occluder::Blockers which) {
+  return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
+}
+
+// The mean transmittances of all polygons; none where no polygon is clear.
+std::vector<double> transmittances(const Scene& scene) {
+  std::vector<double> shares;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) shares.push_back(mean_transmittance(scene, p));
+  if (std::none_of(shares.begin(), shares.end(), [](double share) { return share > 0; })) return {};
+  return shares;
+}
+
+// Left out besides: clear polygons, or all others.
+std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const std::vector<double>& transmittance,
+                                       bool clear) {
+  for (std::size_t p = 0; p < transmittance.size(); ++p)
+    if ((transmittance[p] > 0) == clear) left_out[p] = 1;
+  return left_out;
+}
+
+// The polygons that cannot stand in the way of a segment.
 std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
   if (which == Occluder::Blockers::all) return none_of(scene);
   if (which == Occluder::Blockers::none) return std::vector<std::uint8_t>(scene.polygons.size(), 1);
@@ -78,7 +102,9 @@ struct Occluder::Tracer {
   Point centre = Point::Zero();
   double scale = 1;  // 1 / extent: rays are traced in a scene of about unit size
   TriangleScene everything;
-  TriangleScene blockers;  // those that can block a segment
+  TriangleScene blockers;             // those that can block a segment
+  TriangleScene panes;                // those that can weaken it
+  std::vector<double> transmittance;  // per polygon; none where none is clear
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
   CoveredPlaces covered_places;
@@ -89,20 +115,26 @@ struct Occluder::Tracer {
   Tracer& operator=(const Tracer&) = delete;
 
   Point recentred(const Point& point) const { return scale * (point - centre); }
-  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without) const;
+  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
+             RTCFilterFunctionN filter = keep_separating_hits) const;
+  float transmittance_of(Crossed crossed) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
-  void trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const;
+  void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
 
 Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings)
-    : device(rtcNewDevice(nullptr)), left_out(left_out_by(which, scene)), shafts(scene, left_out) {
+    : device(rtcNewDevice(nullptr)),
+      transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
+      left_out(left_out_by(which, scene)),
+      shafts(scene, left_out) {
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = main_bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
   const bool some_meet_rays_alone = which == Blockers::inside_hull || which == Blockers::none;
   build(everything, scene, some_meet_rays_alone ? none_of(scene) : left_out);
-  build(blockers, scene, left_out);
+  build(blockers, scene, without_kind(left_out, transmittance, true));
+  if (!transmittance.empty()) build(panes, scene, without_kind(left_out, transmittance, false), list_crossed);
   covered_places.coverings = std::move(coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     std::vector<Point> points = corner_points(scene, p);
@@ -111,8 +143,8 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings
   }
 }
 
-void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
-                             const std::vector<std::uint8_t>& without) const {
+void Occluder::Tracer::build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
+                             RTCFilterFunctionN filter) const {
   std::vector<Eigen::Vector3f> corners;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (without[p]) continue;
@@ -139,8 +171,8 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
       indices[k] = static_cast<unsigned>(k);
     }
     rtcSetGeometryUserData(geometry, target.planes.data());
-    rtcSetGeometryOccludedFilterFunction(geometry, keep_separating_hits);
-    rtcSetGeometryIntersectFilterFunction(geometry, keep_separating_hits);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(target.scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -148,7 +180,16 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene,
   rtcCommitScene(target.scene);
 }
 
-void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint8_t* blocked) const {
+// The product over the polygons in their order in the scene: the same bits in whichever order they were met.
+float Occluder::Tracer::transmittance_of(Crossed crossed) const {
+  std::sort(crossed.polygons.begin(), crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count));
+  double share = 1;
+  for (std::size_t k = 0; k < crossed.count; ++k) share *= transmittance[crossed.polygons[k]];
+  return static_cast<float>(share);
+}
+
+// What arrives along segments: 0 for one that is blocked, else the product of the transmittances on its way.
+void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* arriving) const {
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[packet_size];
   ExactRay exact[packet_size];
@@ -176,17 +217,25 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, std::uint
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    blocked[k] = rays.tfar[k] < 0 ||
-                         (covered_places.any() && covered_places.covers_end(exact[k].from, exact[k].to,
-                                                                            exact[k].from_polygon, exact[k].to_polygon))
-                     ? 1
-                     : 0;
+    const bool blocked = rays.tfar[k] < 0 || (covered_places.any() &&
+                                              covered_places.covers_end(exact[k].from, exact[k].to,
+                                                                        exact[k].from_polygon, exact[k].to_polygon));
+    arriving[k] = blocked ? 0.0F : 1.0F;
+    valid[k] = blocked ? 0 : -1;
   }
+  if (panes.planes.empty()) return;
+  std::array<Crossed, packet_size> crossed;
+  context.crossed = crossed.data();
+  context.covered_places = nullptr;
+  rtcOccluded16(valid, panes.scene, &context.embree, &rays);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    if (valid[k] != 0) arriving[k] = transmittance_of(crossed[k]);
 }
 
-std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
-  alignas(64) RTCRay16 rays;
-  alignas(64) int valid[ShadowPacket::size];
+namespace {
+
+RTCRay16 rays_of(const ShadowPacket& packet) {
+  RTCRay16 rays;
   for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
     rays.org_x[k] = packet.from_x[k];
     rays.org_y[k] = packet.from_y[k];
@@ -200,8 +249,16 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
     rays.mask[k] = ~0U;
     rays.id[k] = static_cast<unsigned>(k);
     rays.flags[k] = 0;
-    valid[k] = -1;
   }
+  return rays;
+}
+
+}  // namespace
+
+std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
+  alignas(64) RTCRay16 rays = rays_of(packet);
+  alignas(64) int valid[ShadowPacket::size];
+  std::fill(std::begin(valid), std::end(valid), -1);
   Context context{new_context(), nullptr, &packet, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, tracer_->blockers.scene, &context.embree, &rays);
@@ -215,6 +272,23 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
     }
   }
   return static_cast<std::uint16_t>(blocked);
+}
+
+std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket& packet) const {
+  const unsigned blocked = occluded(packet);
+  std::array<float, ShadowPacket::size> arriving{};
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
+  if (tracer_->panes.planes.empty()) return arriving;
+  alignas(64) RTCRay16 rays = rays_of(packet);
+  alignas(64) int valid[ShadowPacket::size];
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = (blocked >> k & 1) != 0 ? 0 : -1;
+  std::array<Crossed, ShadowPacket::size> crossed;
+  Context context{new_context(), nullptr, &packet, nullptr, crossed.data()};
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, tracer_->panes.scene, &context.embree, &rays);
+  for (unsigned k = 0; k < ShadowPacket::size; ++k)
+    if (valid[k] != 0) arriving[k] = tracer_->transmittance_of(crossed[k]);
+  return arriving;
 }
 
 // The first polygon that can block between two points, in recentred coordinates.
@@ -254,7 +328,15 @@ Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
-bool Occluder::can_occlude() const { return !tracer_->blockers.planes.empty() || tracer_->covered_places.any(); }
+bool Occluder::can_occlude() const {
+  return !tracer_->blockers.planes.empty() || !tracer_->panes.planes.empty() || tracer_->covered_places.any();
+}
+
+double Occluder::transmittance(PolygonIndex polygon) const {
+  return tracer_->transmittance.empty() ? 0 : tracer_->transmittance[polygon];
+}
+
+double Occluder::held_share(PolygonIndex polygon) const { return held_of(transmittance(polygon)); }
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
   return tracer_->covered_places.covers(polygon, side, tracer_->recentred(place));
@@ -264,13 +346,20 @@ bool Occluder::is_covered_in_part(PolygonIndex polygon, Side side) const {
   return !tracer_->covered_places.coverings.over_side(polygon, side).empty();
 }
 
-std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) const {
-  std::vector<std::uint8_t> blocked(segments.size(), 0);
-  if (!can_occlude()) return blocked;
+std::vector<float> Occluder::transmittance(std::span<const Segment> segments) const {
+  std::vector<float> arriving(segments.size(), 1);
+  if (!can_occlude()) return arriving;
   for (std::size_t k = 0; k < segments.size(); k += packet_size) {
     const std::size_t count = std::min<std::size_t>(packet_size, segments.size() - k);
-    tracer_->trace_packet(segments.subspan(k, count), blocked.data() + k);
+    tracer_->trace_packet(segments.subspan(k, count), arriving.data() + k);
   }
+  return arriving;
+}
+
+std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) const {
+  std::vector<std::uint8_t> blocked;
+  blocked.reserve(segments.size());
+  for (const float share : transmittance(segments)) blocked.push_back(share > 0 ? 0 : 1);
   return blocked;
 }
 
@@ -293,6 +382,22 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
         (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->scale;
     hits[k] =
         Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance};
+  }
+  return hits;
+}
+
+// Each time that a ray meets a clear polygon it goes on from there with the probability of its transmittance.
+std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed) const {
+  std::vector<std::optional<Hit>> hits = first_hits(rays);
+  if (tracer_->transmittance.empty()) return hits;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    for (std::uint64_t crossing = 0; hits[k] && crossing < Crossed::most; ++crossing) {
+      if (hash({seed, k, crossing}) * 0x1p-32 >= transmittance(hits[k]->polygon)) break;
+      const double before = hits[k]->distance;
+      const Ray onward{hits[k]->point, rays[k].direction, hits[k]->polygon};
+      hits[k] = first_hits({&onward, 1}).front();
+      if (hits[k]) hits[k]->distance += before;
+    }
   }
   return hits;
 }

@@ -19,10 +19,14 @@ struct LostShare {
   int rays_per_patch = 0;
   Eigen::VectorXd dark = {};  ///< share of the exposed part from where mostly sides without patches are seen: of a
                               ///< patch that reaches into a solid it is the part inside; empty when it was not measured
+  Eigen::VectorXd clear = {};  ///< share of what arrives at the patch that goes straight through; empty: none of any
 
   /// True when no ray of any patch was lost.
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }
 };
+
+/// LostShare::clear.
+Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder);
 
 /// What each row of form factors should sum up to: 1 - escaped - at_backs.
 Eigen::VectorXd expected_row_sum(const LostShare& lost);
@@ -44,7 +48,8 @@ struct KnownShares {
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, const KnownShares& known,
                              std::uint64_t seed, const Observer& observer = {});
 
-/// The area in m^2 that takes part in the exchange of light: what is not covered. It is never below what the exchange
+/// The area in m^2 that takes part in the exchange of light: what is not covered, times the share that a clear patch
+/// holds back. It is never below what the exchange
 /// areas S_ij, given by their row sums in m^2, show to be seen of the patch, nor below 1e-6 of it.
 Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen);
 

@@ -39,9 +39,9 @@ struct PathEstimate {
 /// Irradiance by path tracing: the rendering equation of Kajiya (1986) for diffuse surfaces, without patches, form
 /// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
 /// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. Luminaires and
-/// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected ends
-/// at a clear opening, as in simulate(). The mean is over the part of a receiver that is not covered (docs/theory.md
-/// section 2). The same bits for any number of threads. \throws Cancelled.
+/// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected goes
+/// on through clear openings, too, per band. The mean is over the part of a receiver that is not covered
+/// (docs/theory.md section 2). The same bits for any number of threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 

@@ -51,7 +51,8 @@ struct Hit {
   double distance = 0;  ///< metres from the ray's origin
 };
 
-/// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides. Immutable and
+/// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides, but for clear
+/// ones, which let the share mean_transmittance() of the light through. Immutable and
 /// safe to use from several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
 /// extent in double; a hit counts only if the plane of the polygon separates the two ends of the ray in double, by more
 /// than 1e-9 of the extent at each end. So there is no offset to choose: a surface never shades itself or its neighbour
@@ -65,8 +66,8 @@ class Occluder {
     inside_hull,  ///< all but those on the scene's convex hull: enough between points of the scene's surfaces, and
                   ///< faster
     all,          ///< all: for points that may lie outside
-    opaque,       ///< all but the clear openings
-    clear,        ///< the clear openings alone
+    opaque,       ///< all but the clear openings, which count as not there
+    clear,        ///< the clear openings alone, as if they were opaque
     none          ///< none: as if nothing stood in the way
   };
 
@@ -75,12 +76,24 @@ class Occluder {
   Occluder(Occluder&&) noexcept;
   Occluder& operator=(Occluder&&) noexcept;
 
-  /// 1 for each segment that some polygon blocks, 0 for each that is free. Embree works in packets: pass hundreds at
-  /// once.
+  /// The share of the light along each segment that arrives: 0 where some polygon blocks it, else the product of the
+  /// transmittances of the clear polygons between its ends. Embree works in packets: pass hundreds at once.
+  std::vector<float> transmittance(std::span<const Segment> segments) const;
+
+  /// The same of each ray of a packet. For speed: the ends are given in single precision, so that the rule above holds
+  /// with 3e-7 of the extent instead of 1e-9.
+  std::array<float, ShadowPacket::size> transmittance(const ShadowPacket& packet) const;
+
+  /// mean_transmittance() of a polygon; 0 where Blockers do not let light through clear polygons.
+  double transmittance(PolygonIndex polygon) const;
+
+  /// The share of light that a polygon keeps: 1 less that, and 1e-6 at least.
+  double held_share(PolygonIndex polygon) const;
+
+  /// 1 for each segment along which nothing arrives, else 0.
   std::vector<std::uint8_t> occluded(std::span<const Segment> segments) const;
 
-  /// Bit k is set when some polygon blocks ray k. For speed: the ends are given in single precision, so that the rule
-  /// above holds with 3e-7 of the extent instead of 1e-9.
+  /// Bit k is set when some opaque polygon blocks ray k.
   std::uint16_t occluded(const ShadowPacket& packet) const;
 
   TracingFrame frame() const;
@@ -96,14 +109,18 @@ class Occluder {
   /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
+  /// The same, but a ray goes through a clear polygon with the probability of its transmittance, drawn for each: so in
+  /// the mean hits count as the polygons hold back light.
+  std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed) const;
+
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
 
   /// True when another polygon lies over some place of this side.
   bool is_covered_in_part(PolygonIndex polygon, Side side) const;
 
-  /// False when no polygon can stand between two points of the scene's surfaces, because every polygon lies on the
-  /// scene's convex hull and none over another: then shadow rays are not needed.
+  /// False when no polygon, clear or not, can stand between two points of the scene's surfaces, because every polygon
+  /// lies on the scene's convex hull and none over another: then shadow rays are not needed.
   bool can_occlude() const;
 
  private:

@@ -1,0 +1,247 @@
+#include "patchlight/gather/gather.h"
+#include "patchlight/mesh/mesher.h"
+#include "patchlight/render/render.h"
+#include "patchlight/render/smooth.h"
+#include "patchlight/simulate.h"
+#include "patchlight/verify/path_tracer.h"
+
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <tuple>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// A scene measured in a unit of so many metres, and turned or not.
+struct Placing {
+  double unit = 1;
+  bool turned = false;
+
+  Eigen::Affine3d motion() const {
+    Eigen::Affine3d motion = Eigen::Affine3d::Identity();
+    if (turned) motion.rotate(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
+    motion.scale(unit);
+    return motion;
+  }
+  Scene of(Scene scene) const {
+    scene = moved(std::move(scene), motion());
+    scene.up = motion().rotation() * scene.up;
+    if (scene.sun) scene.sun->direction = motion().rotation() * scene.sun->direction;
+    return scene;
+  }
+};
+
+Material glass(double transmittance, double reflectance, double exitance = 0) {
+  Material material = grey(reflectance, exitance);
+  material.transmittance = Spectrum::Constant(1, transmittance);
+  return material;
+}
+
+// An upright rectangle in the plane at x, whose front looks to -x or +x.
+Quad across_x(double x, double y0, double y1, double z0, double z1, bool to_low_x) {
+  Quad quad{Point(x, y0, z0), Point(x, y0, z1), Point(x, y1, z1), Point(x, y1, z0)};
+  if (!to_low_x) std::swap(quad[1], quad[3]);
+  return quad;
+}
+
+Scene with_wall_around_opening(Scene scene, double x, double z1, bool to_low_x) {
+  for (const Quad& quad : {across_x(x, 0, 1, 0, z1, to_low_x), across_x(x, 2, 3, 0, z1, to_low_x),
+                           across_x(x, 1, 2, 0, 0.5, to_low_x), across_x(x, 1, 2, 2, z1, to_low_x)})
+    scene = with_quad(std::move(scene), quad);
+  return scene;
+}
+
+// Two rooms, 4 x 3 x 2.5 and 3 x 3 x 2.5 m, joined by an opening of 1 x 1.5 m through a wall of 0.2 m; in its middle,
+// the last polygon, stands a pane, material 1. Material 2 is that of the ceiling of the larger one.
+Scene joined_rooms(const Material& wall, const Material& pane, const Material& ceiling) {
+  Scene scene = empty_scene({wall, pane, ceiling});
+  std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 4, 5})
+    scene = with_quad(std::move(scene), faces[k], k == 1 ? MaterialIndex{2} : MaterialIndex{0});
+  faces = box_faces(Point(4.2, 0, 0), Point(7.2, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 3, 4}) scene = with_quad(std::move(scene), faces[k]);
+  scene = with_wall_around_opening(std::move(scene), 4, 2.5, true);
+  scene = with_wall_around_opening(std::move(scene), 4.2, 2.5, false);
+  faces = box_faces(Point(4, 1, 0.5), Point(4.2, 2, 2), true);
+  for (const std::size_t k : {0, 1, 2, 4}) scene = with_quad(std::move(scene), faces[k]);
+  scene = with_quad(std::move(scene), across_x(4.1, 1, 2, 0.5, 2, true), 1);
+  scene.polygons.back().back_material = 1;
+  return scene;
+}
+
+Request fronts(PatchIndex patches) {
+  Request request;
+  request.sides = Sides::front;
+  request.patches = patches;
+  request.tolerance = 1e-9;
+  return request;
+}
+
+// Transmittance and reflectance of the pane; placing.
+class FurnaceWithAPane : public testing::TestWithParam<std::tuple<std::pair<double, double>, Placing>> {};
+
+TEST_P(FurnaceWithAPane, IsOneOnBothSides) {
+  // Everything sends out 1: walls E = 1 - rho, the pane E = 1 - tau - rho and what it lets through. So H = 1
+  // everywhere, B = 1 on walls, and the pane sends out 1 less what it lets through. Rows are closed to rounding.
+  const auto [of_pane, placing] = GetParam();
+  const auto [tau, rho] = of_pane;
+  const Scene scene = placing.of(joined_rooms(grey(0.6, 0.4), glass(tau, rho, 1 - tau - rho), grey(0.6, 0.4)));
+  const Simulation simulation = simulate(scene, fronts(500));
+  const PolygonIndex pane = static_cast<PolygonIndex>(scene.polygons.size() - 1);
+  EXPECT_TRUE(simulation.transport.lost.closed());
+  EXPECT_EQ(simulation.mesh.patches_on(pane, Side::front).end - simulation.mesh.patches_on(pane, Side::front).begin,
+            simulation.mesh.patches_on(pane, Side::back).end - simulation.mesh.patches_on(pane, Side::back).begin);
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    const double expected = simulation.mesh.polygon[i] == pane ? 1 - tau : 1;
+    EXPECT_NEAR(simulation.solution.irradiance(i, 0), 1, 1e-6);
+    EXPECT_NEAR(simulation.solution.radiosity(i, 0), expected, 1e-6);
+  }
+  EXPECT_LT(simulation.balance.imbalance, 1e-6);
+  EXPECT_NEAR(simulation.transport.raw_row_sum.mean(), 1, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, FurnaceWithAPane,
+                         testing::Combine(testing::Values(std::pair(1.0, 0.0), std::pair(0.5, 0.5),
+                                                          std::pair(0.7, 0.1)),
+                                          testing::Values(Placing{1, false}, Placing{0.001, true})));
+
+TEST(JoinedRooms, AreLitThroughAPaneAsByPaths) {
+  // A lamp is the ceiling of the larger room; walls of the smaller one have what comes through the pane alone. Paths of
+  // 1 % here, patches of 0.3 m: 3 %.
+  const Scene scene = joined_rooms(grey(0.6), glass(0.6, 0.2), grey(0.6, 10));
+  const Simulation simulation = simulate(scene, fronts(1500));
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  for (const PolygonIndex p :
+       {PolygonIndex{5}, PolygonIndex{8}, static_cast<PolygonIndex>(scene.polygons.size() - 1)}) {
+    const std::vector<Point> corners = corner_points(scene, p);
+    const PathReceiver receiver{{corners[0], corners[1], corners[2], corners[3]}, p, Side::front};
+    const PathEstimate paths = trace_irradiance(scene, sides, {&receiver, 1}, {.paths = 1 << 15});
+    double flux = 0;
+    double area = 0;
+    const PatchRange range = simulation.mesh.patches_on(p, Side::front);
+    for (PatchIndex i = range.begin; i < range.end; ++i) {
+      flux += simulation.mesh.area[i] * simulation.solution.irradiance(i, 0);
+      area += simulation.mesh.area[i];
+    }
+    EXPECT_GT(flux, 0);
+    EXPECT_NEAR(flux / area, paths.irradiance(0, 0), 3 * paths.standard_error(0, 0) + 0.03 * paths.irradiance(0, 0))
+        << p;
+  }
+}
+
+// A room with a window of 1 x 1.5 m in its wall at x = 4, behind which 6 x 9 m of ground lie in the sun, which does not
+// shine into the room. The last polygon is the pane, material 1, unless it is a hole.
+Scene room_before_lit_ground(const std::optional<Material>& pane) {
+  Scene scene = empty_scene({grey(0.5), pane.value_or(grey(0))});
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 4, 5}) scene = with_quad(std::move(scene), faces[k]);
+  scene = with_wall_around_opening(std::move(scene), 4, 2.5, true);
+  scene = with_quad(std::move(scene), {Point(4, -3, 0), Point(10, -3, 0), Point(10, 6, 0), Point(4, 6, 0)});
+  scene.sun = Sun{Vector(-0.3, 0.2, 0.9).normalized(), Spectrum::Constant(1, 500)};
+  if (!pane) return scene;
+  scene = with_quad(std::move(scene), across_x(4, 1, 2, 0.5, 2, true), 1);
+  scene.polygons.back().back_material = 1;
+  return scene;
+}
+
+struct Readings {
+  double mean = 0;  // irradiance of the room's patches, weighted by area
+  Field desk;       // irradiance at sensors by patches
+};
+
+Readings readings_of(const Scene& scene, const Placing& placing) {
+  Request request = fronts(0);
+  request.patches.reset();
+  request.max_edge = 0.4 * placing.unit;
+  const Simulation simulation = simulate(scene, request);
+  Readings readings;
+  double area = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (simulation.mesh.polygon[i] >= 9) continue;
+    readings.mean += simulation.mesh.area[i] * simulation.solution.irradiance(i, 0);
+    area += simulation.mesh.area[i];
+  }
+  readings.mean /= area;
+  std::vector<Sensor> desk;
+  for (const double x : {1.0, 2.0, 3.0, 3.5})
+    desk.push_back({placing.motion() * Point(x, 1.4, 0.8), placing.motion().rotation() * Vector::UnitZ()});
+  readings.desk =
+      gather_irradiance(simulation.mesh, simulation.solution.radiosity, Occluder(scene, Occluder::Blockers::all), desk)
+          .irradiance;
+  return readings;
+}
+
+class PaneBeforeLitGround : public testing::TestWithParam<Placing> {};
+
+TEST_P(PaneBeforeLitGround, LetsInWhatAHoleDoes) {
+  // Theorem for a pane that lets all through: within 1 % at patches and at a desk. One that lets half through and
+  // absorbs the rest lets in half: what gets back in by the ground is below 0.1 %.
+  const Placing placing = GetParam();
+  const Readings hole = readings_of(placing.of(room_before_lit_ground({})), placing);
+  EXPECT_GT(hole.mean, 1);
+  for (const double tau : {1.0, 0.5}) {
+    const Readings pane = readings_of(placing.of(room_before_lit_ground(glass(tau, 0))), placing);
+    EXPECT_NEAR(pane.mean / hole.mean, tau, 0.01 * tau);
+    for (Eigen::Index k = 0; k < hole.desk.rows(); ++k)
+      EXPECT_NEAR(pane.desk(k, 0) / hole.desk(k, 0), tau, 0.01 * tau) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, PaneBeforeLitGround, testing::Values(Placing{1, false}, Placing{0.001, true}));
+
+TEST(PaneInAPicture, ShowsItsOwnLightAndWhatIsBehind) {
+  // A pane with B = 2 and tau = 0.6 before a wall with B = 5.
+  Scene scene = empty_scene({grey(0.5), glass(0.6, 0.4)});
+  scene = with_quad(std::move(scene), across_x(2, -5, 5, -5, 5, true));
+  scene = with_quad(std::move(scene), across_x(1, -5, 5, -5, 5, true), 1);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 10);
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  Field radiosity(mesh.size(), 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.polygon[i] == 0 ? 5 : 2;
+  const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+  const Image image = render(mesh, smooth(mesh, radiosity, area, occluder), occluder,
+                             {Point(0, 0, 0), Point(1, 0, 0), 30}, Vector::UnitZ(), {.width = 4, .height = 4});
+  EXPECT_NEAR((image.pixels - (2 + 0.6 * 5)).abs().maxCoeff(), 0, 1e-5);
+}
+
+TEST(PanesOnTheWay, MultiplyForSegmentsAndPackets) {
+  // Three panes and a wall: between places 0 to 4 along x. No panes: the bits of occluded().
+  Scene scene = empty_scene({grey(0.5), glass(0.5, 0), glass(0.8, 0)});
+  for (int k = 0; k < 3; ++k)
+    scene = with_quad(std::move(scene), across_x(k + 0.5, -5, 5, -5, 5, true), k == 1 ? 2 : 1);
+  scene = with_quad(std::move(scene), across_x(3.5, -5, 5, -5, 5, true));
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const auto at = [](double x) { return Point(x, 0.3, 0.2); };
+  const std::vector<Segment> segments{{at(0), at(1)}, {at(0), at(2)},   {at(3), at(0)},
+                                      {at(0), at(4)}, {at(0.6), at(1)}, {at(0.5), at(2), 0, no_polygon}};
+  const std::vector<float> expected{0.5F, 0.4F, 0.2F, 0, 1, 0.8F};
+  const std::vector<float> share = occluder.transmittance(segments);
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_FLOAT_EQ(share[k], expected[k]) << k;
+  ShadowPacket packet{};
+  for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
+    const Segment& segment = segments[k % segments.size()];
+    const Point from = occluder.frame().scale * (segment.from - occluder.frame().centre);
+    const Vector toward = occluder.frame().scale * (segment.to - segment.from);
+    packet.from_x[k] = static_cast<float>(from.x());
+    packet.from_y[k] = static_cast<float>(from.y());
+    packet.from_z[k] = static_cast<float>(from.z());
+    packet.toward_x[k] = static_cast<float>(toward.x());
+    packet.toward_y[k] = static_cast<float>(toward.y());
+    packet.toward_z[k] = static_cast<float>(toward.z());
+    packet.from_polygon[k] = segment.from_polygon;
+    packet.to_polygon[k] = segment.to_polygon;
+  }
+  const auto shares = occluder.transmittance(packet);
+  for (std::size_t k = 0; k < ShadowPacket::size; ++k) EXPECT_FLOAT_EQ(shares[k], expected[k % expected.size()]) << k;
+  EXPECT_FALSE(occluder.hides({&segments[0].from, 1}, {&segments[0].to, 1}));
+  EXPECT_TRUE(occluder.hides({&segments[3].from, 1}, {&segments[3].to, 1}));
+}
+
+}  // namespace
+}  // namespace patchlight
