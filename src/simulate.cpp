@@ -8,11 +8,8 @@
 #include "effects.h"
 #include "interest.h"
 #include "memory.h"
-<<<<<<< HEAD
-#include "relative_errors.h"
-=======
 #include "problem_of.h"
->>>>>>> 20f0caf (Light that patches send goes through clear faces, which hold back a share of it like sheets with holes, so that a pane of transmittance 1 and a hole give the same)
+#include "relative_errors.h"
 #include "solve_mesh.h"
 #include "stage_clock.h"
 #include "to_accuracy.h"

@@ -3,10 +3,12 @@
 #include "patchlight/archive/form_factor_files.h"
 #include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
+#include "patchlight/scene/transmittance.h"
 
 #include <cmath>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace patchlight::cli {
 namespace {
@@ -31,6 +33,29 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
        << info.model << "; this model takes at least " << least
        << " such patches. Give the model of then, or make them anew: patchlight form-factors MODEL -o FOLDER";
   throw InputError(folder.string(), text.str());
+}
+
+// The share of light that each polygon holds back.
+std::vector<double> held_shares(const Scene& scene) {
+  std::vector<double> held;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) held.push_back(held_of(mean_transmittance(scene, p)));
+  return held;
+}
+
+// What clear faces let through is in the form factors, and in the area of their patches.
+void require_same_panes(const std::filesystem::path& folder, const Exchange& exchange, const PatchMesh& mesh,
+                        const std::vector<double>& held) {
+  constexpr double rounding = 1e-5;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const double then = exchange.area[i] / mesh.area[i];
+    const double now = held[mesh.polygon[i]];
+    if (exchange.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
+    std::ostringstream text;
+    text << "found form factors with a face that lets the share " << 1 - then << " of light through; now it lets "
+         << 1 - now << " through. Set the transmittance of then, or make them anew: patchlight form-factors MODEL "
+         << "-o FOLDER";
+    throw InputError(folder.string(), text.str());
+  }
 }
 
 // The request with the options that the form factors were made with.
@@ -72,7 +97,11 @@ SolveInput read_input(const SolveArguments& arguments) {
   input.request = request_as_then(arguments, info);
   input.request.kept_sides = std::move(sides);
   require_room_for(folder, info, input.scene, input.request);
-  input.exchange = [folder, info](const PatchMesh& mesh) { return read_exchange(folder, info, mesh); };
+  input.exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
+    Exchange exchange = read_exchange(folder, info, mesh);
+    require_same_panes(folder, exchange, mesh, held);
+    return exchange;
+  };
   return input;
 }
 
