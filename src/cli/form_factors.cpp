@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 namespace patchlight::cli {
@@ -38,6 +39,16 @@ std::string table(const GroupFactors& groups) {
     text << "  = " << row.sum() << '\n';
   }
   return text.str();
+}
+
+// What the figures of a group are shares of.
+std::optional<std::string> note_on_groups(const KeptSides& sides) {
+  std::size_t both = 0;
+  for (std::size_t p = 0; p < sides.front.size(); ++p) both += sides.front[p] != 0 && sides.back[p] != 0 ? 1 : 0;
+  if (both == 0) return std::nullopt;
+  return "both sides of " + std::to_string(both) +
+         " faces take part: the form factor from a group is a share of what leaves all of its sides together, half of "
+         "that from the fronts where backs see nothing; --sides front leaves the backs out";
 }
 
 std::string summary(const Scene& scene, const FormFactors& form_factors) {
@@ -89,6 +100,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   if (found.request.sides != arguments.request.sides) {
     print_message("note", "without a lamp --sides auto cannot tell where light gets to: the front sides are used");
   }
+  if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) print_message("note", *note);
   std::cout << summary(scene, found);
   for (const GroupFactors& table_of : groups) std::cout << table(table_of);
   std::cout << "wrote " << arguments.output.string() << std::endl;

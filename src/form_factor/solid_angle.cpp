@@ -92,11 +92,10 @@ PolygonSample sample_solid_angle(const Point& from, const Vector& normal, std::s
                                  double v) {
   const std::vector<Point> above_horizon = clip_to_half_space(polygon, from, normal);
   if (above_horizon.empty()) return {};
-  // In a small triangle the weight of the point hardly varies: left out.
   const SeenPoint seen = sample_seen_point(from, above_horizon, u, v);
   if (!(seen.solid_angle > 0)) return {};
   const double cosine = normal.dot((seen.point - from).normalized());
-  return {seen.point, std::max(0.0, cosine) * seen.solid_angle / std::numbers::pi};
+  return {seen.point, std::max(0.0, cosine) * seen.solid_angle * seen.weight / std::numbers::pi};
 }
 
 }  // namespace patchlight

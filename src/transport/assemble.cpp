@@ -92,7 +92,8 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   if (!(again.unoccluded > 0)) return;
   const double share = exchange_area / again.unoccluded;
   const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
-  const double variance = pair.effort * difference * difference / 2;
+  const double smaller = std::min(mesh.area[pair.first], mesh.area[pair.second]);
+  const double variance = sampling_effort(again.unoccluded / smaller) * difference * difference / 2;
   if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
     ++facts.error.partial_pairs[bin];

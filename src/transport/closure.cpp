@@ -16,8 +16,15 @@ namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
-// Relative standard error of an entry, for weighing entries against a measured lost share. docs/theory.md section 6.
+// Relative standard error of an entry of which nothing is known, for weighing entries against a measured lost share.
+// docs/theory.md section 6.
 constexpr double entry_error = 0.02;
+
+// The same of one that was found without shadow rays: quadrature and rounding.
+constexpr double least_error = 1e-4;
+
+// Partial sums are kept per stripe of blocks; their number is fixed, so that the bits do not depend on the threads.
+constexpr PatchIndex stripes = 8;
 
 // Row sums of a closed scene are met to this share of the area; narrowing to float then loses more than that.
 constexpr double row_tolerance = 1e-10;
@@ -44,20 +51,84 @@ Target target_of(const Eigen::VectorXd& area, const LostShare& lost) {
   return {area.array() * (1 - share), area.array().square() * p * (1 - p) / n};
 }
 
-// Solves (W + diag(W 1) + diag(s^2)) lambda = a - S 1 with W_ij = (entry_error S_ij)^2 by conjugate gradients with
-// diagonal preconditioning. Rows without entries keep lambda = 0. Nothing if the sums cannot be met.
-std::optional<Eigen::VectorXd> row_multipliers(const ExchangeAreas& S, const Eigen::VectorXd& defect,
+// Calls use(i, j, S_ij) for the entries i < j of block row I that are not 0.
+template <typename Use>
+void for_entries(const ExchangeAreas& S, PatchIndex I, Use use) {
+  for (PatchIndex J = I; J < S.blocks(); ++J) {
+    const std::span<const float> tile = S.tile(I, J);
+    for (PatchIndex k = 0; k < edge * edge; ++k) {
+      const PatchIndex i = I * edge + k / edge;
+      const PatchIndex j = J * edge + k % edge;
+      if (i < j && tile[k] != 0) use(i, j, static_cast<double>(tile[k]));
+    }
+  }
+}
+
+// The variances W_ij of the entries: what of them is known, or the same relative error for all. Entries that are 0 have
+// none, as they stay 0.
+class EntryWeights {
+ public:
+  explicit EntryWeights(const ExchangeAreas& S) : S_(S) {}
+  EntryWeights(const ExchangeAreas& S, const KnownErrors& known, const Eigen::VectorXd& area)
+      : S_(S), known_(&known), area_(&area) {
+    const auto& audited = known.sampling.partial_pairs;
+    estimates_audited_ = std::any_of(audited.begin(), audited.end(), [](std::uint64_t pairs) { return pairs > 0; });
+  }
+
+  double at(PatchIndex i, PatchIndex j, double entry) const {
+    const double sigma = std::max(standard_error(i, j, entry), (known_ ? least_error : entry_error) * entry);
+    return sigma * sigma;
+  }
+  Eigen::VectorXd times(const Eigen::VectorXd& x) const;
+
+ private:
+  double standard_error(PatchIndex i, PatchIndex j, double entry) const;
+
+  const ExchangeAreas& S_;
+  const KnownErrors* known_ = nullptr;
+  const Eigen::VectorXd* area_ = nullptr;
+  bool estimates_audited_ = false;
+};
+
+// m^2; 0 where the least error stands for it.
+double EntryWeights::standard_error(PatchIndex i, PatchIndex j, double entry) const {
+  if (known_ == nullptr) return 0;
+  const EntryKind kind = known_->entries.kind(i, j);
+  if (kind == EntryKind::exact || kind == EntryKind::all_hidden) return 0;
+  if (kind == EntryKind::estimated)
+    return estimates_audited_ ? known_->entries.standard_error(i, j) : entry_error * entry;
+  const std::uint32_t effort = sampling_effort(entry / std::min((*area_)[i], (*area_)[j]));
+  return entry * patchlight::standard_error(known_->sampling.visible, effort);
+}
+
+Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
+  if (known_ == nullptr) return entry_error * entry_error * multiply(S_, column(x), 2).matrix();
+  std::vector<Eigen::VectorXd> partial(stripes, Eigen::VectorXd::Zero(x.size()));
+  parallel_for(stripes, [&](std::size_t stripe) {
+    Eigen::VectorXd& sum = partial[stripe];
+    for (auto I = static_cast<PatchIndex>(stripe); I < S_.blocks(); I += stripes) {
+      for_entries(S_, I, [&](PatchIndex i, PatchIndex j, double entry) {
+        const double weight = at(i, j, entry);
+        sum[i] += weight * x[j];
+        sum[j] += weight * x[i];
+      });
+    }
+  });
+  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
+  return partial[0];
+}
+
+// Solves (W + diag(W 1) + diag(s^2)) lambda = a - S 1 by conjugate gradients with diagonal preconditioning. Rows
+// without entries keep lambda = 0. Nothing if the sums cannot be met.
+std::optional<Eigen::VectorXd> row_multipliers(const EntryWeights& W, const Eigen::VectorXd& defect,
                                                const Target& target, const Eigen::VectorXd& area,
                                                const Observer& observer) {
-  const double w = entry_error * entry_error;
   const Eigen::Index n = defect.size();
-  const Eigen::VectorXd weight_sum = w * multiply(S, Field::Ones(n, 1), 2).matrix();
+  const Eigen::VectorXd weight_sum = W.times(Eigen::VectorXd::Ones(n));
   const Eigen::VectorXd diagonal = weight_sum + target.variance;
   const Eigen::ArrayXd active = (weight_sum.array() > 0).cast<double>();
   const Eigen::ArrayXd inverse = (weight_sum.array() > 0).select(diagonal.array().inverse(), 0.0);
-  const auto apply = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-    return w * multiply(S, column(x), 2).matrix() + diagonal.cwiseProduct(x);
-  };
+  const auto apply = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return W.times(x) + diagonal.cwiseProduct(x); };
 
   Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd r = (defect.array() * active).matrix();
@@ -98,21 +169,13 @@ ExchangeAreas changed(ExchangeAreas S, const Change& value) {
   return S;
 }
 
-// Does S_ij + w S_ij^2 (lambda_i + lambda_j) stay above 0 for every entry?
-bool stays_positive(const ExchangeAreas& S, const Eigen::VectorXd& lambda, double w) {
-  const PatchIndex size = S.size();
+// Does S_ij + W_ij (lambda_i + lambda_j) stay above 0 for every entry?
+bool stays_positive(const ExchangeAreas& S, const Eigen::VectorXd& lambda, const EntryWeights& W) {
   std::vector<std::uint8_t> positive(S.blocks(), 1);
   parallel_for(S.blocks(), [&](std::size_t row) {
-    const auto I = static_cast<PatchIndex>(row);
-    for (PatchIndex J = I; J < S.blocks(); ++J) {
-      const std::span<const float> tile = S.tile(I, J);
-      for (PatchIndex i = I * edge; i < std::min(size, (I + 1) * edge); ++i) {
-        for (PatchIndex j = J * edge; j < std::min(size, (J + 1) * edge); ++j) {
-          const double entry = tile[static_cast<std::size_t>(i % edge) * edge + j % edge];
-          if (1 + w * entry * (lambda[i] + lambda[j]) < 0) positive[row] = 0;
-        }
-      }
-    }
+    for_entries(S, static_cast<PatchIndex>(row), [&](PatchIndex i, PatchIndex j, double entry) {
+      if (entry + W.at(i, j, entry) * (lambda[i] + lambda[j]) < 0) positive[row] = 0;
+    });
   });
   return std::all_of(positive.begin(), positive.end(), [](std::uint8_t p) { return p != 0; });
 }
@@ -145,29 +208,29 @@ ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, cons
           "rows above 1.1 cut to 1: open scene, and the least change has negative entries"};
 }
 
-}  // namespace
+// What it takes to close.
+struct Wanted {
+  const Eigen::VectorXd& area;
+  const LostShare& lost;
+  const KnownErrors* known;  // none: null
+  const Observer& observer;
+};
 
-ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason) {
-  const Eigen::Index n = raw.size();
-  return {std::move(raw), Eigen::VectorXd::Zero(n), "none: " + reason};
-}
-
-ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
-                                         const Observer& observer) {
+ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
+  const auto& [area, lost, known, observer] = wanted;
   const Target target = target_of(area, lost);
   const Eigen::VectorXd raw_sums = row_sums(raw);
-  const double w = entry_error * entry_error;
+  const EntryWeights W = known ? EntryWeights(raw, *known, area) : EntryWeights(raw);
 
   // 1. The least change: S_ij += W_ij (lambda_i + lambda_j).
-  const auto lambda = row_multipliers(raw, target.sum - raw_sums, target, area, observer);
+  const auto lambda = row_multipliers(W, target.sum - raw_sums, target, area, observer);
   if (!lambda)
     return keep_exchange_areas(std::move(raw),
                                "no symmetric exchange areas with this pattern have the wanted row sums");
-  const Eigen::VectorXd change = w * (lambda->cwiseProduct(multiply(raw, Field::Ones(area.size(), 1), 2).matrix()) +
-                                      multiply(raw, column(*lambda), 2).matrix());
-  if (stays_positive(raw, *lambda, w)) {
+  const Eigen::VectorXd change = lambda->cwiseProduct(W.times(Eigen::VectorXd::Ones(area.size()))) + W.times(*lambda);
+  if (stays_positive(raw, *lambda, W)) {
     ExchangeAreas closed = changed(std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) {
-      return entry + w * entry * entry * ((*lambda)[i] + (*lambda)[j]);
+      return entry + W.at(i, j, entry) * ((*lambda)[i] + (*lambda)[j]);
     });
     const Eigen::VectorXd remainder = (raw_sums + change - row_sums(closed)).cwiseMax(0.0);
     return {std::move(closed), remainder, lost.closed() ? "least squares" : "least squares, open scene"};
@@ -181,6 +244,25 @@ ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorX
       std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) { return (*scale)[i] * entry * (*scale)[j]; });
   const Eigen::VectorXd remainder = (target.sum - row_sums(closed)).cwiseMax(0.0);
   return {std::move(closed), remainder, "scaling"};
+}
+
+}  // namespace
+
+ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason) {
+  const Eigen::Index n = raw.size();
+  return {std::move(raw), Eigen::VectorXd::Zero(n), "none: " + reason};
+}
+
+ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
+                                         const Observer& observer) {
+  return with_row_sums(std::move(raw), {area, lost, nullptr, observer});
+}
+
+ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
+                                         const KnownErrors& known, const Observer& observer) {
+  // In a closed scene only the ratios of the weights count, and far too different ones take many iterations.
+  const bool is_known = known.entries.size() == raw.size() && !lost.closed();
+  return with_row_sums(std::move(raw), {area, lost, is_known ? &known : nullptr, observer});
 }
 
 }  // namespace patchlight

@@ -9,12 +9,20 @@ namespace {
 // each), stored as the nearest floats F_ij (2^-24) and narrowed once more when they are read (2^-23).
 constexpr double storage_loss = 5 * 0x1p-24;
 
+// Beyond so many patches the errors of entries are not kept for closure alone: rows of thousands of entries are known
+// so much better than the lost share that hardly anything is moved, whatever the weights.
+constexpr PatchIndex most_weighed = 4096;
+
 }  // namespace
 
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         int lost_share_rays, const Observer& observer) {
-  Assembly raw = assemble_exchange_areas(mesh, occluder, options, observer);
-  return exchange_of(std::move(raw), mesh, measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer));
+  LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
+  AssemblyOptions keeping = options;
+  // Closure of an open scene weighs entries by their errors.
+  const bool weighs = !lost.closed() && mesh.size() <= most_weighed && options.estimator == Estimator::automatic;
+  keeping.keep_errors = options.keep_errors || weighs;
+  return exchange_of(assemble_exchange_areas(mesh, occluder, keeping, observer), mesh, std::move(lost));
 }
 
 Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost) {
@@ -42,7 +50,8 @@ ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) 
       return {std::move(exchange.exchange_areas), missing, exchange.closure};
     }
   }
-  return close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, observer);
+  const KnownErrors known{exchange.entry_errors, exchange.error};
+  return close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, known, observer);
 }
 
 }  // namespace patchlight

@@ -164,7 +164,9 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
 }
 
 // By the form factor from the smaller patch, or what the weights of the first samples tell of it.
+// Where not one of them has a weight, as the patches see each other in a sliver, it takes the most to find it.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
+  if (pair.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
   const double second = shapes_[pair.second].area;
   const double mean_weight = static_cast<double>(pair.weight) / pair.rays();

@@ -16,7 +16,7 @@ constexpr std::size_t pairs_per_packet = ShadowPacket::size / rays_per_pair;
 constexpr std::size_t packets_per_task = 64;
 constexpr std::size_t most_packets = 16384;
 
-// Packets as the probes of an assembly fill them: pairs of one patch with patches that follow each other.
+// Packets as those of an assembly with few samples: pairs of one patch with patches that follow each other.
 struct PacketMaker {
   const PatchMesh& mesh;
   const std::vector<PatchShape> shapes = patch_shapes(mesh);

@@ -82,8 +82,21 @@ class FormFactorsTest(ToolTest):
         self.find("-o", "few.ff", "--patches", "300", "--without", "free", "--without", "far")
         info = json.loads((self.folder / "few.ff/info.json").read_text())
         self.assertEqual(info["options"]["without"], ["free", "far"])
-        self.assertGreater(info["counts"]["shadow_rays"], 2 * counts["shadow_rays"])
+        self.assertGreater(info["counts"]["shadow_rays"], counts["shadow_rays"])
         self.assertEqual(info["counts"]["free_pairs"], 0)
+
+    def test_groups_with_both_sides_are_said_to_be_shares_of_both(self):
+        # Unit squares that share an edge: 0.20004 of what leaves a front, and half of that of what leaves both sides.
+        corners = ("0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 1 1", "0 0 1")
+        lines = [f"v {corner}" for corner in corners] + ["g source", "f 1 2 3 4", "g receiver", "f 1 4 5 6"]
+        (self.folder / "squares.obj").write_text("\n".join(lines) + "\n")
+        for sides, expected in (("both", "0.10002"), ("front", "0.20004")):
+            done = self.run_tool("form-factors", "squares.obj", "-o", f"{sides}.ff", "--patches", "2", "--by", "object",
+                                 "--sides", sides)
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            self.assertIn(f"source    0.00000  {expected}", done.stdout)
+            self.assertEqual("share of what leaves all of its sides together" in done.stdout + done.stderr,
+                             sides == "both")
 
     def test_every_estimator_finds_about_the_same(self):
         def mean_of(estimator):

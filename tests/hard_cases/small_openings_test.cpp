@@ -43,7 +43,12 @@ Mean by_paths(const Scene& scene) {
 }
 
 Simulation simulated(const Scene& scene, double size, std::uint64_t seed = 1) {
-  return simulate(scene, {.max_edge = 0.2501 * size, .sides = Sides::both, .seed = seed, .error_bars = true});
+  Request request;
+  request.max_edge = 0.2501 * size;
+  request.sides = Sides::both;
+  request.seed = seed;
+  request.error_bars = true;
+  return simulate(scene, request);
 }
 
 // The same of patches. Their errors are those of the sampling, as if independent.

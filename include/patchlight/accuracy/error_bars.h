@@ -62,7 +62,7 @@ Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const S
 /// where there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
 inline constexpr double mesh_order = 1.2;
 
-/// What drawn errors of form factors, which leave out how those of neighbouring patches hang together, are multiplied
+/// What the errors of light straight from the lamps, known from a single difference, are multiplied
 /// with, so that bars cover what they should.
 inline constexpr double form_factor_scale = 1.5;
 

@@ -26,7 +26,7 @@ struct Request {
   int max_iterations = 1000;              ///< after which the solver gives up
   std::optional<double> max_rows = {};    ///< or, of progressive refinement, after so many rows, as a share of all
   std::optional<double> relaxation = {};  ///< of SOR; without it estimated
-  int samples = 16;                       ///< shadow rays of a partly occluded pair of patches
+  int samples = 16;                       ///< shadow rays of a pair of patches that rays decide
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};  ///< of the automatic estimator

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "patchlight/base/progress.h"
+#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"
+#include "patchlight/transport/sampling_error.h"
 
 #include <Eigen/Core>
 #include <string>
@@ -16,14 +18,23 @@ struct ClosedExchangeAreas {
   std::string method;            ///< "least squares", "scaling", "rows above 1.1 cut to 1" or "none", with the reason
 };
 
+/// What the assembly knows of the errors of its entries, for weighing them against a measured lost share.
+struct KnownErrors {
+  const EntryErrors& entries;  ///< of all entries, or of none
+  const SamplingError& sampling;
+};
+
 /// Corrects symmetric exchange areas so that row i sums to a_i = A_i (1 - lost_i), the smallest change in the norm
-/// weighted by the entries' variance, for which S_ij^2 stands. In a closed scene the sums become exact; in an open one
-/// the measured lost share has a standard error that is weighed against that of the entries. Falls back to symmetric
+/// weighted by the entries' variance. In a closed scene S_ij^2 stands for it, and the sums become exact; in an open one
+/// the measured lost share has a standard error that is weighed against those of the entries, which are next to 0 where
+/// no shadow ray was needed. Without known errors 2 % of S_ij are taken for the error of each. Falls back to symmetric
 /// scaling when an entry would become negative, in an open scene to cutting rows that sum to more than their area, and
 /// to the raw entries where no symmetric matrix with this pattern has such sums. docs/theory.md section 6. \throws
 /// Cancelled.
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
                                          const Observer& observer = {});
+ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
+                                         const KnownErrors& known, const Observer& observer = {});
 
 /// The same entries without any change.
 ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason);

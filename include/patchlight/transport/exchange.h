@@ -21,7 +21,7 @@ struct Exchange {
   LostShare lost;
   AssemblyCounts counts;
   SamplingError error;       ///< of the sampled entries, before closure
-  EntryErrors entry_errors;  ///< of the exchange areas before closure, when asked for
+  EntryErrors entry_errors;  ///< of the exchange areas before closure, when asked for or when closure weighs by them
   std::string closure;       ///< the method that has closed the exchange areas; empty before closure
 };
 

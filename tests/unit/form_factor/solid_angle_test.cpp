@@ -34,6 +34,22 @@ TEST(SampleSolidAngle, MeanWeightIsTheFormFactor) {
               point_to_polygon(Point(0.5, 0.5, 0.5), tilted, ceiling), 1e-3);
 }
 
+// A strip that is seen almost edge on, from 0.5 to 2 m away: 6e-5 sr, most of it from its near end, though most of its
+// area is far. In metres and millimetres, and turned. Weights vary by the cube of 4, so that the mean of 4096 is right
+// to a few times 1e-3.
+TEST(SampleSolidAngle, MeanWeightOfASliverIsTheFormFactor) {
+  const Square strip{Point(0.5, -0.1, 2e-4), Point(0.5, 0.1, 2e-4), Point(2, 0.1, 2e-4), Point(2, -0.1, 2e-4)};
+  for (const double size : {1.0, 1e-3}) {
+    const Eigen::AngleAxisd turn(size == 1 ? 0.0 : 0.7, Vector(1, 2, 3).normalized());
+    Square placed = strip;
+    for (Point& corner : placed) corner = size * (turn * corner);
+    const Vector normal = turn * Vector::UnitX();
+    const double exact = point_to_polygon(Point::Zero(), normal, placed);
+    EXPECT_GT(exact, 1e-6);
+    EXPECT_NEAR(mean_weight(Point::Zero(), normal, placed), exact, 5e-3 * exact) << size;
+  }
+}
+
 TEST(SampleSolidAngle, PointsAreUniformInSolidAngle) {
   // The share of points in a part of the polygon is that part's share of the solid angle.
   const Point from(0.2, 0.1, 0.4);

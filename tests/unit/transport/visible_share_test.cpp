@@ -36,8 +36,9 @@ Scene unbarred_squares() {
 
 // What the first two polygons exchange, m^2; the others stand in the way and have no patches. 64 patches each.
 double exchanged(const Scene& scene, double max_edge, const AssemblyOptions& options) {
-  KeptSides kept{.front = std::vector<std::uint8_t>(scene.polygons.size(), 0),
-                 .back = std::vector<std::uint8_t>(scene.polygons.size(), 0)};
+  KeptSides kept;
+  kept.front.assign(scene.polygons.size(), 0);
+  kept.back.assign(scene.polygons.size(), 0);
   kept.front[0] = kept.front[1] = 1;
   const PatchMesh mesh = tessellate(scene, kept, max_edge);
   EXPECT_EQ(mesh.size(), 128U);
