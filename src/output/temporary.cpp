@@ -1,7 +1,6 @@
 #include "output/temporary.h"
 
-#include "patchlight/base/error.h"
-
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -21,8 +20,25 @@ fs::path temporary_beside(const fs::path& file) {
 
 fs::path followed(const fs::path& file) {
   if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
-  std::error_code ignored;
-  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file) : fs::absolute(file);
+  // Link by link: the last may name a file that is not there yet.
+  constexpr int most_links = 40;  // as Linux follows
+  fs::path target = fs::absolute(file);
+  std::error_code error;
+  for (int k = 0; k < most_links; ++k) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = target.parent_path() / next;
+  }
+  throw OutputError(file.string(), "is a link that leads nowhere: too many links follow one another");
+}
+
+OutputError renamed(const OutputError& error, const fs::path& temporary, const fs::path& known) {
+  const std::string text = error.what();
+  if (!text.starts_with(temporary.string())) return error;
+  const std::string rest = text.substr(temporary.string().size());
+  const std::size_t colon = std::min(rest.size(), rest.find(": "));
+  return {known.string() + rest.substr(0, colon), rest.substr(std::min(rest.size(), colon + 2))};
 }
 
 void fail_writing(const fs::path& file, const std::string& message, int error_number) {

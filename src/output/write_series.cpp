@@ -8,11 +8,18 @@
 #include "output/write_bytes.h"
 
 #include <cassert>
+#include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <regex>
 #include <set>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <thread>
+#include <unistd.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
 
@@ -142,13 +149,44 @@ void remove_older(const fs::path& pvd, const std::vector<std::string>& names) {
   }
 }
 
-// True when the folder is new.
-bool create_folder(const fs::path& folder) {
-  std::error_code error;
-  const bool is_new = fs::create_directory(folder, error);
-  if (error) throw OutputError(folder.string(), "cannot be created: " + error.message());
-  return is_new;
-}
+// The folder of a series, which is one run's as long as this lives: what two runs wrote at a time, the first would
+// lose.
+class LockedFolder {
+ public:
+  LockedFolder(const fs::path& folder, const Observer& observer) {
+    constexpr auto wait = std::chrono::milliseconds(20);
+    while (!is_locked(folder)) {
+      if (observer && !observer({.stage = Stage::write})) throw Cancelled();
+      std::this_thread::sleep_for(wait);
+    }
+  }
+  ~LockedFolder() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  LockedFolder(const LockedFolder&) = delete;
+  LockedFolder& operator=(const LockedFolder&) = delete;
+
+  bool is_new() const { return is_new_; }
+
+ private:
+  bool is_locked(const fs::path& folder) {
+    std::error_code error;
+    is_new_ = fs::create_directory(folder, error);
+    if (error) throw OutputError(folder.string(), "cannot be created: " + error.message());
+    descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // A file system without locks: as if there were no other run.
+    struct stat status {};
+    const bool is_ours = descriptor_ >= 0 && (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
+    // Another run may have removed the folder in the meantime.
+    if (is_ours && fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
+    if (descriptor_ >= 0) close(descriptor_);
+    descriptor_ = -1;
+    return false;
+  }
+
+  int descriptor_ = -1;
+  bool is_new_ = false;
+};
 
 }  // namespace
 
@@ -170,7 +208,7 @@ void check_series_writable(const fs::path& pvd) {
 
 void write_series(const fs::path& pvd, const Scene& scene, const Simulation& simulation,
                   const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
-                  const Observer& observer) {
+                  const Observer& observer, const PublishCollection& publish) {
   const std::vector<Iteration>& history = simulation.solution.history;
   assert(iterates.size() == history.size());
   const fs::path folder = series_folder(pvd);
@@ -178,8 +216,9 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
 
   // 1. The files, under names that only a series of equal values has.
   std::vector<std::string> names;
+  const LockedFolder lock(folder, observer);
   Unfinished unfinished;
-  if (create_folder(folder)) unfinished.made.push_back(folder);
+  if (lock.is_new()) unfinished.made.push_back(folder);
   for (std::size_t k = 0; k < iterates.size(); ++k) {
     const double fraction = static_cast<double>(k) / static_cast<double>(iterates.size());
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
@@ -192,11 +231,18 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
   }
 
   // 2. The .pvd: from now on the series is the new one.
-  write_bytes(pvd, collection(folder.filename().string(), names, history));
+  publish(collection(folder.filename().string(), names, history));
   unfinished.made.clear();
 
   // 3. Nothing names the older files any more.
   remove_older(pvd, names);
+}
+
+void write_series(const fs::path& pvd, const Scene& scene, const Simulation& simulation,
+                  const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
+                  const Observer& observer) {
+  write_series(pvd, scene, simulation, iterates, provenance, observer,
+               [&](const std::string& text) { write_bytes(pvd, text); });
 }
 
 }  // namespace patchlight

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -19,6 +21,15 @@ using IterateIrradiance = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Ei
 void write_series(const std::filesystem::path& pvd, const Scene& scene, const Simulation& simulation,
                   const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
                   const Observer& observer = {});
+
+/// What makes the .pvd file appear with this text.
+using PublishCollection = std::function<void(const std::string& collection)>;
+
+/// The same; the .pvd is left to `publish`, which may let other files appear with it. When it throws, the older series
+/// is still there. Runs that write one series do so one after the other.
+void write_series(const std::filesystem::path& pvd, const Scene& scene, const Simulation& simulation,
+                  const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
+                  const Observer& observer, const PublishCollection& publish);
 
 /// The folder of a series' .vtp files.
 std::filesystem::path series_folder(const std::filesystem::path& pvd);

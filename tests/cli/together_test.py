@@ -1,0 +1,62 @@
+"""The files of a run appear together, and runs at the same time do not mix theirs; a few seconds of damaged files."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+from support import TOOL, ToolTest, content
+
+SCRIPTS = pathlib.Path(__file__).resolve().parent.parent.parent / "scripts"
+OUTPUT = 6
+
+
+def series(pvd):
+    return [pvd.parent / entry.get("file") for entry in xml.etree.ElementTree.parse(pvd).getroot().iter("DataSet")]
+
+
+class TogetherTest(ToolTest):
+    def words(self, brightness, *more):
+        return [TOOL, "solve", "room.obj", "-q", "--patches", "60", "--set", f"lamp.exitance={brightness}", "-o", "a.ply",
+                "--series", "a.pvd", *more]
+
+    def test_runs_with_one_series(self):
+        """Of ten at a time the last decides; at every moment the .pvd names files that are there."""
+        runs = [subprocess.Popen(self.words(k + 1, "--report", "a.json"), cwd=self.folder, stderr=subprocess.PIPE) for k in range(10)]
+        pvd = self.folder / "a.pvd"
+        while any(run.poll() is None for run in runs):
+            if pvd.exists():
+                # Named by the .pvd of this moment, and removed by that of a later one at most.
+                before = pvd.read_bytes()
+                there = [file.exists() for file in series(pvd)]
+                self.assertTrue(all(there) or pvd.read_bytes() != before)
+        self.assertEqual([run.communicate()[1] for run in runs], 10 * [b""])
+        self.assertEqual([run.returncode for run in runs], 10 * [0])
+        self.assertEqual(sorted(series(pvd)), sorted((self.folder / "a_series").iterdir()))
+        # The files are of one run.
+        comment = [line for line in (self.folder / "a.ply").read_bytes().split(b"\n") if b"lamp.exitance" in line][0]
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertEqual(comment.decode().removeprefix("comment "), report["command_line"])
+
+    def test_one_that_cannot_be_written_leaves_all_as_they_were(self):
+        """The last file is too long for the disk quota of the process."""
+        subprocess.run(self.words(1, "--report", "a.json"), cwd=self.folder, check=True)
+        before = content(self.folder)
+        limit = (self.folder / "a.ply").stat().st_size + 100
+        self.assertGreater((self.folder / "a.json").stat().st_size, limit)
+        failed = subprocess.run(["prlimit", f"--fsize={limit}", *self.words(2, "--report", "a.json")], cwd=self.folder,
+                                capture_output=True, check=False)
+        self.assertEqual(failed.returncode, OUTPUT, failed.stderr)
+        self.assertEqual(content(self.folder), before)
+
+    def test_damaged_files(self):
+        with tempfile.TemporaryDirectory() as keep:
+            done = subprocess.run([sys.executable, SCRIPTS / "mutate.py", TOOL, "--seconds", "5", "--jobs", "2", "--keep", keep],
+                                  capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
