@@ -1,6 +1,7 @@
 #include "patchlight/archive/group_factors.h"
 #include "patchlight/transport/group_exchange.h"
 
+#include "output/csv_cell.h"
 #include "output/write_bytes.h"
 
 #include <cstdint>
@@ -9,15 +10,6 @@
 
 namespace patchlight {
 namespace {
-
-// A cell as RFC 4180 has it: in quotes where it needs them.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted(1, '"');
-  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
-  quoted += '"';
-  return quoted;
-}
 
 std::uint32_t group_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, GroupBy by) {
   return by == GroupBy::material ? mesh.material[i] : scene.polygons[mesh.polygon[i]].group;
@@ -65,11 +57,11 @@ GroupFactors group_factors(const Scene& scene, const FormFactors& form_factors, 
 void write_groups(const std::filesystem::path& file, const GroupFactors& groups) {
   std::ostringstream text;
   text << std::setprecision(9) << "from,area_m2";
-  for (const std::string& name : groups.names) text << ',' << cell(name);
+  for (const std::string& name : groups.names) text << ',' << csv_cell(name);
   text << '\n';
   for (std::size_t from = 0; from < groups.names.size(); ++from) {
     const auto row = static_cast<Eigen::Index>(from);
-    text << cell(groups.names[from]) << ',' << groups.area[row];
+    text << csv_cell(groups.names[from]) << ',' << groups.area[row];
     for (const double form_factor : groups.form_factor.row(row)) text << ',' << form_factor;
     text << '\n';
   }

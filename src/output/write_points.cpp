@@ -1,5 +1,6 @@
 #include "patchlight/output/write_points.h"
 
+#include "output/csv_cell.h"
 #include "output/vtk_points.h"
 #include "output/write_bytes.h"
 
@@ -27,14 +28,6 @@ std::string header(const Readings& readings) {
   if (readings.photometric) names += ",E_v_lx,SE_v_lx";
   if (readings.outside_by_sky) names += ",daylight_factor_percent";
   return names + ",inside_wall,group\n";
-}
-
-// In quotes where a comma, a quote or a line break would end it early (RFC 4180).
-std::string cell(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char letter : name) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return quoted + "\"";
 }
 
 void add_position(std::ostream& text, const SensorGroup& group, std::size_t k) {
@@ -69,7 +62,7 @@ std::string table(std::span<const SensorGroup> groups, const Readings& readings)
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++sensor) {
       add_position(text, group, k);
       add_values(text, readings, sensor);
-      text << ',' << is_inside_wall(readings, sensor) << ',' << cell(group.name) << '\n';
+      text << ',' << is_inside_wall(readings, sensor) << ',' << csv_cell(group.name) << '\n';
     }
   }
   assert(static_cast<Eigen::Index>(sensor) == readings.irradiance.rows());
