@@ -3,6 +3,8 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/whole_file.h"
 
+#include "base/regular_file.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -116,7 +118,9 @@ void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values)
   });
 }
 
-NpyReader::NpyReader(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+NpyReader::NpyReader(const std::filesystem::path& file) : file_(file) {
+  require_regular_file(file);
+  stream_.open(file, std::ios::binary);
   if (!stream_) throw InputError(file.string(), "cannot be read; is it there?");
   const std::string text = read_header(stream_).value_or("");
   if (text.empty()) refuse(file, "no header");

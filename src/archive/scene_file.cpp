@@ -4,6 +4,7 @@
 #include "patchlight/output/provenance.h"
 
 #include "archive/file_names.h"
+#include "base/regular_file.h"
 #include "output/write_bytes.h"
 
 #include <array>
@@ -274,6 +275,7 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
 
 StoredScene read_stored_scene(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / file_name::scene;
+  require_regular_file(file);
   std::ifstream stream(file);
   if (!stream) {
     throw InputError(folder.string(), std::string("there is no ") + file_name::scene +
