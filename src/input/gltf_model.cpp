@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sha256.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -9,7 +10,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -44,6 +48,12 @@ std::array<double, 256> linear_values() {
   return values;
 }
 
+// The mean colours of images by index, and by the digest of their bytes: nothing for those that could not be decoded.
+struct Pictures {
+  std::map<int, Spectrum> mean_color;
+  std::map<std::string, std::optional<Spectrum>> by_content;
+};
+
 Spectrum mean_color(const tinygltf::Image& image) {
   const std::size_t bytes_per_value = image.bits == 16 ? 2 : 1;
   const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
@@ -60,30 +70,85 @@ Spectrum mean_color(const tinygltf::Image& image) {
   return sum / static_cast<double>(pixels);
 }
 
-// Decodes PNG and JPEG, the formats of glTF 2.0, keeps the mean colour and drops the pixels. A picture that cannot be
-// decoded is no reason to stop.
+// A number of two or four bytes, most significant first.
+std::uint64_t big_endian(std::string_view bytes) {
+  std::uint64_t number = 0;
+  for (const char byte : bytes) number = number << 8U | static_cast<unsigned char>(byte);
+  return number;
+}
+
+// The pixels that a PNG says it has; 0 when it is cut off. PNG specification, section 11.2.2: after the signature, the
+// length and the name of IHDR come width and height.
+std::uint64_t pixels_of_png(std::string_view bytes) {
+  if (bytes.size() < 24) return 0;
+  return big_endian(bytes.substr(16, 4)) * big_endian(bytes.substr(20, 4));
+}
+
+// The same of a JPEG. ITU T.81, annex B: segments FF, marker, length; a frame header SOF has precision, height, width.
+std::uint64_t pixels_of_jpeg(std::string_view bytes) {
+  std::size_t at = 2;
+  while (at + 9 <= bytes.size() && bytes[at] == '\xFF') {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    const bool is_table = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
+    if (marker >= 0xC0 && marker <= 0xCF && !is_table) {
+      return big_endian(bytes.substr(at + 5, 2)) * big_endian(bytes.substr(at + 7, 2));
+    }
+    at += marker == 0xFF ? 1 : 2 + big_endian(bytes.substr(at + 2, 2));
+  }
+  return 0;
+}
+
+// A few hundred bytes can stand for very many pixels, each of which takes eight bytes.
+constexpr std::uint64_t most_pixels = 8192 * 8192;
+
+// Decodes PNG and JPEG, the formats of glTF 2.0, keeps the mean colour and drops the pixels; the same bytes once. A
+// picture that cannot be decoded is no reason to stop.
 bool take_image(tinygltf::Image* image, int index, std::string*, std::string*, int width, int height,
-                const unsigned char* bytes, int size, void* colors) {
-  const std::string_view start(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(std::min(size, 4)));
-  if (start != "\x89PNG" && !start.starts_with("\xFF\xD8\xFF")) return true;
+                const unsigned char* bytes, int size, void* into) {
+  const std::string_view content(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
+  const bool is_png = content.starts_with("\x89PNG");
+  if (!is_png && !content.starts_with("\xFF\xD8\xFF")) return true;
+  const std::uint64_t pixels = is_png ? pixels_of_png(content) : pixels_of_jpeg(content);
+  if (pixels == 0 || pixels > most_pixels) return true;
+  auto& pictures = *static_cast<Pictures*>(into);
+  const std::string text(content);
+  const std::string digest = sha256({&text, 1});
+  const auto known = pictures.by_content.find(digest);
+  if (known != pictures.by_content.end()) {
+    if (known->second) pictures.mean_color.emplace(index, *known->second);
+    return true;
+  }
   std::string error;
   std::string warning;
   tinygltf::Image decoded = *image;
   const bool good = tinygltf::LoadImageData(&decoded, index, &error, &warning, width, height, bytes, size, nullptr) &&
                     decoded.width > 0 && decoded.height > 0 && decoded.component > 0 && !decoded.image.empty();
-  if (good) static_cast<std::map<int, Spectrum>*>(colors)->emplace(index, mean_color(decoded));
+  pictures.by_content[digest] = good ? std::optional(mean_color(decoded)) : std::nullopt;
+  if (good) pictures.mean_color.emplace(index, *pictures.by_content[digest]);
   return true;
 }
 
 bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* parts) {
   try {
-    auto& bytes = *static_cast<std::vector<std::string>*>(parts);
-    bytes.push_back(read_text(name, name, "the file"));
-    out->assign(bytes.back().begin(), bytes.back().end());
+    auto& files = *static_cast<GltfFiles*>(parts);
+    require_within(files.confine, name, "the model");
+    files.bytes.push_back(read_text(name, name, "the file"));
+    files.names.emplace_back(name);
+    out->assign(files.bytes.back().begin(), files.bytes.back().end());
     return true;
   } catch (const InputError& refused) {
     *error = refused.what();
     return false;
+  }
+}
+
+// What may not be looked at counts as there: reading it is refused.
+bool file_exists(const std::string& name, void* parts) {
+  try {
+    require_within(static_cast<GltfFiles*>(parts)->confine, name, name);
+    return tinygltf::FileExists(name, nullptr);
+  } catch (const InputError&) {
+    return true;
   }
 }
 
@@ -137,17 +202,18 @@ const Item& item(const std::vector<Item>& items, int index, const char* what, co
 
 }  // namespace
 
-GltfModel read_gltf_model(const std::filesystem::path& file) {
+GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesystem::path& confine) {
   GltfModel result;
-  result.bytes.push_back(read_text(file, file.string(), "the model file"));
-  const std::string bytes = result.bytes[0];
+  result.files.confine = confine;
+  result.files.bytes.push_back(read_text(file, file.string(), "the model file"));
+  const std::string bytes = result.files.bytes[0];
   if (bytes.size() > std::numeric_limits<unsigned int>::max()) throw InputError(file.string(), "is larger than 4 GB");
   const auto size = static_cast<unsigned int>(bytes.size());
 
   tinygltf::TinyGLTF reader;
-  reader.SetImageLoader(take_image, &result.mean_color);
-  reader.SetFsCallbacks(
-      {tinygltf::FileExists, tinygltf::ExpandFilePath, read_file, tinygltf::WriteWholeFile, &result.bytes});
+  Pictures pictures;
+  reader.SetImageLoader(take_image, &pictures);
+  reader.SetFsCallbacks({file_exists, tinygltf::ExpandFilePath, read_file, tinygltf::WriteWholeFile, &result.files});
   std::string error;
   std::string warning;
   const std::string folder = file.parent_path().string();
@@ -156,6 +222,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file) {
           ? reader.LoadBinaryFromMemory(&result.model, &error, &warning,
                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
           : reader.LoadASCIIFromString(&result.model, &error, &warning, bytes.data(), size, folder);
+  result.mean_color = std::move(pictures.mean_color);
   require_known_extensions(result.model, file.string());
   if (!good) {
     throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it anew");

@@ -10,16 +10,24 @@
 
 namespace patchlight {
 
+/// The files that a glTF file is made of: itself, its buffers and its pictures.
+struct GltfFiles {
+  std::filesystem::path confine;  ///< the folder in which they must lie; empty for any
+  std::vector<std::filesystem::path> names;
+  std::vector<std::string> bytes;  ///< for the checksum
+};
+
 /// A glTF file as tinygltf reads it.
 struct GltfModel {
   tinygltf::Model model;
   std::map<int, Spectrum> mean_color;  ///< linear RGB of those images that could be decoded, by index
-  std::vector<std::string> bytes;      ///< of the file and its buffers, for the checksum
+  GltfFiles files;
 };
 
 /// Reads a .gltf or .glb file and its buffers and pictures. \throws InputError naming the file: not glTF 2.0, a buffer
-/// is missing, or the file requires an extension that is not known, such as a compression.
-GltfModel read_gltf_model(const std::filesystem::path& file);
+/// is missing, or the file requires an extension that is not known, such as a compression; or
+/// a file does not lie in the folder `confine`, if there is one.
+GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesystem::path& confine);
 
 /// The values of an accessor, `components` per element, normalised integers converted as glTF 2.0 section 3.11 says.
 /// \throws InputError naming `file` when there is no such accessor, it has another type or leaves its buffer.

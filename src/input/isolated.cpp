@@ -48,8 +48,9 @@ void limit_memory(const std::string& file, rlim_t most_bytes) {
 // A child ends with its parent, without a trace on the terminal or the disk.
 void prepare_child(const std::string& file, const ChildLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
-    std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
+    // What the caller ignores stays ignored.
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   const rlimit seconds = {limits.seconds, limits.seconds};
   setrlimit(RLIMIT_CPU, &seconds);
@@ -113,7 +114,13 @@ Scene scene_from(const std::string& message, int status, const std::string& file
   const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !message.empty();
   if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it anew");
   const std::string_view content = std::string_view(message).substr(1);
-  if (message[0] == sends_scene) return scene_from_bytes(content);
+  if (message[0] == sends_scene) {
+    try {
+      return scene_from_bytes(content);
+    } catch (const std::exception& error) {
+      throw InputError(file, std::string("the reader of this format was damaged: ") + error.what());
+    }
+  }
   if (message[0] == sends_refusal) {
     // The InputError is put together again from its two parts.
     const std::string place = file + ": ";

@@ -33,12 +33,14 @@ std::string in_lower_case(std::string text) {
 }
 
 // Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
-// written under Windows.
-LibraryFile find_library(const std::filesystem::path& obj, const std::string& name) {
+// written under Windows. What lies outside of `confine` is refused before anybody looks whether it is there.
+LibraryFile find_library(const std::filesystem::path& obj, const std::string& name, const std::string& where,
+                         const std::filesystem::path& confine) {
   const std::filesystem::path folder = obj.parent_path();
   std::string slashes = name;
   std::replace(slashes.begin(), slashes.end(), '\\', '/');
   for (const std::string& path : {name, slashes}) {
+    require_within(confine, folder / path, where);
     if (is_file(folder / path)) return {name, folder / path};
   }
   const std::filesystem::path last = std::filesystem::path(slashes).filename();
@@ -51,18 +53,33 @@ LibraryFile find_library(const std::filesystem::path& obj, const std::string& na
     if (in_lower_case(file.filename().string()) == in_lower_case(last.string())) similar.push_back(file.filename());
   }
   std::sort(similar.begin(), similar.end());
-  if (!similar.empty() && is_file(folder / similar[0])) return {name, folder / similar[0], true};
-  return {name, {}};
+  if (similar.empty() || !is_file(folder / similar[0])) return {name, {}};
+  require_within(confine, folder / similar[0], where);
+  return {name, folder / similar[0], true};
 }
 
 // The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
-std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const std::string& statement) {
-  const LibraryFile whole = find_library(obj, statement);
+std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const ObjName& statement,
+                                       const std::filesystem::path& confine) {
+  const std::string where = at(obj, statement.line);
+  const LibraryFile whole = find_library(obj, statement.name, where, confine);
   if (!whole.place.empty() && !whole.moved) return {whole};
   std::vector<LibraryFile> files;
-  for (const std::string_view name : words(statement)) files.push_back(find_library(obj, std::string(name)));
+  for (const std::string_view name : words(statement.name)) {
+    files.push_back(find_library(obj, std::string(name), where, confine));
+  }
   const bool all_there = std::all_of(files.begin(), files.end(), [](const auto& file) { return !file.place.empty(); });
   return all_there || whole.place.empty() ? files : std::vector{whole};
+}
+
+// The file and the textures that its materials name, which stand beside it.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& library,
+                                            const std::vector<MtlMaterial>& materials) {
+  std::vector<std::filesystem::path> files = {library};
+  for (const MtlMaterial& material : materials) {
+    for (const std::string& texture : material.textures) files.push_back(library.parent_path() / texture);
+  }
+  return files;
 }
 
 std::optional<Problem> problem_with(const LibraryFile& file, const std::string& where) {
@@ -84,19 +101,22 @@ std::optional<Problem> problem_with(const LibraryFile& file, const std::string& 
 
 }  // namespace
 
-Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements) {
+Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements,
+                         const std::filesystem::path& confine) {
   Libraries libraries;
   std::set<std::string> names;
   std::set<std::filesystem::path> places;
   for (const ObjName& statement : statements) {
     const std::string where = at(obj, statement.line);
-    for (const LibraryFile& file : library_files(obj, statement.name)) {
+    for (const LibraryFile& file : library_files(obj, statement, confine)) {
       if (!names.insert(file.name).second) continue;
       const std::optional<Problem> problem = problem_with(file, where);
       if (problem) libraries.problems.push_back(*problem);
       if (file.place.empty() || !places.insert(file.place).second) continue;
       libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
       const std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
+      const std::vector<std::filesystem::path> named = files_of(file.place, materials);
+      libraries.files.insert(libraries.files.end(), named.begin(), named.end());
       libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
     }
   }

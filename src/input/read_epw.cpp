@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/shortest.h"
 #include "input/text.h"
 
 #include <cmath>
@@ -67,18 +68,25 @@ double irradiance(const Line& line, std::size_t field, const std::string& what) 
 // Precipitable water in cm from the dew point in degrees Celsius. Perez et al. 1990, eq. 3.
 double precipitable_water(double dew_point) { return std::exp(0.07 * dew_point - 0.075); }
 
+double within(const Line& line, std::size_t field, double low, double high, const std::string& what) {
+  const double value = line.number(field, what);
+  if (value >= low && value <= high) return value;
+  throw InputError(line.where,
+                   what + " is " + shortest(value) + "; expected " + shortest(low) + " to " + shortest(high));
+}
+
 WeatherHour weather_of(const Line& place, const Line& line, const Instant& local_time) {
   WeatherHour weather;
-  weather.place = {place.number(location::latitude, "the latitude"),
-                   place.number(location::longitude, "the longitude")};
-  const double zone = place.number(location::time_zone, "the time zone");
+  weather.place = {within(place, location::latitude, -90, 90, "the latitude in degrees"),
+                   within(place, location::longitude, -180, 180, "the longitude in degrees")};
+  const double zone = within(place, location::time_zone, -14, 14, "the time zone in hours");
   weather.middle = local_time;
-  weather.middle.year = static_cast<int>(line.number(data::year, "the year"));
+  weather.middle.year = static_cast<int>(within(line, data::year, 1, 9999, "the year"));
   weather.middle.hour = local_time.hour + 0.5 - zone;
   weather.solar.direct_normal = irradiance(line, data::direct_normal, "direct normal irradiance");
   weather.solar.diffuse_horizontal = irradiance(line, data::diffuse_horizontal, "diffuse horizontal irradiance");
   weather.solar.day_of_year = day_of_year(weather.middle);
-  const double dew_point = line.number(data::dew_point, "the dew point");
+  const double dew_point = within(line, data::dew_point, -100, 100, "the dew point in degrees Celsius");
   if (dew_point < missing_dew_point) weather.solar.precipitable_water = precipitable_water(dew_point);
   return weather;
 }

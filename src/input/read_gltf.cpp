@@ -175,12 +175,13 @@ std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
   return notes;
 }
 
-Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
+Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   // 1. The file, its buffers and pictures, and the materials.
-  const GltfModel gltf = read_gltf_model(file);
+  const GltfModel gltf = read_gltf_model(file, confine);
   Scene scene;
   scene.file = file.string();
-  scene.sha256 = sha256(gltf.bytes);
+  scene.sha256 = sha256(gltf.files.bytes);
+  scene.inputs = gltf.files.names;
   scene.materials = gltf_materials(gltf);
   scene.notes = notes_on_model(gltf.model);
 
@@ -202,11 +203,11 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit) {
 
 }  // namespace
 
-Scene read_gltf(const std::filesystem::path& file, double metres_per_unit) {
+Scene read_gltf(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   // tinygltf calls itself for each level of the JSON. Pictures, in files of their own, take time and memory to decode.
-  constexpr ChildLimits limits = {.seconds = 600, .bytes = std::uint64_t{8} << 30U};
+  constexpr ChildLimits limits = {.seconds = 180, .bytes = std::uint64_t{4} << 30U};
   return read_isolated(
-      file.string(), [&] { return scene_of(file, metres_per_unit); }, limits);
+      file.string(), [&] { return scene_of(file, metres_per_unit, confine); }, limits);
 }
 
 }  // namespace patchlight

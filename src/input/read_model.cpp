@@ -10,6 +10,7 @@
 #include "input/read_off.h"
 #include "input/read_ply.h"
 #include "input/read_stl.h"
+#include "input/text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -23,6 +24,19 @@ std::string allowed_extensions() {
   std::string list;
   for (const std::string& format : readable_formats()) list += (list.empty() ? "." : ", .") + format;
   return list;
+}
+
+Scene read_format(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
+                  const std::filesystem::path& confine) {
+  if (format == "obj") return read_obj(file, metres_per_unit, confine);
+  if (format == "ply") return read_ply(file, metres_per_unit);
+  if (format == "stl") return read_stl(file, metres_per_unit);
+  if (format == "off") return read_off(file, metres_per_unit);
+  if (format == "dae") return read_collada(file, metres_per_unit);
+  if (format == "ifc") return read_ifc(file, metres_per_unit);
+  if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit, confine);
+  throw InputError(file.string(),
+                   "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }
 
 }  // namespace
@@ -40,24 +54,24 @@ void require_file(const std::filesystem::path& file, const std::string& where) {
   if (file == "-") return;
   std::error_code error;
   const std::string name = where == file ? "" : file.string() + ": ";
-  if (!std::filesystem::exists(file, error)) {
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() != std::filesystem::file_type::not_found && error) {
+    throw InputError(where, name + "the model file cannot be opened: " + error.message());
+  }
+  if (!std::filesystem::exists(status)) {
     throw InputError(where, name + "the model file does not exist; check the name and the folder");
   }
-  if (std::filesystem::is_directory(file, error)) {
+  if (std::filesystem::is_directory(status)) {
     throw InputError(where, name + "this is a folder; expected a model file (" + allowed_extensions() + ")");
   }
 }
 
-Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit) {
-  if (format == "obj") return read_obj(file, metres_per_unit);
-  if (format == "ply") return read_ply(file, metres_per_unit);
-  if (format == "stl") return read_stl(file, metres_per_unit);
-  if (format == "off") return read_off(file, metres_per_unit);
-  if (format == "dae") return read_collada(file, metres_per_unit);
-  if (format == "ifc") return read_ifc(file, metres_per_unit);
-  if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit);
-  throw InputError(file.string(),
-                   "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
+Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
+                 const std::filesystem::path& confine) {
+  require_within(confine, file, file.string());
+  Scene scene = read_format(file, format, metres_per_unit, confine);
+  if (file != "-") scene.inputs.push_back(file);
+  return scene;
 }
 
 }  // namespace patchlight

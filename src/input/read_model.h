@@ -14,7 +14,8 @@ std::string format_of(const std::filesystem::path& file);
 void require_file(const std::filesystem::path& file, const std::string& where);
 
 /// One model file as it stands, in metres, before any setting or check. `format` is one of readable_formats() without
-/// toml. \throws InputError.
-Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit);
+/// toml. The file, and those that it names, must lie in the folder `confine`, if there is one. \throws InputError.
+Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
+                 const std::filesystem::path& confine);
 
 }  // namespace patchlight

@@ -55,14 +55,16 @@ std::map<std::string, Colors> read_colors(const std::vector<TextLine>& lines, co
 
 bool any(const tinyobj::real_t (&color)[3]) { return color[0] != 0 || color[1] != 0 || color[2] != 0; }
 
-bool has_texture(const tinyobj::material_t& m) {
+// The files of textures that a material names.
+std::vector<std::string> textures_of(const tinyobj::material_t& m) {
+  std::vector<std::string> textures;
   for (const std::string* texture :
        {&m.ambient_texname, &m.diffuse_texname, &m.specular_texname, &m.specular_highlight_texname, &m.bump_texname,
         &m.displacement_texname, &m.alpha_texname, &m.reflection_texname, &m.roughness_texname, &m.metallic_texname,
         &m.sheen_texname, &m.emissive_texname, &m.normal_texname}) {
-    if (!texture->empty()) return true;
+    if (!texture->empty()) textures.push_back(*texture);
   }
-  return false;
+  return textures;
 }
 
 MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, const Colors& colors) {
@@ -73,7 +75,7 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.radiance = colors.radiance.value_or(rgb(0, 0, 0));
   material.ambient = rgb(read.ambient[0], read.ambient[1], read.ambient[2]);
   material.is_specular = any(read.specular);
-  material.has_texture = has_texture(read);
+  material.textures = textures_of(read);
   material.is_transparent = read.dissolve < 1;
   material.is_metallic = read.metallic > 0;
   material.is_mirror_or_glass = read.illum >= 3 && read.illum <= 9;
@@ -118,7 +120,7 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic; });
-  note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return m.has_texture; });
+  note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return !m.textures.empty(); });
   note("d and Tr (transparency) are ignored, the surface is opaque",
        [](const MtlMaterial& m) { return m.is_transparent; });
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",

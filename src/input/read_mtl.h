@@ -12,15 +12,15 @@ namespace patchlight {
 /// A material of an MTL file.
 struct MtlMaterial {
   std::string name;
-  Spectrum reflectance;             ///< Kd
-  Spectrum radiance;                ///< Ke, W/(m^2 sr)
-  Spectrum ambient;                 ///< Ka
-  bool has_reflectance = false;     ///< Kd is given
-  bool is_specular = false;         ///< Ks is not 0
-  bool has_texture = false;         ///< any map_, bump, disp, refl or norm
-  bool is_transparent = false;      ///< d < 1 or Tr > 0
-  bool is_mirror_or_glass = false;  ///< illum 3 to 9
-  bool is_metallic = false;         ///< Pm is not 0
+  Spectrum reflectance;               ///< Kd
+  Spectrum radiance;                  ///< Ke, W/(m^2 sr)
+  Spectrum ambient;                   ///< Ka
+  bool has_reflectance = false;       ///< Kd is given
+  bool is_specular = false;           ///< Ks is not 0
+  std::vector<std::string> textures;  ///< the files of map_, bump, disp, refl and norm
+  bool is_transparent = false;        ///< d < 1 or Tr > 0
+  bool is_mirror_or_glass = false;    ///< illum 3 to 9
+  bool is_metallic = false;           ///< Pm is not 0
 };
 
 /// Reads the materials of an MTL file; of materials with the same name the first is kept.

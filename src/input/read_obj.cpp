@@ -202,13 +202,13 @@ std::vector<LampHint> lamp_hints(std::span<const MtlMaterial> materials) {
 
 }  // namespace
 
-Scene read_obj(const std::filesystem::path& file, double metres_per_unit) {
+Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   // 1. The text, checked.
   std::vector<std::string> bytes = {read_text(file, file.string(), "the model file")};
   const ObjScan scan = scan_obj(bytes[0], file.string());
 
   // 2. The materials its mtllib files define and its faces use.
-  const Libraries libraries = read_libraries(file, scan.libraries);
+  const Libraries libraries = read_libraries(file, scan.libraries, confine);
   std::vector<MtlMaterial> defined = libraries.materials;
   const std::vector<MtlMaterial> undefined = undefined_materials(scan, defined);
   defined.insert(defined.end(), undefined.begin(), undefined.end());
@@ -227,6 +227,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit) {
   scene.notes = notes_on(scan, palette);
   scene.unsimulated = unsimulated(palette.materials);
   scene.lamp_hints = lamp_hints(palette.materials);
+  scene.inputs = libraries.files;
   scene.problems = libraries.problems;
   for (Problem& problem : problems_with_names(file.string(), scan, libraries.materials)) {
     scene.problems.push_back(std::move(problem));

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <string>
+#include <string_view>
 
 namespace patchlight {
 namespace {
@@ -27,8 +27,8 @@ std::array<double, 6> six_numbers(const std::string& where, const std::vector<st
 }
 
 // The line without its comment, and with nothing but spaces between its words.
-std::string plain(std::string line) {
-  line.resize(std::min(line.find('#'), line.size()));
+std::string plain(std::string_view text) {
+  std::string line(text.substr(0, text.find('#')));
   std::replace_if(
       line.begin(), line.end(), [](char letter) { return letter == ',' || letter == '\r'; }, ' ');
   return line;
@@ -36,17 +36,14 @@ std::string plain(std::string line) {
 
 }  // namespace
 
-SensorGroup read_points(const std::filesystem::path& file, double metres_per_unit) {
-  if (is_directory(file)) throw InputError(file.string(), "this is a folder; expected a file of points");
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string(), "cannot be opened; expected a file of points");
-
+SensorGroup parse_points(std::string_view text, const std::filesystem::path& file, double metres_per_unit) {
   SensorGroup group;
   group.name = file.stem().string();
   group.file = file.string();
-  std::string line;
-  for (std::uint32_t number = 1; std::getline(stream, line); ++number) {
-    line = plain(std::move(line));
+  for (std::uint32_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string line = plain(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
     const std::vector<std::string_view> found = words(line);
     if (found.empty()) continue;
     const std::string where = file.string() + ":" + std::to_string(number);
@@ -61,9 +58,12 @@ SensorGroup read_points(const std::filesystem::path& file, double metres_per_uni
     for (std::size_t k = 1; k < 6; ++k) columns.append(",").append(found[k]);
     group.columns.push_back(columns);
   }
-  if (stream.bad()) throw InputError(file.string(), "reading failed before the end of the file");
   if (group.sensors.empty()) throw InputError(file.string(), "found no points; expected lines x y z nx ny nz");
   return group;
+}
+
+SensorGroup read_points(const std::filesystem::path& file, double metres_per_unit) {
+  return parse_points(read_text_or_pipe(file, "the file of points"), file, metres_per_unit);
 }
 
 }  // namespace patchlight

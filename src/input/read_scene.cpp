@@ -9,7 +9,9 @@
 #include "input/placed.h"
 #include "input/read_model.h"
 #include "input/scene_file.h"
+#include "input/text.h"
 #include "input/toml_sensors.h"
+#include "scene/limits.h"
 
 #include <cassert>
 #include <utility>
@@ -36,16 +38,20 @@ Scene set_upright(Scene scene, const ReadOptions& options) {
 }
 
 SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& options) {
-  if (options.metres_per_unit == 1) return read_scene_file(file);
+  if (options.metres_per_unit == 1) {
+    require_within(options.confine, file, file.string());
+    return read_scene_file(file, options.confine);
+  }
   throw InputError(
       "--unit", "a scene file states its units itself, with the keys unit; leave the option out for " + file.string());
 }
 
-Scene read_entry(const ModelEntry& model) {
+Scene read_entry(const ModelEntry& model, const std::filesystem::path& confine) {
+  require_within(confine, model.file, model.where);
   require_file(model.file, model.where);
   const std::string format = format_of(model.file);
   if (format == "toml") throw InputError(model.where, "a scene file cannot name another one; expected a model file");
-  Scene scene = read_model(model.file, format, model.metres_per_unit);
+  Scene scene = read_model(model.file, format, model.metres_per_unit, confine);
   return model.placement ? placed(std::move(scene), *model.placement) : scene;
 }
 
@@ -54,6 +60,7 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   if (scene.files.empty()) scene.files = {scene.file};
   scene.file = file.file;
   scene.sha256 = sha256(std::vector{file.sha256, scene.sha256});
+  scene.inputs.insert(scene.inputs.end(), file.inputs.begin(), file.inputs.end());
   scene.metres_per_unit = 1;
   if (file.up) scene.up = *file.up;
   scene.up_stated = scene.up_stated || file.up;
@@ -89,9 +96,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
     const std::string format = options.format.empty() ? format_of(file) : options.format;
     if (format == "toml") {
       scene_files.push_back(scene_file(file, options));
-      for (const ModelEntry& model : scene_files.back().models) models.push_back(read_entry(model));
+      for (const ModelEntry& model : scene_files.back().models) models.push_back(read_entry(model, options.confine));
     } else {
-      models.push_back(read_model(file, format, options.metres_per_unit));
+      models.push_back(read_model(file, format, options.metres_per_unit, options.confine));
     }
   }
   Scene scene = merge_scenes(std::move(models));
@@ -104,6 +111,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   for (const SceneFile& file : scene_files) {
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);
   }
+  check_limits(scene);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
@@ -111,7 +119,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
 }
 
 Scene with_options(Scene scene, const ReadOptions& options) {
-  return set_upright(with_settings(std::move(scene), options.settings), options);
+  scene = set_upright(with_settings(std::move(scene), options.settings), options);
+  check_limits(scene);
+  return scene;
 }
 
 }  // namespace patchlight

@@ -8,7 +8,7 @@
 
 namespace patchlight {
 
-SceneFile read_scene_file(const std::filesystem::path& file) {
+SceneFile read_scene_file(const std::filesystem::path& file, const std::filesystem::path& confine) {
   const std::string text = read_text(file, file.string(), "the scene file");
   const TomlValue root = parse_toml(text, file.string());
   allow_keys(root, {"unit", "up", "model", "material", "sensors", "camera", "luminaire", "north", "site", "sun", "sky",
@@ -16,7 +16,7 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
 
   SceneFile scene;
   scene.file = file.string();
-  TomlFrame frame{.file = file};
+  TomlFrame frame{.file = file, .confine = confine};
   if (const TomlValue* const unit = find(root, "unit")) frame.metres_per_unit = unit_length(*unit);
   if (const TomlValue* const up = find(root, "up")) scene.up = upright(*up);
   frame.up = scene.up.value_or(frame.up);
@@ -26,7 +26,10 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   scene.cameras = cameras_of(root, frame);
   scene.lights = lights_of(root, frame);
   std::vector<std::string> texts = {text};
+  scene.inputs = sensor_files(root, frame);
+  if (file != "-") scene.inputs.push_back(file);
   for (const std::filesystem::path& other : light_files(root, frame)) {
+    scene.inputs.push_back(other);
     texts.push_back(read_text(other, other.string(), "the file"));
   }
   scene.sha256 = sha256(texts);

@@ -1,7 +1,7 @@
 #include "input/scene_bytes.h"
 
-#include <cassert>
 #include <cstring>
+#include <stdexcept>
 #include <type_traits>
 
 namespace patchlight {
@@ -34,26 +34,32 @@ class Reader {
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
   template <typename Value>
   Value plain() {
-    assert(bytes_.size() >= sizeof(Value));
+    if (bytes_.size() < sizeof(Value)) throw std::runtime_error("a message ends early");
     Value value;
     std::memcpy(&value, bytes_.data(), sizeof value);
     bytes_.remove_prefix(sizeof value);
     return value;
   }
+  // How many things follow, each of a byte or more.
+  std::size_t count() {
+    const auto count = plain<std::size_t>();
+    if (count > bytes_.size()) throw std::runtime_error("a message ends early");
+    return count;
+  }
   std::string text() {
-    const auto size = plain<std::size_t>();
+    const std::size_t size = count();
     std::string text(bytes_.substr(0, size));
     bytes_.remove_prefix(size);
     return text;
   }
   Spectrum spectrum() {
-    Spectrum values(static_cast<Eigen::Index>(plain<std::size_t>()));
+    Spectrum values(static_cast<Eigen::Index>(count()));
     for (double& value : values) value = plain<double>();
     return values;
   }
   Point point() {
     Point values;
-    plain<std::size_t>();
+    if (count() != 3) throw std::runtime_error("a point has not three coordinates");
     for (double& value : values) value = plain<double>();
     return values;
   }
@@ -71,7 +77,7 @@ void write_polygon(Writer& out, const Polygon& polygon) {
 
 Polygon read_polygon(Reader& in) {
   Polygon polygon;
-  polygon.corners.resize(in.plain<std::size_t>());
+  polygon.corners.resize(in.count());
   for (std::uint32_t& corner : polygon.corners) corner = in.plain<std::uint32_t>();
   polygon.material = in.plain<MaterialIndex>();
   polygon.group = in.plain<std::uint32_t>();
@@ -107,6 +113,8 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(texts->size());
     for (const std::string& text : *texts) out.text(text);
   }
+  out.plain(scene.inputs.size());
+  for (const std::filesystem::path& file : scene.inputs) out.text(file.string());
   out.plain(scene.unsimulated.size());
   for (const UnsimulatedMaterials& found : scene.unsimulated) {
     out.plain(static_cast<std::uint8_t>(found.property));
@@ -123,17 +131,19 @@ std::string scene_bytes(const Scene& scene) {
 Scene scene_from_bytes(std::string_view bytes) {
   Reader in(bytes);
   Scene scene;
-  scene.vertices.resize(in.plain<std::size_t>());
+  scene.vertices.resize(in.count());
   for (Point& vertex : scene.vertices) vertex = in.point();
-  scene.polygons.resize(in.plain<std::size_t>());
+  scene.polygons.resize(in.count());
   for (Polygon& polygon : scene.polygons) polygon = read_polygon(in);
-  scene.materials.resize(in.plain<std::size_t>());
+  scene.materials.resize(in.count());
   for (Material& material : scene.materials) material = read_material(in);
   for (auto* texts : {&scene.groups, &scene.notes}) {
-    texts->resize(in.plain<std::size_t>());
+    texts->resize(in.count());
     for (std::string& text : *texts) text = in.text();
   }
-  scene.unsimulated.resize(in.plain<std::size_t>());
+  scene.inputs.resize(in.count());
+  for (std::filesystem::path& file : scene.inputs) file = in.text();
+  scene.unsimulated.resize(in.count());
   for (UnsimulatedMaterials& found : scene.unsimulated) {
     found.property = static_cast<UnsimulatedProperty>(in.plain<std::uint8_t>());
     found.materials = in.plain<std::size_t>();

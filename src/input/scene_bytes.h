@@ -11,7 +11,7 @@ namespace patchlight {
 /// checksum, unit and upright direction.
 std::string scene_bytes(const Scene& scene);
 
-/// The scene that scene_bytes() turned into these bytes.
+/// The scene that scene_bytes() turned into these bytes. \throws std::runtime_error when they are not such bytes.
 Scene scene_from_bytes(std::string_view bytes);
 
 }  // namespace patchlight

@@ -35,7 +35,8 @@ struct FloorGrid {
 /// What a scene file says, in metres, before the models are read.
 struct SceneFile {
   std::string file;
-  std::string sha256;  ///< of it and of the files of lamps and weather that it names
+  std::vector<std::filesystem::path> inputs;  ///< it, and the files of lamps, weather and points that it names
+  std::string sha256;                         ///< of it and of the files of lamps and weather that it names
   std::vector<ModelEntry> models;
   std::optional<Vector> up;
   std::vector<MaterialSetting> settings;
@@ -45,7 +46,8 @@ struct SceneFile {
 };
 
 /// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError
-/// naming file, line and key, what was found and what was expected.
-SceneFile read_scene_file(const std::filesystem::path& file);
+/// naming file, line and key, what was found and what was expected; also when a file does not lie in the folder
+/// `confine`, if there is one.
+SceneFile read_scene_file(const std::filesystem::path& file, const std::filesystem::path& confine);
 
 }  // namespace patchlight

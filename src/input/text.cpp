@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <istream>
 #include <system_error>
 
 namespace patchlight {
@@ -15,30 +15,62 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
-std::string read_standard_input(const std::string& where, const std::string& what) {
-  std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-  if (std::cin.bad()) throw InputError(where, what + " could not be read to its end");
+// What a pipe may bring: more than any model that can be solved, and less than what ends the machine.
+constexpr std::size_t most_bytes_of_stream = std::size_t{1} << 30U;
+
+// Everything up to the end. `what` is for messages.
+std::string read_to_end(std::istream& stream, const std::string& where, const std::string& what) {
+  std::string text;
+  std::vector<char> block(1U << 16U);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() <= most_bytes_of_stream) continue;
+    throw InputError(where, what + " is longer than 1 GiB; expected a file of a sensible length");
+  }
+  if (stream.bad()) throw InputError(where, what + " could not be read to its end");
   if (text.empty()) throw InputError(where, what + " is empty");
   return text;
+}
+
+std::string read_if(const std::filesystem::path& file, const std::string& where, const std::string& what,
+                    bool may_be_pipe) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw InputError(where, what + " does not exist; check the name and the folder");
+  }
+  if (error) throw InputError(where, what + " cannot be opened: " + error.message());
+  if (std::filesystem::is_directory(status)) throw InputError(where, what + " is a folder; expected a file");
+  const bool is_pipe = std::filesystem::is_fifo(status);
+  if (is_pipe && !may_be_pipe) throw InputError(where, what + " is a pipe; expected a regular file");
+  if (!is_pipe && !std::filesystem::is_regular_file(status)) {
+    throw InputError(where, what + " is a device; expected a regular file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(where, what + " cannot be opened for reading; check its permissions");
+  return read_to_end(stream, where, what);
 }
 
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file, const std::string& where, const std::string& what) {
-  if (file == "-") return read_standard_input(where, what);
+  return file == "-" ? read_to_end(std::cin, where, what) : read_if(file, where, what, false);
+}
+
+std::string read_text_or_pipe(const std::filesystem::path& file, const std::string& what) {
+  return read_if(file, file.string(), what, true);
+}
+
+void require_within(const std::filesystem::path& confine, const std::filesystem::path& file, const std::string& where) {
+  if (confine.empty() || file == "-") return;
   std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) {
-    throw InputError(where, what + " does not exist; check the name and the folder");
-  }
-  if (std::filesystem::is_directory(status)) throw InputError(where, what + " is a folder; expected a file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(where, what + " is not a regular file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(where, what + " cannot be opened for reading; check its permissions");
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (stream.bad()) throw InputError(where, what + " could not be read to its end");
-  if (text.empty()) throw InputError(where, what + " is empty");
-  return text;
+  const std::filesystem::path folder = std::filesystem::canonical(confine, error);
+  if (error) throw InputError("--confine", "there is no folder " + confine.string() + "; expected one that is there");
+  const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+  const auto [rest, ignored] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
+  if (!error && rest == folder.end()) return;
+  throw InputError(where, "names '" + file.string() + "', which does not lie in " + confine.string() +
+                              "; expected a file in the folder that --confine allows");
 }
 
 std::vector<TextLine> logical_lines(std::string_view text) {

@@ -16,9 +16,16 @@ struct TextLine {
   std::string text;          ///< without line end
 };
 
-/// The whole content of a regular file; of the standard input for "-".
-/// \throws InputError at `where` when it is missing, a folder, unreadable or empty; the message calls it `what`.
+/// The whole content of a regular file; of the standard input for "-". \throws InputError at `where` when it is
+/// missing, a folder, a device, a pipe, unreadable, empty or longer than 1 GiB; the message calls it `what`.
 std::string read_text(const std::filesystem::path& file, const std::string& where, const std::string& what);
+
+/// The same of a file that the user has named, which may be a pipe: a process can stand for a file.
+std::string read_text_or_pipe(const std::filesystem::path& file, const std::string& what);
+
+/// \throws InputError at `where` when `file`, with all links followed, does not lie in the folder `confine`; an empty
+/// one stands for no such folder. The message is the same whether there is such a file or not.
+void require_within(const std::filesystem::path& confine, const std::filesystem::path& file, const std::string& where);
 
 /// The lines of a text. Lines end in LF, CR LF or CR; a backslash at the end of a line continues it; a byte order mark
 /// is left out.

@@ -90,7 +90,7 @@ SkyEntry sky_of(const TomlValue& table, const TomlValue* sun) {
 
 WeatherHour weather_of(const TomlValue& table, const TomlFrame& frame) {
   allow_keys(table, {"file", "month", "day", "hour"});
-  const std::filesystem::path file = path(required(table, "file", "the name of an EPW file"), frame.file);
+  const std::filesystem::path file = named_file(required(table, "file", "the name of an EPW file"), frame);
   const int month = whole(required(table, "month", "1 to 12"), 1, 12);
   const int day = whole(required(table, "day", "1 to 31"), 1, 31);
   const int hour = whole(required(table, "hour", "the hour at which it begins, 0 to 23"), 0, 23);
@@ -138,10 +138,10 @@ LightEntries lights_of(const TomlValue& root, const TomlFrame& frame) {
 std::vector<std::filesystem::path> light_files(const TomlValue& root, const TomlFrame& frame) {
   std::vector<std::filesystem::path> files;
   for (const TomlValue& table : tables(find(root, "luminaire"))) {
-    if (const TomlValue* const file = find(table, "file")) files.push_back(path(*file, frame.file));
+    if (const TomlValue* const file = find(table, "file")) files.push_back(named_file(*file, frame));
   }
   if (const TomlValue* const weather = find(root, "weather"))
-    files.push_back(path(*find(*weather, "file"), frame.file));
+    files.push_back(named_file(*find(*weather, "file"), frame));
   return files;
 }
 

@@ -63,7 +63,7 @@ SphericalLamp sphere_of(const TomlValue& table, const TomlFrame& frame) {
 // As the file says, or dimmed or brightened to the lumens given.
 WebLight web_of(const TomlValue& table, const TomlFrame& frame) {
   const auto web =
-      std::make_shared<const PhotometricWeb>(read_ies(path(required(table, "file", "an IES file"), frame.file)));
+      std::make_shared<const PhotometricWeb>(read_ies(named_file(required(table, "file", "an IES file"), frame)));
   const Spectrum colour = colour_of(table);
   const Spectrum watts_per_lumen = colour / luminance(colour);
   const TomlValue* const lumens = find(table, "lumens");

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/text.h"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -101,7 +103,7 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
   allow_keys(table, {"file", "unit", "up", "scale", "rotate", "translate", "matrix"});
   ModelEntry model;
   const TomlValue& file = required(table, "file", "the name of a model file");
-  model.file = path(file, frame.file);
+  model.file = named_file(file, frame);
   model.where = file.where;
   if (const TomlValue* const unit = find(table, "unit")) model.metres_per_unit = unit_length(*unit);
   model.placement = placement_of(table, frame);
@@ -127,6 +129,12 @@ std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
 }
 
 }  // namespace
+
+std::filesystem::path named_file(const TomlValue& value, const TomlFrame& frame) {
+  std::filesystem::path file = path(value, frame.file);
+  require_within(frame.confine, file, value.where);
+  return file;
+}
 
 std::vector<ModelEntry> models_of(const TomlValue& root, const TomlFrame& frame) {
   std::vector<ModelEntry> models;

@@ -48,6 +48,11 @@ SensorGroup points_of(const TomlValue& list, const TomlFrame& frame) {
   return group;
 }
 
+SensorGroup points_in(const TomlValue& name, const TomlFrame& frame) {
+  const std::filesystem::path file = named_file(name, frame);
+  return parse_points(read_text(file, file.string(), "the file of points"), file, frame.metres_per_unit);
+}
+
 SensorGroup rectangle_of(const TomlValue& table, const TomlFrame& frame) {
   const Point corner = frame.metres_per_unit * vector(*find(table, "corner"));
   const TomlValue& list = required(table, "edges", "two edges [[x, y, z], [x, y, z]] from the corner");
@@ -92,7 +97,7 @@ std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, co
   SensorGroup group;
   if (kind == "points") group = points_of(*find(table, kind), frame);
   if (kind == "corner") group = rectangle_of(table, frame);
-  if (kind == "file") group = read_points(path(*find(table, kind), frame.file), frame.metres_per_unit);
+  if (kind == "file") group = points_in(*find(table, kind), frame);
   group.name = name;
   if (group.file.empty()) group.file = frame.file.string();
   if (group.lines.empty()) group.lines = {line_of(table.where)};
@@ -111,6 +116,14 @@ std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& ro
     if (!names.insert(name).second) refuse(given ? *given : table, "a name that no other sensors have");
   }
   return all;
+}
+
+std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame) {
+  std::vector<std::filesystem::path> files;
+  for (const TomlValue& table : tables(find(root, "sensors"))) {
+    if (const TomlValue* const file = find(table, "file")) files.push_back(named_file(*file, frame));
+  }
+  return files;
 }
 
 std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame) {

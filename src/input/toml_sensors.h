@@ -2,6 +2,7 @@
 
 #include "input/toml_models.h"
 
+#include <filesystem>
 #include <variant>
 #include <vector>
 
@@ -9,6 +10,9 @@ namespace patchlight {
 
 /// The tables [[sensors]]; files of points are read. \throws InputError.
 std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& root, const TomlFrame& frame);
+
+/// The files of points that a scene file names.
+std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame);
 
 /// The tables [[camera]]. \throws InputError.
 std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame);

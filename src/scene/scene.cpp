@@ -2,6 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/shortest.h"
+
 #include <cmath>
 #include <sstream>
 
@@ -25,8 +27,8 @@ void check_material(const Scene& scene, const Material& material) {
   for (const double rho : material.reflectance) {
     if (!(rho >= 0 && rho <= 1)) {
       std::ostringstream message;
-      message << name << " has reflectance " << rho << "; expected 0 to 1 in every band. Mend Kd, or use --set "
-              << material.name << ".reflectance=R,G,B";
+      message << name << " has reflectance " << shortest(rho)
+              << "; expected 0 to 1 in every band. Mend Kd, or use --set " << material.name << ".reflectance=R,G,B";
       throw InputError(scene.file, message.str());
     }
   }
@@ -34,7 +36,8 @@ void check_material(const Scene& scene, const Material& material) {
     const double tau = material.transmittance[band];
     if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
     std::ostringstream message;
-    message << name << " has transmittance " << tau << " and reflectance " << material.reflectance[band]
+    message << name << " has transmittance " << shortest(tau) << " and reflectance "
+            << shortest(material.reflectance[band])
             << "; expected numbers not below 0 whose sum is at most 1. Use --set " << material.name
             << ".reflectance=R,G,B";
     throw InputError(scene.file, message.str());

@@ -16,6 +16,7 @@
 #include <embree3/rtcore.h>
 #include <iterator>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -28,7 +29,8 @@ constexpr double beyond = 1e6;
 
 constexpr unsigned packet_size = ShadowPacket::size;
 
-void fail_on_error(void*, RTCError, const char* message) {
+void fail_on_error(void*, RTCError code, const char* message) {
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw std::runtime_error(std::string("Embree: ") + message);
 }
 
@@ -127,6 +129,8 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings
       transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
       left_out(left_out_by(which, scene)),
       shafts(scene, left_out) {
+  // The memory may not do for its threads.
+  if (device == nullptr) throw std::bad_alloc();
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = main_bounds(scene);
   centre = box.center();
@@ -166,6 +170,7 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene, const st
                                                                  3 * sizeof(float), corners.size()));
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(unsigned), target.planes.size()));
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
     for (std::size_t k = 0; k < corners.size(); ++k) {
       for (int d = 0; d < 3; ++d) vertices[3 * k + static_cast<std::size_t>(d)] = corners[k][d];
       indices[k] = static_cast<unsigned>(k);

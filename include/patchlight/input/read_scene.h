@@ -27,7 +27,8 @@ struct ReadOptions {
   double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
   std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
   std::vector<MaterialSetting> settings = {};
-  std::string format = {};  ///< an extension without its dot; if empty, that of the file
+  std::filesystem::path confine = {};  ///< a folder outside of which nothing is read; if empty, any file may be
+  std::string format = {};             ///< an extension without its dot; if empty, that of the file
 };
 
 /// The extensions of the formats that can be read, without dots.

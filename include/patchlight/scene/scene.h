@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,11 +66,12 @@ struct Scene {
   std::vector<Point> vertices;  ///< metres
   std::vector<Polygon> polygons;
   std::vector<Material> materials;
-  std::vector<std::string> groups;  ///< names of objects and groups
-  std::string file;                 ///< the model file's name, for messages
-  std::vector<std::string> files;   ///< the files the polygons come from; empty when `file` is the only one
-  std::string sha256;               ///< of the model file and its material files, hexadecimal
-  double metres_per_unit = 1;       ///< length of one unit of the model file
+  std::vector<std::string> groups;            ///< names of objects and groups
+  std::string file;                           ///< the model file's name, for messages
+  std::vector<std::string> files;             ///< the files the polygons come from; empty when `file` is the only one
+  std::vector<std::filesystem::path> inputs;  ///< every file that was read for it, or that its materials name
+  std::string sha256;                         ///< of the model file and its material files, hexadecimal
+  double metres_per_unit = 1;                 ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
   bool up_stated = false;          ///< the model file says which way is up
   Vector north = Vector::UnitY();  ///< unit, at right angles to up

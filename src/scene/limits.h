@@ -1,0 +1,27 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <string>
+
+namespace patchlight {
+
+/// How far a position may be from the middle of a scene. Rays are traced in single precision in a scene of unit extent:
+/// beyond 1e12 of its extents a ray cannot be told from a parallel one, and beyond 1e18 there is none.
+struct Reach {
+  Point centre;
+  double distance = 0;  ///< m
+};
+
+/// Of a scene with faces.
+Reach reach_of(const Scene& scene);
+
+/// \throws InputError at `where` when a position in metres is out of reach; the message calls it `what`.
+void require_in_reach(const Reach& reach, const Point& position, const std::string& where, const std::string& what);
+
+/// Every position and every strength of light that a scene has besides its vertices. Light up to 1e25 (W/m^2, W/sr or
+/// W) leaves results that single precision can write; the sun's surface has 6e7. \throws InputError naming what is
+/// beyond.
+void check_limits(const Scene& scene);
+
+}  // namespace patchlight
