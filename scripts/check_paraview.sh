@@ -2,11 +2,13 @@
 # Opens a result and a series in ParaView, applies scripts/paraview_view.py, takes screenshots and compares what ParaView
 # finds with the report. Fetches ParaView into FOLDER when it is not there: about 75 MB to download, 600 MB on disk.
 # usage: scripts/check_paraview.sh [FOLDER]    default: build/paraview; needs the tool in build/src
+# A FOLDER that holds anything else than what this script has put there is left alone, and refused.
 # Without ParaView and without a network it says so and ends well, unless CI is set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=$(realpath -m "${1:-build/paraview}")
 out=build/paraview_check
+mark=.made_by_check_paraview
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then as_root=(sudo); fi
@@ -29,16 +31,23 @@ install() {
 # The package python3-paraview would remove libvtk9-dev, which patchlight is built with: it is unpacked, not installed.
 fetch_paraview() {
   [ -x "$folder/usr/bin/pvbatch" ] && return
+  if [ -e "$folder" ] && [ ! -e "$folder/$mark" ] && { [ ! -d "$folder" ] || [ -n "$(ls -A "$folder")" ]; }; then
+    echo "error: $folder is not a folder that this script has made; give the name of a new one" >&2
+    exit 1
+  fi
   echo "paraview: fetching ParaView into $folder"
   local debs
   debs=$(mktemp -d)
   chmod a+rx "$debs"
   (cd "$debs" && { apt-get -qq download paraview python3-paraview || { update_lists && apt-get -qq download paraview python3-paraview; }; }) ||
     { rm -r "$debs"; give_up "ParaView cannot be downloaded"; }
-  rm -rf "$folder.new"
-  mkdir -p "$folder.new"
-  for deb in "$debs"/*.deb; do dpkg -x "$deb" "$folder.new"; done
-  rm -r "$debs" && rm -rf "$folder" && mv "$folder.new" "$folder"
+  mkdir -p "$(dirname "$folder")"
+  local new
+  new=$(mktemp -d "$folder.XXXXXX")
+  chmod a+rx "$new"
+  for deb in "$debs"/*.deb; do dpkg -x "$deb" "$new"; done
+  touch "$new/$mark"
+  rm -r "$debs" && rm -rf "$folder" && mv "$new" "$folder"
 }
 
 # Libraries that pvbatch needs and the machine lacks come with Debian's paraview package. Qt's part of it is not used.
