@@ -6,7 +6,9 @@
 #include "patchlight/output/write_survey.h"
 #include "patchlight/plan/survey.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/text_table.h"
 
 #include <algorithm>
@@ -56,13 +58,13 @@ std::string counts_lines(const SceneReport& report) {
 
 std::string material_lines(const SceneReport& report) {
   std::size_t width = 0;
-  for (const MaterialFacts& facts : report.materials) width = std::max(width, facts.material.name.size());
+  for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
   width = std::min<std::size_t>(width, 40);
   std::ostringstream text;
   text << "materials:\n";
   for (const MaterialFacts& facts : report.materials) {
-    text << "  " << std::left << std::setw(static_cast<int>(width)) << facts.material.name << "  reflectance "
-         << listed(facts.material.reflectance, ", ") << "; " << counted(facts.faces, "face") << ", "
+    text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
+         << "  reflectance " << listed(facts.material.reflectance, ", ") << "; " << counted(facts.faces, "face") << ", "
          << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
@@ -73,7 +75,7 @@ std::string lamp_lines(const SceneReport& report) {
   text << "lamps: " << (report.lamps == 0 ? "none" : counted(report.lamps, "face")) << '\n';
   for (const MaterialFacts& facts : report.materials) {
     if (!(facts.material.exitance > 0).any()) continue;
-    text << "  " << facts.material.name << "  flux " << listed(facts.flux, ", ") << " W, "
+    text << "  " << shown_name(facts.material.name) << "  flux " << listed(facts.flux, ", ") << " W, "
          << rounded(luminance(facts.flux), digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
@@ -86,12 +88,13 @@ std::string problem_lines(const Scene& scene, const SceneReport& report) {
   text << "problems: " << counted(count[0], "error") << ", " << counted(count[1], "warning") << ", "
        << counted(count[2], "remark") << '\n';
   for (const Problem& problem : report.problems) {
-    text << "  " << name_of(severity_of(problem.kind)) << ": " << name_of(problem.kind) << ": " << problem.what << '\n';
+    text << "  " << name_of(severity_of(problem.kind)) << ": " << name_of(problem.kind) << ": "
+         << shown_name(problem.what) << '\n';
   }
   for (const std::string& note : scene.notes) {
     const bool is_problem = std::any_of(report.problems.begin(), report.problems.end(),
                                         [&](const Problem& problem) { return problem.what == note; });
-    if (!is_problem) text << "  note: " << note << '\n';
+    if (!is_problem) text << "  note: " << shown_name(note) << '\n';
   }
   return text.str();
 }
@@ -111,6 +114,7 @@ ExitCode check(const CheckArguments& arguments) {
     if (!file->empty()) check_writable(*file);
   }
   const Scene scene = read_scene(arguments.models, arguments.read);
+  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}}, scene.inputs);
   const SceneReport report = survey(scene);
 
   const WritingGuard guard;
@@ -119,7 +123,7 @@ ExitCode check(const CheckArguments& arguments) {
   if (arguments.json_on_stdout) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
-    std::cout << scene.file << ": " << verdict(report) << '\n'
+    std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
               << size_line(scene, report) << counts_lines(report) << material_lines(report) << lamp_lines(report)
               << problem_lines(scene, report) << std::flush;
   }

@@ -1,5 +1,6 @@
 #include "cli/check_options.h"
 
+#include "cli/distinct_files.h"
 #include "cli/model_options.h"
 
 #include <filesystem>
@@ -60,15 +61,8 @@ CheckArguments finish_check(const CheckOptions& options) {
   if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp") {
     throw UsageError("--vtk: found '" + options.problems + "'; expected a name that ends in .vtp");
   }
-  for (const auto* output : {&arguments.json, &arguments.problems}) {
-    for (const std::filesystem::path& model : arguments.models) {
-      if (output->empty() || weakly_canonical(*output) != weakly_canonical(model)) continue;
-      throw UsageError("check: '" + output->string() + "' is a model; expected another file for the result");
-    }
-  }
-  if (!arguments.json.empty() && weakly_canonical(arguments.json) == weakly_canonical(arguments.problems)) {
-    throw UsageError("--vtk: '" + options.problems + "' is also --json; expected different files");
-  }
+  require_distinct({{"--json", arguments.json}, {"--vtk", arguments.problems}});
+  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}}, arguments.models);
   return arguments;
 }
 

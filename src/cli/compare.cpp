@@ -6,6 +6,7 @@
 #include "patchlight/output/write_comparison.h"
 #include "patchlight/render/tone_map.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
@@ -36,7 +37,7 @@ std::string table(const Comparison& comparison) {
 
 std::string facts(const Scene& scene, const Comparison& comparison) {
   std::ostringstream text;
-  text << scene.file << ": " << comparison.simulation.mesh.size()
+  text << shown_name(scene.file) << ": " << comparison.simulation.mesh.size()
        << " patches; closure: " << comparison.simulation.transport.closure << "; spectral radius of K "
        << rounded(comparison.spectral_radius, 6);
   for (const SolverRun& run : comparison.runs) {
@@ -73,6 +74,7 @@ ExitCode compare(const CompareArguments& arguments) {
   // 1. Read the model, run the solvers
   if (!observer({.stage = Stage::read})) throw Cancelled();
   const Scene scene = read_scene(arguments.models, arguments.read);
+  require_not_read_from({"-o", arguments.output}, scene.inputs);
   const Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
   const Simulation& simulation = comparison.simulation;
   line.hide();
@@ -88,7 +90,8 @@ ExitCode compare(const CompareArguments& arguments) {
   line.hide();
   if (!arguments.quiet) {
     for (const std::string& note : notes(scene, simulation)) print_message("note", note);
-    std::cout << table(comparison) << facts(scene, comparison) << "wrote " << arguments.output.string() << std::endl;
+    std::cout << table(comparison) << facts(scene, comparison) << "wrote " << shown_name(arguments.output.string())
+              << std::endl;
   }
   const std::string missed = not_reached(comparison);
   if (!missed.empty()) {

@@ -1,5 +1,6 @@
 #include "cli/form_factor_options.h"
 
+#include "cli/distinct_files.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -112,10 +113,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   } else {
     arguments.request.standard_errors = arguments.request.estimator == Estimator::automatic;
   }
-  for (const std::filesystem::path& model : arguments.models) {
-    if (weakly_canonical(arguments.output) != weakly_canonical(model)) continue;
-    throw UsageError("-o: '" + options.output + "' is a model; expected another name for the result");
-  }
+  require_not_read({{"-o", arguments.output}}, arguments.models);
   return arguments;
 }
 

@@ -4,6 +4,7 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/output/whole_file.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 
@@ -28,13 +29,13 @@ std::string table(const GroupFactors& groups) {
     return std::to_string(groups.names.size()) + " " + name_of(groups.by) + "s: too many to print\n";
   }
   std::size_t width = 0;
-  for (const std::string& name : groups.names) width = std::max(width, name.size());
+  for (const std::string& name : groups.names) width = std::max(width, shown_name(name).size());
   std::ostringstream text;
   text << "form factors from each " << name_of(groups.by) << " to the others, in their order, and their sum:\n"
        << std::fixed << std::setprecision(5);
   for (std::size_t from = 0; from < groups.names.size(); ++from) {
     const auto row = groups.form_factor.row(static_cast<Eigen::Index>(from));
-    text << "  " << std::left << std::setw(static_cast<int>(width)) << groups.names[from] << std::right;
+    text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(groups.names[from]) << std::right;
     for (const double form_factor : row) text << "  " << form_factor;
     text << "  = " << row.sum() << '\n';
   }
@@ -55,9 +56,9 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   const Exchange& exchange = form_factors.exchange;
   const Eigen::ArrayXd sums = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area).array();
   std::ostringstream text;
-  text << scene.file << ": " << form_factors.mesh.size() << " patches with edges up to " << std::setprecision(3)
-       << form_factors.plan.max_edge << " m; estimator " << name_of(form_factors.plan.estimator) << "; row sums "
-       << std::setprecision(6) << sums.minCoeff() << " to " << sums.maxCoeff() << ", before closure "
+  text << shown_name(scene.file) << ": " << form_factors.mesh.size() << " patches with edges up to "
+       << std::setprecision(3) << form_factors.plan.max_edge << " m; estimator " << name_of(form_factors.plan.estimator)
+       << "; row sums " << std::setprecision(6) << sums.minCoeff() << " to " << sums.maxCoeff() << ", before closure "
        << exchange.raw_row_sum.minCoeff() << " to " << exchange.raw_row_sum.maxCoeff()
        << "; closure: " << (exchange.closure.empty() ? "not asked for" : exchange.closure) << '\n';
   return text.str();
@@ -81,6 +82,11 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   // 1. Read the model, find the form factors
   if (!observer({.stage = Stage::read})) throw Cancelled();
   const Scene scene = read_scene(arguments.models, arguments.read);
+  if (is_one_file(arguments)) {
+    require_not_read({{"-o", arguments.output}}, scene.inputs);
+  } else {
+    require_not_read_from({"-o", arguments.output}, scene.inputs);
+  }
   const FormFactors found = find_form_factors(scene, arguments.request, observer);
   std::vector<GroupFactors> groups;
   if (arguments.by) groups.push_back(group_factors(scene, found, *arguments.by));
@@ -103,7 +109,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) print_message("note", *note);
   std::cout << summary(scene, found);
   for (const GroupFactors& table_of : groups) std::cout << table(table_of);
-  std::cout << "wrote " << arguments.output.string() << std::endl;
+  std::cout << "wrote " << shown_name(arguments.output.string()) << std::endl;
   return good;
 }
 

@@ -35,8 +35,11 @@ extern "C" void ask_to_stop(int) {
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
+// A signal that the caller has ignored stays so: nohup, and jobs in the background of a script.
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
+  if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
+  action = {};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigaction(signal, &action, nullptr);
@@ -49,6 +52,7 @@ void watch_interrupts() {
   handle(SIGALRM, end_at_once);
   handle(SIGINT, ask_to_stop);
   handle(SIGTERM, ask_to_stop);
+  handle(SIGHUP, ask_to_stop);
 }
 
 bool interrupted() { return stop_asked; }

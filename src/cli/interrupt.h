@@ -2,7 +2,8 @@
 
 namespace patchlight::cli {
 
-/// From now on SIGINT and SIGTERM ask the run to stop: interrupted() becomes true. A stage that does not ask in time is
+/// From now on SIGINT, SIGTERM and SIGHUP, unless the caller ignores them, ask the run to stop: interrupted() becomes
+/// true. A stage that does not ask in time is
 /// ended half a second later, which loses nothing as long as no result is being written.
 void watch_interrupts();
 

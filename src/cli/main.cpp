@@ -9,6 +9,7 @@
 #include "cli/messages.h"
 #include "cli/plan.h"
 #include "cli/solve.h"
+#include "cli/standard_streams.h"
 #include "cli/study.h"
 #include "cli/validate.h"
 #include "cli/verify.h"
@@ -50,11 +51,17 @@ ExitCode failed(ExitCode code, const char* what) {
 }  // namespace
 
 int main(int count, char** values) {
+  open_standard_streams();
   watch_interrupts();
   // A file that may not grow any further is an error of writing, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
+  // A pipe that nobody reads any more, too.
+  std::signal(SIGPIPE, SIG_IGN);
+  StandardOutput output;
   try {
-    return run(count, values);
+    const ExitCode code = run(count, values);
+    output.finish();
+    return code;
   } catch (const UsageError& error) {
     return failed(usage_error, error.what());
   } catch (const InputError& error) {

@@ -1,14 +1,71 @@
 #include "cli/messages.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 
 namespace patchlight::cli {
+namespace {
+
+std::string escaped(const char* format, unsigned code) {
+  char text[8];
+  std::snprintf(text, sizeof text, format, code);
+  return text;
+}
+
+// The length of the UTF-8 sequence that the text begins with; 0 when it is none. Unicode 15, table 3-6.
+std::size_t sequence_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xC2 ? 0
+                             : first < 0xE0 ? 2
+                             : first < 0xF0 ? 3
+                             : first < 0xF5 ? 4
+                                            : 0;
+  if (length > text.size()) return 0;
+  const auto is_rest = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80; };
+  return std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(1, length)),
+                     is_rest)
+             ? length
+             : 0;
+}
+
+// One character, and what may be seen of it.
+std::string visible(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  if (character.size() == 1 && (first < 0x20 || first == 0x7F)) return escaped("\\u%04x", first);
+  const bool is_c1 = character.size() == 2 && first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+  return is_c1 ? escaped("\\u%04x", static_cast<unsigned char>(character[1])) : std::string(character);
+}
+
+}  // namespace
 
 void print_message(const char* kind, const std::string& text) {
   std::string line = text;
   std::replace(line.begin(), line.end(), '\n', ' ');
-  std::cerr << "patchlight: " << kind << ": " << line << '\n';
+  std::cerr << "patchlight: " << kind << ": " << printable(line) << '\n';
+}
+
+std::string printable(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    const auto first = static_cast<unsigned char>(text[0]);
+    if (length > 0) {
+      result += text[0] == '\n' ? std::string(1, '\n') : visible(text.substr(0, length));
+    } else {
+      result += first < 0xA0 ? escaped("\\x%02x", first) : std::string(1, text[0]);
+    }
+    text.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return result;
+}
+
+std::string shown_name(std::string_view name) {
+  std::string result;
+  for (const char letter : printable(name)) result += letter == '\n' ? std::string("\\u000a") : std::string(1, letter);
+  return result;
 }
 
 }  // namespace patchlight::cli

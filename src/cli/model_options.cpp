@@ -1,5 +1,6 @@
 #include "cli/model_options.h"
 
+#include "cli/add_option.h"
 #include "cli/arguments.h"
 #include "cli/parse_value.h"
 
@@ -40,6 +41,22 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
           "length of one model unit; default m")
       ->option_text("m|cm|mm|in|ft");
   add_set_option(command, options.settings);
+  add_up_option(command, options.up);
+  add(command, "--confine", "FOLDER",
+      "reads no file outside of this folder, whatever the model names\nand wherever links lead; default: any file",
+      [&options](const std::string& text) {
+        if (text.empty()) throw refusal("--confine", text, "the name of a folder");
+        options.confine = text;
+      });
+}
+
+void add_up_option(CLI::App& command, std::optional<Vector>& up) {
+  add(command, "--up", "y|z",
+      "the model's upright axis: where down is for lamps, sky and\npictures; default: as the format says (y: glTF; z: "
+      "IFC), else that\nacross which most area lies, or against the lamps' light",
+      [&up](const std::string& text) {
+        up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
+      });
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
@@ -64,6 +81,8 @@ ReadOptions read_options(const ModelOptions& options) {
   ReadOptions read;
   read.metres_per_unit = options.metres_per_unit;
   read.format = options.format;
+  read.up = options.up;
+  read.confine = options.confine;
   read.settings = material_settings(options.settings);
   return read;
 }

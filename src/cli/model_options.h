@@ -4,6 +4,7 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,19 @@ struct ModelOptions {
   std::string format;
   std::vector<std::string> settings;
   double metres_per_unit = 1;
+  std::optional<Vector> up;
+  std::string confine;
 };
 
-/// Adds MODEL, --format, --unit and --set to a command. What is parsed lands in `options`, which must outlive it.
+/// Adds MODEL, --format, --unit, --set, --up and --confine to a command. What is parsed lands in `options`, which must
+/// outlive it.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 /// Adds --set alone.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
+
+/// Adds --up alone.
+void add_up_option(CLI::App& command, std::optional<Vector>& up);
 
 /// The model files as paths. \throws UsageError when one is given twice.
 std::vector<std::filesystem::path> model_files(const ModelOptions& options);

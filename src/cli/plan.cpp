@@ -5,6 +5,7 @@
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_plan.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
@@ -55,6 +56,7 @@ ExitCode plan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.threads);
   const Scene scene = read_scene(arguments.models, arguments.read);
+  require_not_read({{"--json", arguments.json}}, scene.inputs);
   require_names(scene, arguments.request.interest);
   const Plan plan = make_plan(scene, arguments.request);
   const Request planned = as_planned(arguments.request, plan);
@@ -68,7 +70,7 @@ ExitCode plan(const PlanArguments& arguments) {
   for (const auto* notes : {&scene.notes, &plan.sides.notes, &plan.notes}) {
     for (const std::string& note : *notes) print_message("note", note);
   }
-  std::cout << scene.file << ": " << scene.polygons.size() << " polygons\n"
+  std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << lines_of(plan.decisions) << cost_lines(cost) << std::flush;
   return good;
 }

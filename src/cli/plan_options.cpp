@@ -2,6 +2,7 @@
 
 #include "cli/accuracy_options.h"
 #include "cli/add_option.h"
+#include "cli/distinct_files.h"
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
@@ -46,10 +47,7 @@ PlanArguments finish_plan(const PlanOptions& options) {
   arguments.json = options.json;
   require_consistent_effects(arguments.request, {});
   require_error_bars_possible(arguments.request, {});
-  for (const std::filesystem::path& model : arguments.models) {
-    if (arguments.json.empty() || weakly_canonical(arguments.json) != weakly_canonical(model)) continue;
-    throw UsageError("--json: '" + options.json + "' is a model; expected another file for the result");
-  }
+  require_not_read({{"--json", arguments.json}}, arguments.models);
   return arguments;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/model_options.h"
 #include "cli/solution_options.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace patchlight::cli {
 struct RelightOptions {
   std::string folder;
   std::vector<std::string> settings;
+  std::optional<Vector> up;
   SolutionOptions solution;
 };
 
@@ -25,7 +27,7 @@ std::shared_ptr<RelightOptions> add_relight(CLI::App& tool) {
                   "what patchlight form-factors has written; the model's\nfiles need not be there any more")
       ->option_text(" ");
   add_set_option(command, to.settings);
-  add_up_option(command, to.solution);
+  add_up_option(command, to.up);
   add_output_options(command, to.solution);
   add_solver_options(command, to.solution);
   add_machine_options(command, to.solution.request);
@@ -40,6 +42,7 @@ SolveArguments finish_relight(const RelightOptions& options) {
   SolveArguments arguments;
   arguments.form_factors = options.folder;
   arguments.read.settings = material_settings(options.settings);
+  arguments.read.up = options.up;
   arguments.request = options.solution.request;
   return with_solution(std::move(arguments), "relight", options.solution);
 }

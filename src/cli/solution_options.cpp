@@ -72,41 +72,14 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
 }
 
-// A file with what it is for.
-using NamedFile = std::pair<const char*, const path*>;
-
-std::vector<NamedFile> outputs_of(const SolveArguments& arguments) {
-  std::vector<NamedFile> files = {
-      {"--series", &arguments.series}, {"--report", &arguments.report}, {"--picture", &arguments.picture}};
-  for (const path& result : arguments.results) files.emplace_back("-o", &result);
-  for (const path& file : arguments.points_outputs) files.emplace_back("--points-output", &file);
-  std::erase_if(files, [](const NamedFile& file) { return file.second->empty(); });
-  return files;
-}
-
-// Every output must be a file of its own, and no output may replace an input.
-void require_distinct_files(const SolveArguments& arguments) {
-  std::vector<NamedFile> files;
-  for (const path& model : arguments.models) files.emplace_back("a model", &model);
-  if (!arguments.points.empty()) files.emplace_back("--points", &arguments.points);
-  for (const NamedFile& file : outputs_of(arguments)) files.push_back(file);
-  for (std::size_t b = 1; b < files.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      if (weakly_canonical(*files[a].second) == weakly_canonical(*files[b].second)) {
-        throw UsageError(std::string(files[b].first) + ": '" + files[b].second->string() + "' is also " +
-                         files[a].first + "; expected different files");
-      }
-    }
-  }
-}
-
 // A folder of form factors holds nothing else, so that it may be replaced as a whole.
 void require_untouched_folder(const SolveArguments& arguments) {
   if (arguments.form_factors.empty()) return;
-  const path folder = weakly_canonical(arguments.form_factors / ".");
+  std::error_code error;
+  const path folder = weakly_canonical(arguments.form_factors / ".", error);
   for (const auto& [option, file] : outputs_of(arguments)) {
-    if (weakly_canonical(*file).parent_path() != folder) continue;
-    throw UsageError(std::string(option) + ": '" + file->string() +
+    if (error || file.empty() || weakly_canonical(absolute(file), error).parent_path() != folder) continue;
+    throw UsageError(option + ": '" + file.string() +
                      "' lies in the folder of form factors; expected a file elsewhere");
   }
 }
@@ -134,15 +107,6 @@ void add_points_options(CLI::App& command, SolutionOptions& options) {
 }
 
 }  // namespace
-
-void add_up_option(CLI::App& command, SolutionOptions& options) {
-  add(command, "--up", "y|z",
-      "the model's upright axis, for the picture; default: as the\nformat says (y: glTF; z: IFC), else that across "
-      "which most\narea lies, or against the lamps' light",
-      [&options](const std::string& text) {
-        options.up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
-      });
-}
 
 void add_output_options(CLI::App& command, SolutionOptions& options) {
   command
@@ -211,7 +175,6 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
 
 SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options) {
   require_consistent(command, options);
-  arguments.read.up = options.up;
   arguments.request.close = options.request.close;
   arguments.request.solver = options.request.solver;
   if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
@@ -239,9 +202,24 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   }
   if (options.quiet) arguments.verbosity = Verbosity::quiet;
   if (options.verbose) arguments.verbosity = Verbosity::verbose;
-  require_distinct_files(arguments);
+  require_distinct(outputs_of(arguments));
+  require_not_read(outputs_of(arguments), given_files(arguments));
   require_untouched_folder(arguments);
   return arguments;
+}
+
+std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {
+  std::vector<OutputFile> files = {
+      {"--series", arguments.series}, {"--report", arguments.report}, {"--picture", arguments.picture}};
+  for (const path& result : arguments.results) files.push_back({"-o", result});
+  for (const path& file : arguments.points_outputs) files.push_back({"--points-output", file});
+  return files;
+}
+
+std::vector<path> given_files(const SolveArguments& arguments) {
+  std::vector<path> files = arguments.models;
+  if (!arguments.points.empty()) files.push_back(arguments.points);
+  return files;
 }
 
 }  // namespace patchlight::cli

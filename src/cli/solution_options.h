@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/arguments.h"
+#include "cli/distinct_files.h"
 
 #include <CLI/App.hpp>
 #include <optional>
@@ -16,17 +17,14 @@ struct SolutionOptions {
   std::vector<std::string> results;
   std::string series, report, picture, points, view;
   std::vector<std::string> points_outputs;
-  std::optional<Vector> up;
   std::optional<Camera> camera;  ///< model units
   std::optional<PictureColors> colors;
   bool quiet = false;
   bool verbose = false;
 };
 
-/// Adds --up. What is parsed lands in `options`, which must outlive the command; so below.
-void add_up_option(CLI::App& command, SolutionOptions& options);
-
-/// Adds -o, --series, --report, --picture, --false-color, --camera, --view, --points and --points-output.
+/// Adds -o, --series, --report, --picture, --false-color, --camera, --view, --points and --points-output. What is
+/// parsed lands in `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
 /// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows.
@@ -38,5 +36,11 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options);
 /// `arguments` with what these options ask for, once they hold the inputs and the request for form factors. `command`
 /// is the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
 SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options);
+
+/// What would be written, with the options that ask for it.
+std::vector<OutputFile> outputs_of(const SolveArguments& arguments);
+
+/// The files of the command line that are read.
+std::vector<std::filesystem::path> given_files(const SolveArguments& arguments);
 
 }  // namespace patchlight::cli

@@ -16,12 +16,14 @@
 #include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/sensors.h"
+#include "cli/solution_options.h"
 #include "cli/solve_input.h"
 #include "cli/summary.h"
+#include "output/write_bytes.h"
+#include "scene/limits.h"
 #include "stage_clock.h"
 
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -56,8 +58,20 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   if (!observer({.stage = Stage::read})) throw Cancelled();
   SolveInput input = read_input(arguments);
   input.scene = with_points(std::move(input.scene), arguments);
-  for (const std::filesystem::path& file : points_outputs(arguments, input.scene)) check_writable(file);
-  camera_for(arguments, input.scene);
+  std::vector<OutputFile> outputs = outputs_of(arguments);
+  for (const std::filesystem::path& file : points_outputs(arguments, input.scene)) {
+    check_writable(file);
+    if (arguments.points_outputs.empty()) outputs.push_back({"--points-output", file});
+  }
+  require_distinct(outputs);
+  require_not_read(outputs, input.scene.inputs);
+  require_not_read(outputs, given_files(arguments));
+  check_limits(input.scene);
+  if (const std::optional<Camera> camera = camera_for(arguments, input.scene)) {
+    const Reach reach = reach_of(input.scene);
+    require_in_reach(reach, camera->eye, "--camera", "the eye");
+    require_in_reach(reach, camera->target, "--camera", "the target");
+  }
   return input;
 }
 
@@ -116,31 +130,42 @@ SensorReport sensor_report(const Results& results) {
   return {by_group(results.scene.sensors, results.readings), sensor_unit(results.readings), results.warnings};
 }
 
-// Writes one file after the other; the run can be stopped between two. Returns the files written.
+// Writes one file after the other, the series last, and lets them appear together; the run can be stopped between two.
+// Returns the files written.
 std::vector<std::filesystem::path> write(const SolveArguments& arguments, const Results& results) {
   std::vector<std::filesystem::path> written;
-  const auto write_to = [&written](const std::filesystem::path& file, const std::function<void()>& write_it) {
+  WholeFiles files;
+  const auto write_to = [&](const std::filesystem::path& file, const auto& write_it) {
     if (file.empty()) return;
     if (interrupted()) throw Cancelled();
-    write_it();
+    files.write(file, write_it);
     written.push_back(file);
   };
+  using Path = std::filesystem::path;
   const WritingGuard guard;
-  for (const std::filesystem::path& file : arguments.results) {
-    write_to(file, [&] { write_result(file, results.scene, results.simulation, results.provenance); });
+  for (const Path& file : arguments.results) {
+    write_to(file, [&](const Path& to) { write_result(to, results.scene, results.simulation, results.provenance); });
   }
-  write_to(arguments.series, [&] {
-    write_series(arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
-                 [](const Progress&) { return !interrupted(); });
-  });
-  write_to(arguments.picture, [&] { write_png(arguments.picture, results.picture); });
-  for (const std::filesystem::path& file : results.points_outputs) {
-    write_to(file, [&] { write_points(file, results.scene.sensors, results.readings); });
+  write_to(arguments.picture, [&](const Path& to) { write_png(to, results.picture); });
+  for (const Path& file : results.points_outputs) {
+    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, results.readings); });
   }
-  write_to(arguments.report, [&] {
-    write_report(arguments.report,
+  write_to(arguments.report, [&](const Path& to) {
+    write_report(to,
                  {results.scene, arguments.request, results.simulation, results.provenance, sensor_report(results)});
   });
+  if (arguments.series.empty()) {
+    if (interrupted()) throw Cancelled();
+    files.publish();
+    return written;
+  }
+  write_series(
+      arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
+      [](const Progress&) { return !interrupted(); },
+      [&](const std::string& collection) {
+        write_to(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
+        files.publish();
+      });
   return written;
 }
 

@@ -41,7 +41,6 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   SolveOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("solve", "solves a model: interreflected light on all its surfaces");
   add_model_options(command, to.model);
-  add_up_option(command, to.solution);
   add_sides_option(command, to.mesh);
   add_output_options(command, to.solution);
   add_patch_options(command, to.mesh);

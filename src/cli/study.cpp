@@ -6,6 +6,7 @@
 #include "patchlight/output/write_study.h"
 #include "patchlight/study/price.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/text_table.h"
@@ -70,6 +71,7 @@ ExitCode study(const StudyArguments& arguments) {
   // 1. Read the model, solve it in many ways
   if (!observer({.stage = Stage::read})) throw Cancelled();
   const Scene scene = read_scene(arguments.models, arguments.read);
+  require_not_read_from({"-o", arguments.output}, scene.inputs);
   const Study study = patchlight::study(scene, arguments.request, arguments.options, observer);
   line.hide();
   if (!study.trapped.empty()) {
@@ -82,8 +84,8 @@ ExitCode study(const StudyArguments& arguments) {
   write_study(arguments.output, scene, study, {.command_line = arguments.command_line});
   if (!arguments.quiet) {
     for (const std::string& note : study.plan.notes) print_message("note", note);
-    std::cout << table(study) << facts(scene, study) << conclusion(study) << "\nwrote " << arguments.output.string()
-              << std::endl;
+    std::cout << table(study) << facts(scene, study) << conclusion(study) << "\nwrote "
+              << shown_name(arguments.output.string()) << std::endl;
   }
   if (study.reference.converged) return good;
   print_message("warning", "the reference has not converged: the errors above are relative to it");

@@ -2,6 +2,7 @@
 
 #include "patchlight/transport/worst_rows.h"
 
+#include "cli/messages.h"
 #include "cli/text_table.h"
 
 #include <algorithm>
@@ -104,8 +105,9 @@ std::string worst_patches(const Scene& scene, const Simulation& simulation) {
     const Polygon& polygon = scene.polygons[mesh.polygon[row.patch]];
     const Point& centre = mesh.centroid[row.patch];
     text << "  " << place_of(scene, polygon) << ", face " << polygon.face << " of " << group_name(scene, polygon.group)
-         << ", material " << scene.materials[mesh.material[row.patch]].name << ", at " << bands(centre.array())
-         << " m: " << rounded(row.row_sum, 6) << ", expected " << rounded(row.expected, 6) << '\n';
+         << ", material " << shown_name(scene.materials[mesh.material[row.patch]].name) << ", at "
+         << bands(centre.array()) << " m: " << rounded(row.row_sum, 6) << ", expected " << rounded(row.expected, 6)
+         << '\n';
   }
   return text.str();
 }
@@ -182,9 +184,9 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
 std::string summary(const Scene& scene, const Simulation& simulation, bool long_form) {
   std::ostringstream text;
   const Vector size = bounds(scene).diagonal();
-  text << scene.file << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x " << rounded(size.z()) << " m, "
-       << scene.polygons.size() << " polygons, " << simulation.mesh.size() << " patches with edges up to "
-       << rounded(simulation.plan.max_edge) << " m\n";
+  text << shown_name(scene.file) << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x "
+       << rounded(size.z()) << " m, " << scene.polygons.size() << " polygons, " << simulation.mesh.size()
+       << " patches with edges up to " << rounded(simulation.plan.max_edge) << " m\n";
   text << effects_line(simulation.plan.decisions);
   if (long_form) text << details(scene, simulation);
   text << convergence(simulation.plan, simulation.solution) << '\n';
@@ -197,7 +199,7 @@ std::string summary(const Scene& scene, const Simulation& simulation, bool long_
 
 std::string files_line(const std::vector<std::filesystem::path>& files) {
   std::string line;
-  for (const std::filesystem::path& file : files) line += (line.empty() ? "wrote " : ", ") + file.string();
+  for (const std::filesystem::path& file : files) line += (line.empty() ? "wrote " : ", ") + shown_name(file.string());
   return line + '\n';
 }
 

@@ -1,5 +1,7 @@
 #include "cli/text_table.h"
 
+#include "cli/messages.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -14,8 +16,12 @@ std::string rounded(double value, int digits) {
   return text.str();
 }
 
-std::string text_table(const std::vector<TextRow>& rows) {
-  std::vector<std::size_t> width(rows.front().size());
+std::string text_table(const std::vector<TextRow>& cells) {
+  std::vector<std::size_t> width(cells.front().size());
+  std::vector<TextRow> rows = cells;
+  for (TextRow& row : rows) {
+    for (std::string& cell : row) cell = shown_name(cell);
+  }
   for (const TextRow& row : rows) {
     for (std::size_t column = 0; column < row.size(); ++column) {
       width[column] = std::max(width[column], row[column].size());

@@ -5,6 +5,7 @@
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_verification.h"
 
+#include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
@@ -126,6 +127,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   // 1. Solve
   if (!observer({.stage = Stage::read})) throw Cancelled();
   const Scene scene = read_scene(arguments.models, arguments.read);
+  require_not_read({{"--json", arguments.json}}, scene.inputs);
   const Simulation simulation = simulate(scene, arguments.request, observer);
   if (!simulation.solution.converged) {
     line.hide();
@@ -144,10 +146,10 @@ ExitCode verify(const VerifyArguments& arguments) {
     write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
   }
   for (const std::string& note : notes(scene, simulation)) print_message("note", note);
-  std::cout << table(scene, simulation.mesh, verification) << scene.file << ": " << verification.patches.size()
-            << " of " << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
-            << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
-            << " s; irradiance in W/m^2\n"
+  std::cout << table(scene, simulation.mesh, verification) << shown_name(scene.file) << ": "
+            << verification.patches.size() << " of " << simulation.mesh.size() << " patches, "
+            << verification.paths.paths << " paths each, " << rounded(static_cast<double>(verification.paths.rays), 3)
+            << " rays in " << rounded(seconds, 3) << " s; irradiance in W/m^2\n"
             << verdict(verification, bars(arguments.bar, simulation)) << std::flush;
   return verification.verdict == Verdict::agrees ? good : validation_failed;
 }
