@@ -21,7 +21,8 @@ SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
   json.at("sampled_again").get_to(unanimous.pairs);
   json.at("missed").get_to(unanimous.missed);
   json.at("by_share").get_to(unanimous.by_share);
-  json.at("squares").get_to(unanimous.squares);
+  // Folders of earlier versions have none.
+  if (json.contains("squares")) json.at("squares").get_to(unanimous.squares);
   return unanimous;
 }
 

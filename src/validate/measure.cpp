@@ -42,10 +42,6 @@ Eigen::MatrixXd error_between_groups(const ExchangeAreas& S, const PatchMesh& me
   return sum;
 }
 
-// A pair counts as free or hidden when all its p rays agree. With a visible share v that changes the mean by
-// v^p (1 - v) - v (1 - v)^p of the unoccluded value, at most 1 / (2 (p + 1)), in the pairs that are partly hidden.
-double probe_bias(const GroupExchange& exchange) { return exchange.mixed_share / (2 * (rays_per_pair + 1)); }
-
 }  // namespace
 
 GroupExchange group_exchange(const Scene& scene, double max_edge, const AssemblyOptions& options,
@@ -62,11 +58,8 @@ GroupExchange group_exchange(const Scene& scene, double max_edge, const Assembly
     group_of[i] = repaired.polygons[mesh.polygon[i]].group;
     area[group_of[i]] += mesh.area[i];
   }
-  const AssemblyCounts& counts = assembly.counts;
-  const double pairs = static_cast<double>(std::max<std::uint64_t>(1, counts.facing_pairs));
   return {exchange_between_groups(assembly.exchange_areas, group_of, groups),
-          error_between_groups(assembly.exchange_areas, mesh, group_of, groups), area,
-          static_cast<double>(counts.partial_pairs) / pairs};
+          error_between_groups(assembly.exchange_areas, mesh, group_of, groups), area};
 }
 
 Measured unoccluded_form_factor(const Scene& scene, double max_edge, std::uint32_t to, const Observer& observer) {
@@ -84,7 +77,7 @@ Measured sampled_form_factor(const Scene& scene, double max_edge, std::uint32_t 
     const double form_factor = exchange.exchange_area(0, to) / exchange.area[0];
     sum += form_factor;
     sum_of_squares += form_factor * form_factor;
-    systematic = std::max(systematic, exchange.error(0, to) / exchange.area[0] + probe_bias(exchange) * form_factor);
+    systematic = std::max(systematic, exchange.error(0, to) / exchange.area[0]);
   }
   const double mean = sum / runs;
   const double variance = std::max(0.0, sum_of_squares / runs - mean * mean) / (runs - 1);  // of the mean

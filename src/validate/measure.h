@@ -10,9 +10,8 @@ namespace patchlight::validation {
 /// A scene repaired, checked and cut into patches, with its exchange areas before closure, summed by group.
 struct GroupExchange {
   Eigen::MatrixXd exchange_area;  ///< m^2
-  Eigen::MatrixXd error;   ///< m^2, bound on what quadrature and storage as float make of it; sampling not included
-  Eigen::VectorXd area;    ///< m^2, of the groups
-  double mixed_share = 0;  ///< of the facing pairs those of which some rays were blocked and some free
+  Eigen::MatrixXd error;  ///< m^2, bound on what quadrature and storage as float make of it; sampling not included
+  Eigen::VectorXd area;   ///< m^2, of the groups
 };
 
 /// The front sides of the polygons take part. \throws Cancelled.

@@ -1,7 +1,7 @@
 // What an accuracy that is asked for gives and costs, against a far finer solution, and what the cheapest setting costs
 // that a sweep of uniform meshes finds.
-// usage: benchmark_accuracy REFERENCE_PATCHES ACCURACIES MODEL...
-// ACCURACIES are percentages, as 3,1,0.3.
+// usage: benchmark_accuracy [--no-sweep] REFERENCE_PATCHES ACCURACIES MODEL...
+// ACCURACIES are percentages, as 3,1,0.3. Without the sweep the last columns stay empty.
 #include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
@@ -108,8 +108,13 @@ std::vector<double> accuracies(const std::string& percentages) {
 }  // namespace
 
 int main(int count, char** values) {
+  const bool sweeps = count < 2 || std::string(values[1]) != "--no-sweep";
+  if (!sweeps) {
+    --count;
+    ++values;
+  }
   if (count < 4) {
-    std::fputs("usage: benchmark_accuracy REFERENCE_PATCHES ACCURACIES MODEL...\n", stderr);
+    std::fputs("usage: benchmark_accuracy [--no-sweep] REFERENCE_PATCHES ACCURACIES MODEL...\n", stderr);
     return 1;
   }
   const auto patches = static_cast<std::size_t>(std::strtoul(values[1], nullptr, 10));
@@ -121,7 +126,7 @@ int main(int count, char** values) {
     const Scene scene = read_scene(values[k]);
     const Simulation finer = finest(scene, patches);
     const FinerReference reference = reference_of(finer);
-    const std::vector<Setting> settings = sweep(scene, reference);
+    const std::vector<Setting> settings = sweeps ? sweep(scene, reference) : std::vector<Setting>();
     for (const double asked : accuracies(values[2]))
       print(std::filesystem::path(values[k]).stem().string(), asked, reference, settings, scene);
     std::fprintf(stderr, "%s: reference of %u patches\n", values[k], finer.mesh.size());
