@@ -195,11 +195,11 @@ Range row_sum_range(const FormFactorInfo& info, double raw, double lost, bool is
   return {std::min(raw, 1 - lost) - most_overshoot, std::max(raw, 1 - lost) + most_overshoot};
 }
 
-// Sums far above 1 are no samples of form factors, whatever the estimator.
+// Sums that large are no samples of form factors, whatever the estimator.
 void require_raw_row_sums(const std::filesystem::path& file, const Eigen::VectorXd& sums) {
-  constexpr double most = 10;
+  constexpr double most = 1e4;  // sampled by area, patches that touch reach some hundred
   if (sums.allFinite() && (sums.array() >= 0).all() && (sums.array() <= most).all()) return;
-  throw InputError(file.string(), "found a sum of form factors outside 0 to 10; make the form factors anew");
+  throw InputError(file.string(), "found a sum of form factors outside 0 to 10,000; make the form factors anew");
 }
 
 void require_row_sums(const std::filesystem::path& file, const FormFactorInfo& info, const Exchange& exchange) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace patchlight {
@@ -12,6 +13,27 @@ namespace {
 
 std::array<float, 3> narrow(const Vector& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+// Rays in single precision may pass a wall on whose foot a patch ends when they start nearer to it than some 3e-7 of
+// the scene's extent (Occluder): samples keep away from the patch's border by this length, in the frame's unit.
+constexpr double border = 1e-6;
+
+// By this share at most of the way to the centroid.
+constexpr double widest_border = 1e-3;
+
+// The corners moved towards the centroid so far that all of the border moves inward by `border`.
+std::array<Point, 4> inner_corners(const PatchShape& shape, double scale) {
+  const auto& [points, count] = shape.corners;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < static_cast<int>(count); ++k) {
+    const Vector edge = points[(k + 1) % count] - points[k];
+    if (edge.norm() > 0) nearest = std::min(nearest, edge.cross(shape.centroid - points[k]).norm() / edge.norm());
+  }
+  const double share = std::min(widest_border, border / (scale * nearest));
+  std::array<Point, 4> inner = points;
+  for (Point& point : inner) point += share * (shape.centroid - point);
+  return inner;
 }
 
 // Where samples lie on a patch: coordinates d and d + 1 of the set, for triangles made barycentric
@@ -76,7 +98,7 @@ PATCHLIGHT_INLINE void fill(PairSamples& samples, std::ptrdiff_t lane, const Sam
 
 SampledPatch sampled_patch(const PatchShape& shape, PolygonIndex polygon, const TracingFrame& frame) {
   SampledPatch patch;
-  const auto& p = shape.corners.points;
+  const std::array<Point, 4> p = inner_corners(shape, frame.scale);
   patch.is_triangle = shape.corners.count == 3;
   const Vector along_u = p[1] - p[0];
   const Vector along_v = p[patch.is_triangle ? 2 : 3] - p[0];
@@ -89,9 +111,9 @@ SampledPatch sampled_patch(const PatchShape& shape, PolygonIndex polygon, const 
   patch.density = {1, 0, 0};
   if (!patch.is_triangle) {
     // |dx/du x dx/dv| over the area, linear in u and v for a planar quadrilateral.
-    patch.density = narrow(Vector(along_u.cross(along_v).dot(shape.normal), along_u.cross(twist).dot(shape.normal),
-                                  twist.cross(along_v).dot(shape.normal)) /
-                           shape.area);
+    const Vector jacobian(along_u.cross(along_v).dot(shape.normal), along_u.cross(twist).dot(shape.normal),
+                          twist.cross(along_v).dot(shape.normal));
+    patch.density = narrow(jacobian / (jacobian[0] + (jacobian[1] + jacobian[2]) / 2));
   }
   patch.polygon = polygon;
   return patch;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace patchlight {
@@ -92,10 +93,12 @@ std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<co
   return first;
 }
 
-// How many times as many rays would leave the wanted error; 1 where nothing is seen.
+// How many times as many rays would leave the wanted error: no number where nothing is seen yet of what may be seen.
 double wanted_factor(const Reading& reading, const GatherOptions& options) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Spectrum allowed = (options.wanted_error * reading.mean).square();
-  const Spectrum factor = (reading.mean > 0).select(reading.variance / allowed, 1.0);
+  const Spectrum unseen = (reading.variance > 0).select(Spectrum::Constant(allowed.size(), infinity), 1.0);
+  const Spectrum factor = (reading.mean > 0).select(reading.variance / allowed, unseen);
   return std::max(1.0, factor.maxCoeff());
 }
 

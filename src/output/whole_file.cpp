@@ -145,7 +145,7 @@ void WholeFiles::write(const fs::path& file, const std::function<void(const fs::
   try {
     const fs::path target = followed(file);
     check_target(file, target);
-    std::unique_ptr<Folder>& folder = folders_[target.parent_path()];
+    std::unique_ptr<Folder>& folder = folders_[fs::canonical(target.parent_path())];
     if (!folder) folder.reset(new Folder{{target, file}, {}});
     const fs::path temporary = folder->temporary.path() / target.filename();
     try {

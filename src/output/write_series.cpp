@@ -171,9 +171,12 @@ class LockedFolder {
  private:
   bool is_locked(const fs::path& folder) {
     std::error_code error;
-    is_new_ = fs::create_directory(folder, error);
+    is_new_ = fs::create_directory(folder, error) || is_new_;
     if (error) throw OutputError(folder.string(), "cannot be created: " + error.message());
     descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor_ < 0 && errno != ENOENT)
+      throw OutputError(folder.string(),
+                        "cannot be opened: " + std::error_code(errno, std::generic_category()).message());
     // A file system without locks: as if there were no other run.
     struct stat status {};
     const bool is_ours = descriptor_ >= 0 && (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);

@@ -69,7 +69,7 @@ void print(const char* model, std::size_t patches, int seeds) {
     of_patches.add(simulation.solution.irradiance, simulation.error_bars->form_factor);
     const GatheredIrradiance gathered =
         gather_irradiance(first.mesh, first.solution.radiosity, occluder, sensors, {.seed = seed});
-    of_sensors.add(gathered.irradiance, gathered.standard_error);
+    of_sensors.add(gathered.irradiance, gathered.errors.rays);
   }
   std::printf("| %s | %u | %.2f | %.2f |\n", std::filesystem::path(model).stem().c_str(), first.mesh.size(),
               std::sqrt(of_patches.observed() / of_patches.expected()),

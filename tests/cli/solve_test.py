@@ -64,7 +64,8 @@ class SolveTest(ToolTest):
         self.assertIn(b"<VTKFile", self.read("out.vtp")[:200])
         json.loads(self.read("out.json"))
         rows = list(csv.reader(self.read("spots.irradiance.csv").decode().splitlines()))
-        self.assertEqual([len(row) for row in rows], [13, 13, 13])
+        self.assertEqual(rows[0][:6], ["x", "y", "z", "nx", "ny", "nz"])
+        self.assertEqual([len(row) for row in rows], [len(rows[0])] * 3)
         self.assertEqual(rows[2][:6], ["-0.5", "0.5", "0", "0", "0", "2"])
         self.assertTrue(all(float(value) > 0 for value in rows[1][6:9]))
 

@@ -184,7 +184,7 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
       {"[[sensors]]\n", {"scene.toml:3: sensors: found none of them", "points, file, corner, floor"}},
       {"[[sensors]]\npoints = []\n", {"scene.toml:4: sensors.points: found a list of 0 values"}},
       {"[[sensors]]\npoints = [[0, 0, 0, 0, 0, 0]]\n", {"scene.toml:4: sensors.points", "not 0, 0, 0"}},
-      {"[[sensors]]\nfile = \"no.pts\"\n", {"no.pts: cannot be opened"}},
+      {"[[sensors]]\nfile = \"no.pts\"\n", {"no.pts: the file of points does not exist"}},
       {"[[sensors]]\nfloor = \"flor\"\nheight = 1\nspacing = 1\n", {"scene.toml:4: ", "did you mean 'floor'?"}},
       {"[[sensors]]\nfloor = \"floor\"\nheight = 1\nspacing = 1e-6\n", {"scene.toml:4: sensors.spacing", "1000000"}},
       {"[[sensors]]\nfloor = \"floor\"\nheight = 1\n", {"scene.toml:3: sensors: found no key 'spacing'"}},
