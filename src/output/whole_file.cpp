@@ -163,8 +163,12 @@ void WholeFiles::write(const fs::path& file, const std::function<void(const fs::
 
 void WholeFiles::publish() {
   for (const auto& [path, folder] : folders_) {
-    for (const fs::path& target : folder->targets) check_target(target, target);
-    flush_to_disk(folder->temporary.path(), path);
+    try {
+      for (const fs::path& target : folder->targets) check_target(target, target);
+      flush_to_disk(folder->temporary.path(), path);
+    } catch (const std::system_error& error) {
+      throw OutputError(path.string(), "cannot be written: " + error.code().message());
+    }
   }
   std::vector<std::unique_ptr<FolderLock>> locks;
   for (const auto& [path, folder] : folders_) locks.push_back(std::make_unique<FolderLock>(path));
