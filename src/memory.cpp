@@ -31,8 +31,7 @@ double bytes_of_a_pair(const Request& request) {
   if (request.on_demand) return 0;
   if (refines(request)) return bytes_per_pair + bytes_while_refining;
   if (request.error_bars) return 2 * bytes_per_pair + bytes_per_error + bytes_of_parents;
-  // Open scenes of few patches keep them for closure without being asked.
-  return bytes_per_pair + bytes_per_error;
+  return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
 }
 
 double bytes_of_a_patch(const Request& request) {

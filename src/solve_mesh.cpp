@@ -113,7 +113,9 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   SolverOptions options = plan.solver;
   options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
   const SolveWith solve = solver_as_planned(with.solve, plan);
-  const Solve once = [&](const SolverOptions& by) { return solve(*transport, simulation.problem, by, observer); };
+  const Solve once = [&](const SolverOptions& by) {
+    return solve(*transport, simulation.problem, by, setting.observer);
+  };
   SolvedWith solved = solve_for_interest(setting, simulation, options, once);
   simulation.plan.solver.relative_error = solved.relative_error;
   simulation.solution = std::move(solved.solution);

@@ -17,7 +17,7 @@ std::array<float, 3> narrow(const Vector& v) {
 
 // Rays in single precision may pass a wall on whose foot a patch ends when they start nearer to it than some 3e-7 of
 // the scene's extent (Occluder): samples keep away from the patch's border by this length, in the frame's unit.
-constexpr double border = 1e-6;
+constexpr double border = 5e-7;
 
 // By this share at most of the way to the centroid.
 constexpr double widest_border = 1e-3;
