@@ -58,11 +58,11 @@ Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area
 
 // One column of `field` per draw, `column` of each.
 Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index column) {
-  Field of_draws(field.rows(), field.cols() / columns);
-  for (Eigen::Index draw = 0; draw < of_draws.cols(); ++draw) {
-    of_draws.col(draw) = field.col(draw * columns + column);
+  Field column_of_each(field.rows(), field.cols() / columns);
+  for (Eigen::Index draw = 0; draw < column_of_each.cols(); ++draw) {
+    column_of_each.col(draw) = field.col(draw * columns + column);
   }
-  return of_draws;
+  return column_of_each;
 }
 
 // What an error of the irradiance, the problem's exitance, comes to through all reflections: e = irradiance + F R e.
