@@ -9,12 +9,16 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <vtkAutoInit.h>
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
+
+// The one part of VTK used here that has to be registered before use.
+VTK_MODULE_INIT(vtkRenderingFreeType)
 
 namespace patchlight {
 namespace {

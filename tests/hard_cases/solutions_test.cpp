@@ -4,11 +4,11 @@
 #include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "support/meshes.h"
 #include "support/scenes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
@@ -88,7 +88,7 @@ TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
 // red and green walls absorb, the opening lets through; the balance closes to the tolerance.
 TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   const ReadOptions white{.settings = {parse_material_setting("white.reflectance=1")}};
-  const Scene scene = repair(read_scene(std::filesystem::path(PATCHLIGHT_MESHES) / "cornell_box.obj", white));
+  const Scene scene = repair(read_scene(mesh_folder() / "cornell_box.obj", white));
   const std::vector<Problem> problems = survey(scene).problems;
   EXPECT_TRUE(std::any_of(problems.begin(), problems.end(),
                           [](const Problem& problem) { return problem.kind == ProblemKind::full_reflectance; }));

@@ -2,8 +2,9 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
+#include "support/meshes.h"
+
 #include <algorithm>
-#include <filesystem>
 #include <gtest/gtest.h>
 
 namespace patchlight {
@@ -31,7 +32,7 @@ double least_error_with_even_light(const Field& radiosity, const Simulation& ref
 // gets below 20 %, so that the ambient term of Cohen et al. 1988 would fail. 2,000 patches, as with fewer the lamps
 // and one row of every group are a twentieth already.
 TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
-  const Scene scene = read_scene(std::filesystem::path(PATCHLIGHT_MESHES) / "cornell_box.obj");
+  const Scene scene = read_scene(mesh_folder() / "cornell_box.obj");
   Request request;
   request.patches = 2000;
   const Simulation reference = simulate(scene, request);

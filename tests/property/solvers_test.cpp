@@ -5,6 +5,7 @@
 
 #include "support/assembled.h"
 #include "support/direct_solution.h"
+#include "support/meshes.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 
@@ -224,7 +225,7 @@ TEST(Overshooting, SavesMostShots) {
 // Colours need not agree on what is overshot: if too much of one could hide too little of another from the choice of
 // who shoots, it would need three quarters more shots than without overshooting.
 TEST(Overshooting, SavesShotsInColour) {
-  const Assembled room = assembled(read_scene({std::string(PATCHLIGHT_MESHES) + "/two_rooms.obj"}), 0.5);
+  const Assembled room = assembled(read_scene({mesh_folder() / "two_rooms.obj"}), 0.5);
   ASSERT_EQ(room.problem.reflectance.cols(), 3);
   EXPECT_LT(work(room, room.problem, Solver::overshooting), 0.75 * work(room, room.problem, Solver::progressive));
 }

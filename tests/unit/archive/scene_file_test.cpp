@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
+#include "support/meshes.h"
 #include "support/scenes.h"
 #include "unit/output/temporary_folder.h"
 
@@ -61,7 +62,7 @@ class ShippedModel : public testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedModel, IsReadAsItWasWritten) {
   const Scene scene =
-      read_scene(std::string(PATCHLIGHT_MESHES) + "/" + GetParam() + ".obj", {.metres_per_unit = 0.3048});
+      read_scene(mesh_folder() / (std::string(GetParam()) + ".obj"), {.metres_per_unit = 0.3048});
   for (const Sides choice : {Sides::automatic, Sides::front, Sides::both}) {
     const KeptSides sides = kept_sides(scene, choice);
     const StoredScene stored = through_a_file(scene, sides);

@@ -1,6 +1,8 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "support/meshes.h"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -11,7 +13,7 @@ namespace {
 // what is left is rounding.
 constexpr double rounding = 1e-12;
 
-Scene mesh(const std::string& name) { return read_scene(std::string(PATCHLIGHT_MESHES) + "/" + name + ".obj"); }
+Scene mesh(const std::string& name) { return read_scene(mesh_folder() / (name + ".obj")); }
 
 int count(const std::vector<std::uint8_t>& kept) { return static_cast<int>(std::count(kept.begin(), kept.end(), 1)); }
 

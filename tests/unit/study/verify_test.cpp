@@ -3,10 +3,10 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 
+#include "support/meshes.h"
 #include "support/scenes.h"
 
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-Scene model(const std::string& name) { return read_scene(std::filesystem::path(PATCHLIGHT_MESHES) / name); }
+Scene model(const std::string& name) { return read_scene(mesh_folder() / name); }
 
 Request request_for(std::size_t patches, Sides sides = Sides::automatic) {
   Request request;

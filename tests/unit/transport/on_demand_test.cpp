@@ -5,6 +5,7 @@
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/dense.h"
 
+#include "support/meshes.h"
 #include "support/scenes.h"
 
 #include <cmath>
@@ -48,7 +49,7 @@ struct Place {
         area(Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size())) {}
 };
 
-Scene model(const std::string& file) { return read_scene({std::string(PATCHLIGHT_MESHES) + "/" + file}); }
+Scene model(const std::string& file) { return read_scene({mesh_folder() / file}); }
 
 // A room with a rug drawn on its floor, and a box that stands on both.
 Scene room_with_overlaps() {
