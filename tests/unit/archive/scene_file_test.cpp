@@ -61,8 +61,7 @@ StoredScene through_a_file(const Scene& scene, const KeptSides& sides) {
 class ShippedModel : public testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedModel, IsReadAsItWasWritten) {
-  const Scene scene =
-      read_scene(mesh_folder() / (std::string(GetParam()) + ".obj"), {.metres_per_unit = 0.3048});
+  const Scene scene = read_scene(mesh_folder() / (std::string(GetParam()) + ".obj"), {.metres_per_unit = 0.3048});
   for (const Sides choice : {Sides::automatic, Sides::front, Sides::both}) {
     const KeptSides sides = kept_sides(scene, choice);
     const StoredScene stored = through_a_file(scene, sides);

@@ -1,7 +1,7 @@
+#include "support/meshes.h"
+
 #include "patchlight/input/read_scene.h"
 #include "patchlight/scene/sides.h"
-
-#include "support/meshes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
