@@ -24,13 +24,15 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, const 
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
   Exchange exchange = trace_exchange(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
   if (plan.close) {
-    const KnownErrors known{exchange.entry_errors, exchange.error};
+    const EntryErrors none;
+    const bool weighs = weighs_by_errors(exchange.lost, mesh.size());
+    const KnownErrors known{weighs ? exchange.entry_errors : none, exchange.error};
     ClosedExchangeAreas closed =
         close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, known, observer);
     exchange.exchange_areas = std::move(closed.exchange_areas);
     exchange.closure = closed.method;
+    if (!plan.standard_errors) exchange.entry_errors = {};
   }
-  if (!plan.standard_errors) exchange.entry_errors = {};
   return {used, std::move(plan), std::move(mesh), std::move(exchange)};
 }
 

@@ -7,6 +7,7 @@ inline constexpr const char* dense = "F.npy";
 inline constexpr const char* sparse = "F.mtx";
 inline constexpr const char* dense_error = "standard_error.npy";
 inline constexpr const char* sparse_error = "standard_error.mtx";
+inline constexpr const char* entry_errors = "entry_errors.npy";
 inline constexpr const char* area = "area.npy";
 inline constexpr const char* lost_share = "lost_share.npy";
 inline constexpr const char* raw_row_sum = "raw_row_sum.npy";

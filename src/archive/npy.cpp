@@ -83,6 +83,14 @@ std::vector<std::size_t> shape_of(std::string_view text) {
   return shape;
 }
 
+// Opens the file and returns its dictionary; empty when it has none.
+std::string open_npy(const std::filesystem::path& file, std::ifstream& stream) {
+  require_regular_file(file);
+  stream.open(file, std::ios::binary);
+  if (!stream) throw InputError(file.string(), "cannot be read; is it there?");
+  return read_header(stream).value_or("");
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
   throw InputError(file.string(), "found " + found +
                                       "; expected an array of numpy (.npy) of type '<f4' or '<f8', in C order, of one "
@@ -118,11 +126,17 @@ void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values)
   });
 }
 
+void write_npy(const std::filesystem::path& file, std::span<const std::uint8_t> values) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << header("|u1", std::to_string(values.size()) + ',');
+    stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size()));
+    close_or_fail(stream, file);
+  });
+}
+
 NpyReader::NpyReader(const std::filesystem::path& file) : file_(file) {
-  require_regular_file(file);
-  stream_.open(file, std::ios::binary);
-  if (!stream_) throw InputError(file.string(), "cannot be read; is it there?");
-  const std::string text = read_header(stream_).value_or("");
+  const std::string text = open_npy(file, stream_);
   if (text.empty()) refuse(file, "no header");
   const std::string_view type = value_of(text, "'descr':");
   const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
@@ -170,6 +184,22 @@ Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, st
   const std::vector<double> values = reader.next_rows(rows);
   return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+}
+
+std::vector<std::uint8_t> read_npy_bytes(const std::filesystem::path& file, std::size_t count) {
+  std::ifstream stream;
+  const std::string text = open_npy(file, stream);
+  const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
+  const bool good = value_of(text, "'descr':").starts_with("'|u1'") && shape == std::vector{count} &&
+                    std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream.tellg()) == count;
+  if (!good) {
+    throw InputError(file.string(),
+                     "found another array than one of " + std::to_string(count) + " bytes; make the form factors anew");
+  }
+  std::vector<std::uint8_t> values(count);
+  stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count));
+  if (!stream) throw InputError(file.string(), "cannot be read to its end");
+  return values;
 }
 
 }  // namespace patchlight

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -18,6 +19,9 @@ void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t 
 
 /// Writes an array of doubles; of one dimension if it has one column. \throws OutputError.
 void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values);
+
+/// Writes an array of bytes of one dimension. \throws OutputError.
+void write_npy(const std::filesystem::path& file, std::span<const std::uint8_t> values);
 
 /// Reads an array of 32 or 64-bit floats in C order of one dimension (one column) or two, row by row.
 class NpyReader {
@@ -40,5 +44,8 @@ class NpyReader {
 
 /// A whole array. \throws InputError, also when its shape is not this.
 Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns);
+
+/// A whole array of so many bytes, of one dimension. \throws InputError, also when it is another array.
+std::vector<std::uint8_t> read_npy_bytes(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace patchlight

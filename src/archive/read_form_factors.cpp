@@ -5,6 +5,7 @@
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
+#include "archive/row_sums.h"
 #include "archive/sampling_error_json.h"
 #include "base/regular_file.h"
 #include "transport/narrow.h"
@@ -178,41 +179,11 @@ ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen
   return S;
 }
 
-struct Range {
-  double low = 0;
-  double high = 0;
-};
-
-// Where sum_j F_ij of a row must lie. As computed it is the stored sum, but for rounding. Closure makes it 1 in a
-// closed scene; in an open one it moves it towards the measured share, by a sum that is weighed against the entries'
-// errors.
-Range row_sum_range(const FormFactorInfo& info, double raw, double lost, bool is_closed_scene) {
-  // Entries were rounded to float, 6e-8 each, and narrowed as much.
-  constexpr double rounding = 1e-5;
-  constexpr double most_overshoot = 0.2;
-  if (!is_closed(info)) return {raw - rounding * (1 + raw), raw + rounding * (1 + raw)};
-  if (is_closed_scene) return {raw > 0 ? 1 - rounding : 0, 1 + rounding};
-  return {std::min(raw, 1 - lost) - most_overshoot, std::max(raw, 1 - lost) + most_overshoot};
-}
-
-// Sums that large are no samples of form factors, whatever the estimator.
-void require_raw_row_sums(const std::filesystem::path& file, const Eigen::VectorXd& sums) {
-  constexpr double most = 1e4;  // sampled by area, patches that touch reach some hundred
-  if (sums.allFinite() && (sums.array() >= 0).all() && (sums.array() <= most).all()) return;
-  throw InputError(file.string(), "found a sum of form factors outside 0 to 10,000; make the form factors anew");
-}
-
-void require_row_sums(const std::filesystem::path& file, const FormFactorInfo& info, const Exchange& exchange) {
-  const Eigen::VectorXd sums = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area);
-  for (Eigen::Index i = 0; i < sums.size(); ++i) {
-    const double lost = exchange.lost.escaped[i] + exchange.lost.at_backs[i];
-    const Range range = row_sum_range(info, exchange.raw_row_sum[i], lost, exchange.lost.closed());
-    if (sums[i] >= range.low && sums[i] <= range.high) continue;
-    std::ostringstream text;
-    text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << "; expected " << range.low << " to "
-         << range.high << ", as raw_row_sum.npy and lost_share.npy say. Make the form factors anew";
-    throw InputError(file.string(), text.str());
-  }
+// What was kept of the entries' errors; nothing where nothing was.
+EntryErrors read_entry_errors(const std::filesystem::path& file, const PatchMesh& mesh) {
+  if (!std::filesystem::exists(file)) return {};
+  const std::size_t size = mesh.size();
+  return {mesh.area, read_npy_bytes(file, size * (size - 1) / 2)};
 }
 
 }  // namespace
@@ -248,7 +219,6 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
   const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 3);
   require_shares(folder / file_name::lost_share, lost);
   Eigen::VectorXd raw_row_sum = read_npy(folder / file_name::raw_row_sum, size, 1);
-  require_raw_row_sums(folder / file_name::raw_row_sum, raw_row_sum);
   ExchangeAreas S = read_exchange_areas(folder / file_name::dense, area);
   Exchange exchange{std::move(S),
                     std::move(area),
@@ -256,9 +226,9 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
                     {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays},
                     info.counts,
                     info.error,
-                    {},
+                    read_entry_errors(folder / file_name::entry_errors, mesh),
                     info.closure};
-  require_row_sums(folder / file_name::dense, info, exchange);
+  require_row_sums(folder, info, mesh, exchange);
   return exchange;
 }
 

@@ -91,6 +91,12 @@ void write(const std::filesystem::path& file, const Matrix& matrix, MatrixFormat
   (format == MatrixFormat::npy ? write_dense : write_coordinates)(file, matrix, observer);
 }
 
+// Closure that is still to come weighs by them.
+bool keeps_entry_errors(const Exchange& exchange) {
+  return exchange.entry_errors.size() > 0 && exchange.closure.empty() &&
+         weighs_by_errors(exchange.lost, exchange.entry_errors.size());
+}
+
 Json files_part(const FormFactorResult& result) {
   Json part;
   part[result.format == MatrixFormat::npy ? file_name::dense : file_name::sparse] =
@@ -98,6 +104,13 @@ Json files_part(const FormFactorResult& result) {
   if (result.form_factors.exchange.entry_errors.size() > 0) {
     part[result.format == MatrixFormat::npy ? file_name::dense_error : file_name::sparse_error] =
         "standard error of F_ij, before closure, where it was estimated from samples; 0 elsewhere; unit 1";
+  }
+  if (keeps_entry_errors(result.form_factors.exchange)) {
+    part[file_name::entry_errors] =
+        "how the entry of each pair i < j was found, at j (j - 1) / 2 + i: 0 without shadow rays, 1 all of them free, "
+        "2 "
+        "all blocked, k > 2 with the standard error 2^((k - 255) / 6) of S_ij in units of the root of both patches' "
+        "areas";
   }
   part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
   part[file_name::lost_share] =
@@ -156,10 +169,11 @@ std::string info_json(const FormFactorResult& result) {
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_result(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 12> names = {
-      file_name::dense, file_name::sparse,     file_name::dense_error, file_name::sparse_error,
-      file_name::area,  file_name::lost_share, file_name::raw_row_sum, file_name::mesh,
-      file_name::scene, file_name::info,       file_name::by_material, file_name::by_object};
+  static constexpr std::array<std::string_view, 13> names = {
+      file_name::dense,        file_name::sparse, file_name::dense_error, file_name::sparse_error,
+      file_name::entry_errors, file_name::area,   file_name::lost_share,  file_name::raw_row_sum,
+      file_name::mesh,         file_name::scene,  file_name::info,        file_name::by_material,
+      file_name::by_object};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (std::find(names.begin(), names.end(), name) == names.end() || !entry.is_regular_file()) return false;
@@ -185,6 +199,7 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
       write(in / (dense ? file_name::dense_error : file_name::sparse_error), standard_errors_of(exchange),
             result.format, observer);
     }
+    if (keeps_entry_errors(exchange)) write_npy(in / file_name::entry_errors, exchange.entry_errors.codes());
     write_npy(in / file_name::area, exchange.area);
     Eigen::MatrixXd lost(exchange.area.size(), 3);
     lost << exchange.lost.escaped, exchange.lost.at_backs, exchange.lost.covered;

@@ -3,6 +3,7 @@
 #include "patchlight/base/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -25,6 +26,11 @@ EntryErrors::EntryErrors(std::span<const double> area) {
   for (const double a : area) root_of_area_.push_back(std::sqrt(a));
   const std::size_t n = area.size();
   codes_.assign(n * (n - 1) / 2, static_cast<std::uint8_t>(EntryKind::exact));
+}
+
+EntryErrors::EntryErrors(std::span<const double> area, std::vector<std::uint8_t> codes) : EntryErrors(area) {
+  assert(codes.size() == codes_.size());
+  codes_ = std::move(codes);
 }
 
 EntryKind EntryErrors::kind(PatchIndex i, PatchIndex j) const {

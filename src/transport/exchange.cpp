@@ -19,8 +19,7 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
                         int lost_share_rays, const Observer& observer) {
   LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
   AssemblyOptions keeping = options;
-  // Closure of an open scene weighs entries by their errors.
-  const bool weighs = !lost.closed() && mesh.size() <= most_weighed && options.estimator == Estimator::automatic;
+  const bool weighs = weighs_by_errors(lost, mesh.size()) && options.estimator == Estimator::automatic;
   keeping.keep_errors = options.keep_errors || weighs;
   return exchange_of(assemble_exchange_areas(mesh, occluder, keeping, observer), mesh, std::move(lost));
 }
@@ -38,6 +37,8 @@ Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, con
   const Eigen::VectorXd area = exposed_area(mesh, lost, Eigen::VectorXd::Zero(mesh.size()));
   return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, {}, "none: rows on demand"};
 }
+
+bool weighs_by_errors(const LostShare& lost, PatchIndex patches) { return !lost.closed() && patches <= most_weighed; }
 
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) {
   const Eigen::Index n = exchange.area.size();

@@ -26,6 +26,8 @@ class EntryErrors {
   EntryErrors() = default;
   /// All entries exact. `area` of each patch in m^2.
   explicit EntryErrors(std::span<const double> area);
+  /// From codes() of patches with these areas; there must be one for each pair.
+  EntryErrors(std::span<const double> area, std::vector<std::uint8_t> codes);
 
   /// Number of patches; 0 when nothing is kept.
   PatchIndex size() const { return static_cast<PatchIndex>(root_of_area_.size()); }
@@ -36,6 +38,9 @@ class EntryErrors {
   void set(PatchIndex i, PatchIndex j, EntryKind kind, double standard_error = 0);
   /// Takes what `other` has for the same two patches.
   void copy(PatchIndex i, PatchIndex j, const EntryErrors& other, std::array<PatchIndex, 2> there);
+  /// A byte for each pair i < j, at j (j - 1) / 2 + i: 0 to 2 is an EntryKind, k from 3 on an estimate with the
+  /// standard error sqrt(A_i A_j) 2^((k - 255) / 6).
+  std::span<const std::uint8_t> codes() const { return codes_; }
 
  private:
   std::vector<double> root_of_area_;

@@ -38,6 +38,9 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
 /// The same from exchange areas that are known.
 Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);
 
+/// True when closure weighs the entries by their errors: in an open scene of not too many patches.
+bool weighs_by_errors(const LostShare& lost, PatchIndex patches);
+
 /// Closes what is not closed yet, see close_exchange_areas(). In a closed scene what the storage of closed rows as
 /// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws
 /// Cancelled.

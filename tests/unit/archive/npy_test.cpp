@@ -32,6 +32,21 @@ TEST(Npy, DoublesComeBackToTheBit) {
   EXPECT_EQ(read_npy(file, 3, 1), column);
 }
 
+TEST(Npy, BytesComeBack) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.npy";
+  const std::vector<std::uint8_t> bytes{0, 1, 127, 128, 255};
+  write_npy(file, bytes);
+  EXPECT_EQ(read_npy_bytes(file, 5), bytes);
+  EXPECT_NE(content_of(file).find("{'descr': '|u1', 'fortran_order': False, 'shape': (5,), }"), std::string::npos);
+  EXPECT_THROW(read_npy_bytes(file, 4), InputError);
+  EXPECT_THROW(NpyReader{file}, InputError);
+  write_npy(file, std::vector<std::uint8_t>());
+  EXPECT_TRUE(read_npy_bytes(file, 0).empty());
+  put_array(file, "{'descr': '<f8', 'fortran_order': False, 'shape': (5,), }", 40);
+  EXPECT_THROW(read_npy_bytes(file, 5), InputError);
+}
+
 TEST(Npy, FloatsComeRowByRow) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.npy";
