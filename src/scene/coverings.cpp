@@ -1,14 +1,16 @@
 #include "patchlight/scene/coverings.h"
 
+#include "patchlight/base/parallel.h"
 #include "patchlight/scene/triangulate.h"
 
 #include "scene/extent.h"
+#include "scene/face_tree.h"
 #include "scene/problem_face.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unsupported/Eigen/BVH>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -19,97 +21,149 @@ constexpr double least_overlap = 1e-6;
 
 constexpr double parallel = 0.999;
 
-struct Face {
-  std::vector<Point> corners;
-  std::vector<std::array<Point, 3>> triangles;
-  Vector normal;
-  Box box;
-  double area = 0;
-};
+// Areas that differ by less than this factor count as equal.
+constexpr double same_area = 1 + 1e-9;
 
-Face face_of(const Scene& scene, PolygonIndex p) {
-  Face face{corner_points(scene, p), {}, {}, {}, 0};
-  for (const auto& [a, b, c] : triangulate(face.corners)) {
-    face.triangles.push_back({face.corners[a], face.corners[b], face.corners[c]});
-  }
-  const Vector area = area_vector(face.corners);
+using Triangle = std::array<Point, 3>;
+
+FlatFace flat_face(const Scene& scene, PolygonIndex p) {
+  FlatFace face;
+  const std::vector<Point> corners = corner_points(scene, p);
+  const Vector area = area_vector(corners);
   face.area = area.norm();
-  face.normal = area / face.area;
-  for (const Point& corner : face.corners) face.box.extend(corner);
+  face.normal = area.normalized();
+  Vector sum = Vector::Zero();
+  for (const Point& corner : corners) {
+    face.box.extend(corner);
+    sum += corner - corners[0];
+  }
+  face.mean = corners[0] + sum / static_cast<double>(corners.size());
+  face.farthest = *std::max_element(corners.begin(), corners.end(), [&](const Point& a, const Point& b) {
+    return (a - face.mean).squaredNorm() < (b - face.mean).squaredNorm();
+  });
   return face;
 }
 
-double overlap(const std::array<Point, 3>& a, const std::array<Point, 3>& b, const Vector& normal) {
-  std::vector<Point> left(a.begin(), a.end());
+std::vector<Triangle> triangles_of(const std::vector<Point>& corners) {
+  std::vector<Triangle> triangles;
+  for (const auto& [a, b, c] : triangulate(corners)) triangles.push_back({corners[a], corners[b], corners[c]});
+  return triangles;
+}
+
+// Does nothing but an edge of a triangle lie before a line in its plane, but for rounding as of clip_to_half_space()?
+bool lies_beyond(const Triangle& triangle, const Point& on_line, const Vector& inward) {
+  constexpr double rounding = 1e-9;
+  const double length = inward.norm();
+  int on_it = 0;
+  for (const Point& corner : triangle) {
+    const Vector offset = corner - on_line;
+    const double height = inward.dot(offset);
+    const double nothing = rounding * length * offset.norm();
+    if (height > nothing) return false;
+    on_it += height >= -nothing;
+  }
+  return on_it < 3;
+}
+
+double overlap(const Triangle& a, const Triangle& b, const Vector& normal) {
   // Inward normals of b's edges, whichever way b turns.
   const double turn = area_vector(b).dot(normal) > 0 ? 1 : -1;
-  for (std::size_t k = 0; k < 3 && left.size() > 2; ++k) {
-    left = clip_to_half_space(left, b[k], turn * normal.cross(b[(k + 1) % 3] - b[k]));
+  std::array<Vector, 3> inward;
+  for (std::size_t k = 0; k < 3; ++k) {
+    inward[k] = turn * normal.cross(b[(k + 1) % 3] - b[k]);
+    if (lies_beyond(a, b[k], inward[k])) return 0;
   }
+  std::vector<Point> left(a.begin(), a.end());
+  for (std::size_t k = 0; k < 3 && left.size() > 2; ++k) left = clip_to_half_space(left, b[k], inward[k]);
   return left.size() > 2 ? area_vector(left).norm() : 0;
 }
 
-bool overlap(const Face& a, const Face& b) {
+// A polygon over which others are looked for.
+struct Lower {
+  std::vector<Point> corners;
+  Vector normal;
   double area = 0;
-  for (const auto& first : a.triangles) {
-    for (const auto& second : b.triangles) area += overlap(first, second, a.normal);
-  }
-  return area > least_overlap * std::min(a.area, b.area);
+  std::vector<Triangle> triangles;  // once they are needed
+};
+
+Lower lower_of(const Scene& scene, PolygonIndex polygon) {
+  Lower lower{corner_points(scene, polygon), {}, 0, {}};
+  const Vector area = area_vector(lower.corners);
+  lower.area = area.norm();
+  lower.normal = area / lower.area;
+  return lower;
+}
+
+// Admits all that may lie over it, with a margin for rounding.
+FaceQuery query_over(const Lower& lower, const Box& box, double slack) {
+  constexpr double rounding = 1e-13;
+  const Vector margin = Vector::Constant(slack);
+  const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
+  const double tilt = std::sqrt(2 - 2 * parallel) + rounding;
+  return {Box(box.min() - margin, box.max() + margin), same_area * lower.area,     lower.normal, tilt,
+          lower.normal.dot(lower.corners[0]),          slack + rounding * farthest};
 }
 
 // The corners of the smaller one are measured over the plane of the larger one.
-bool in_one_plane(const Face& smaller, const Face& larger, double tolerance) {
-  return std::abs(smaller.normal.dot(larger.normal)) >= parallel &&
-         std::all_of(smaller.corners.begin(), smaller.corners.end(), [&](const Point& corner) {
+bool in_one_plane(const std::vector<Point>& smaller, const Lower& larger, double tolerance) {
+  return std::abs(area_vector(smaller).normalized().dot(larger.normal)) >= parallel &&
+         std::all_of(smaller.begin(), smaller.end(), [&](const Point& corner) {
            return std::abs(larger.normal.dot(corner - larger.corners[0])) <= tolerance;
          });
 }
 
-// Does `a` lie over `b`? A strict order: of two polygons exactly one lies over the other.
-bool comes_first(const std::vector<Face>& faces, PolygonIndex a, PolygonIndex b) {
-  constexpr double rounding = 1 + 1e-9;
-  if (faces[a].area > rounding * faces[b].area) return false;
-  if (faces[b].area > rounding * faces[a].area) return true;
-  return a < b;
+bool overlap(Lower& lower, const std::vector<Point>& upper, double area_of_upper) {
+  if (lower.triangles.empty()) lower.triangles = triangles_of(lower.corners);
+  const std::vector<Triangle> over = triangles_of(upper);
+  const double least = least_overlap * std::min(lower.area, area_of_upper);
+  double area = 0;
+  for (const Triangle& first : lower.triangles) {
+    for (const Triangle& second : over) {
+      area += overlap(first, second, lower.normal);
+      if (area > least) return true;
+    }
+  }
+  return false;
 }
 
 bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
 }
 
-// Visits all pairs of polygons whose boxes meet.
+// Finds the polygons that lie over one, side by side.
 struct Search {
   const Scene& scene;
   const KeptSides& kept;
-  const std::vector<Face>& faces;
-  double extent;
-  Coverings found;
+  FaceTree tree;
+  double slack;  // metres
 
-  double slack() const { return in_plane_tolerance * extent; }
-  bool meet(Box a, const Box& b) const {
-    const Vector margin = Vector::Constant(slack());
-    return Box(a.min() - margin, a.max() + margin).intersects(b);
-  }
-  bool intersectVolumeVolume(const Box& a, const Box& b) const { return meet(a, b); }
-  bool intersectVolumeObject(const Box& a, PolygonIndex b) const { return meet(a, faces[b].box); }
-  bool intersectObjectVolume(PolygonIndex a, const Box& b) const { return meet(faces[a].box, b); }
-  bool intersectObjectObject(PolygonIndex lower, PolygonIndex upper);
+  std::array<std::vector<PolygonIndex>, 2> over(PolygonIndex polygon) const;
+  bool comes_first(PolygonIndex a, PolygonIndex b) const;
 };
 
-// Notes on which sides of `lower` the other lies. True would end the search.
-bool Search::intersectObjectObject(PolygonIndex lower, PolygonIndex upper) {
-  const Face& below = faces[lower];
-  const Face& over = faces[upper];
-  if (lower == upper || !meet(below.box, over.box) || !comes_first(faces, upper, lower)) return false;
-  if (!in_one_plane(over, below, slack()) || !overlap(below, over)) return false;
-  const bool same_front = below.normal.dot(over.normal) > 0;
-  for (const Side side : {Side::front, Side::back}) {
-    const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
-    if (!is_kept(kept, lower, side) || !is_kept(kept, upper, other_side)) continue;
-    if (found.over.empty()) found.over.resize(2 * faces.size());
-    found.over[2 * std::size_t{lower} + static_cast<std::size_t>(side)].push_back(upper);
-  }
-  return false;
+// Does `a` lie over `b`? A strict order: of two polygons exactly one lies over the other.
+bool Search::comes_first(PolygonIndex a, PolygonIndex b) const {
+  if (tree.face(a).area > same_area * tree.face(b).area) return false;
+  if (tree.face(b).area > same_area * tree.face(a).area) return true;
+  return a < b;
+}
+
+std::array<std::vector<PolygonIndex>, 2> Search::over(PolygonIndex polygon) const {
+  std::array<std::vector<PolygonIndex>, 2> found;
+  Lower lower = lower_of(scene, polygon);
+  tree.for_each(query_over(lower, tree.face(polygon).box, slack), [&](PolygonIndex upper) {
+    if (upper == polygon || !comes_first(upper, polygon)) return;
+    const std::vector<Point> corners = corner_points(scene, upper);
+    if (!in_one_plane(corners, lower, slack) || !overlap(lower, corners, tree.face(upper).area)) return;
+    const bool same_front = lower.normal.dot(area_vector(corners)) > 0;
+    for (const Side side : {Side::front, Side::back}) {
+      const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
+      if (is_kept(kept, polygon, side) && is_kept(kept, upper, other_side))
+        found[static_cast<std::size_t>(side)].push_back(upper);
+    }
+  });
+  for (std::vector<PolygonIndex>& side : found) std::sort(side.begin(), side.end());
+  return found;
 }
 
 }  // namespace
@@ -120,19 +174,18 @@ std::span<const PolygonIndex> Coverings::over_side(PolygonIndex polygon, Side si
 }
 
 Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
-  std::vector<Face> faces;
-  std::vector<PolygonIndex> numbers;
-  std::vector<Box> boxes;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    faces.push_back(face_of(scene, p));
-    numbers.push_back(p);
-    boxes.push_back(faces.back().box);
-  }
-  const Eigen::KdBVH<double, 3, PolygonIndex> tree(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
-  Search search{scene, kept, faces, extent_of(scene), {}};
-  Eigen::BVIntersect(tree, tree, search);
-  for (auto& covering : search.found.over) std::sort(covering.begin(), covering.end());
-  return std::move(search.found);
+  const std::size_t count = scene.polygons.size();
+  std::vector<FlatFace> faces(count);
+  parallel_for(count, [&](std::size_t p) { faces[p] = flat_face(scene, static_cast<PolygonIndex>(p)); });
+  const Search search{scene, kept, FaceTree(std::move(faces)), in_plane_tolerance * extent_of(scene)};
+  std::vector<std::vector<PolygonIndex>> over(2 * count);
+  parallel_for(count, [&](std::size_t p) {
+    auto [front, back] = search.over(static_cast<PolygonIndex>(p));
+    over[2 * p] = std::move(front);
+    over[2 * p + 1] = std::move(back);
+  });
+  const bool none = std::all_of(over.begin(), over.end(), [](const auto& side) { return side.empty(); });
+  return none ? Coverings{} : Coverings{std::move(over)};
 }
 
 std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings) {

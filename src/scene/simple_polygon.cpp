@@ -2,6 +2,8 @@
 
 #include "patchlight/scene/triangulate.h"
 
+#include "scene/box_row.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -49,25 +51,54 @@ double turn(const Vector& normal, const Point& a, const Point& b, const Point& c
   return normal.dot((b - a).cross(c - a));
 }
 
+// Per edge the box around it, seen along the normal and made larger by `margin`.
+std::vector<Box> boxes_of_edges(std::span<const Point> polygon, const Vector& normal, double margin) {
+  const Vector across = normal.unitOrthogonal();
+  const Vector along = normal.cross(across);
+  const auto seen = [&](const Point& point) {
+    const Vector from_first = point - polygon[0];
+    return Point(across.dot(from_first), along.dot(from_first), 0);
+  };
+  std::vector<Box> boxes;
+  boxes.reserve(polygon.size());
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    Box box(seen(polygon[k]));
+    box.extend(seen(polygon[(k + 1) % polygon.size()]));
+    boxes.emplace_back(box.min() - Vector::Constant(margin), box.max() + Vector::Constant(margin));
+  }
+  return boxes;
+}
+
+// The first edge, in their order, that crosses another, and the first one after it that it crosses.
 std::optional<Crossing> find_crossing(std::span<const Point> polygon) {
+  constexpr double margin = 1e-9;  // of the perimeter
   const Vector normal = plane_normal(polygon);
+  if (normal.isZero(0)) return std::nullopt;
   const std::size_t n = polygon.size();
-  const double rounding = area_rounding * perimeter(polygon) * perimeter(polygon);
+  const double length = perimeter(polygon);
+  const double rounding = area_rounding * length * length;
   const auto opposite = [rounding](double x, double y) {
     return (x > rounding && y < -rounding) || (x < -rounding && y > rounding);
   };
+  const auto point = [&](std::size_t k) -> const Point& { return polygon[k % n]; };
+  const auto cross = [&](std::size_t i, std::size_t j) {
+    const bool neighbours = i == 0 && j + 1 == n;
+    const Point& a = point(i);
+    const Point& b = point(i + 1);
+    const Point& c = point(j);
+    const Point& d = point(j + 1);
+    return !neighbours && opposite(turn(normal, a, b, c), turn(normal, a, b, d)) &&
+           opposite(turn(normal, c, d, a), turn(normal, c, d, b));
+  };
+  const std::vector<Box> boxes = boxes_of_edges(polygon, normal, margin * length);
+  const BoxRow edges(boxes);
   for (std::size_t i = 0; i + 2 < n; ++i) {
-    const Point& a = polygon[i];
-    const Point& b = polygon[i + 1];
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j + 1 == n) continue;  // neighbours
-      const Point& c = polygon[j];
-      const Point& d = polygon[(j + 1) % n];
-      const double side_c = turn(normal, a, b, c);
-      const double side_d = turn(normal, a, b, d);
-      if (!opposite(side_c, side_d) || !opposite(turn(normal, c, d, a), turn(normal, c, d, b))) continue;
-      return Crossing{i, j, c + side_c / (side_c - side_d) * (d - c)};
-    }
+    const auto is_apart = [&](const Box& box) { return !box.intersects(boxes[i]); };
+    const std::optional<std::size_t> j = edges.first(i + 2, is_apart, [&](std::size_t k) { return cross(i, k); });
+    if (!j) continue;
+    const double side_c = turn(normal, point(i), point(i + 1), point(*j));
+    const double side_d = turn(normal, point(i), point(i + 1), point(*j + 1));
+    return Crossing{i, *j, point(*j) + side_c / (side_c - side_d) * (point(*j + 1) - point(*j))};
   }
   return std::nullopt;
 }

@@ -21,7 +21,8 @@ bool is_narrow(std::span<const Point> polygon, double width);
 /// True when no corner is farther from the polygon's plane than 1e-5 of its perimeter.
 bool is_planar(std::span<const Point> polygon);
 
-/// True when two edges of the polygon cross each other, each in its inside. Touching is no crossing. O(n^2).
+/// True when two edges of the polygon cross each other, each in its inside. Touching is no crossing. O(n log n)
+/// for most outlines, O(n^2) in the worst case.
 bool crosses_itself(std::span<const Point> polygon);
 
 /// Cuts a polygon at the points where it crosses itself into polygons that do not, all turned the way of the largest;

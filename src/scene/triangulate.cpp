@@ -1,13 +1,20 @@
 #include "patchlight/scene/triangulate.h"
 
+#include "scene/box_row.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
+#include <optional>
 
 namespace patchlight {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr std::uint32_t none = ~std::uint32_t{0};
 
 // Twice the signed area of a triangle, positive when it turns like the polygon.
 double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
@@ -23,39 +30,227 @@ bool is_inside_angle(const Vector& normal, const Point& a, const Point& b, const
   return turn(normal, a, b, x) > 0 && turn(normal, b, c, x) > 0;
 }
 
-// Among the remaining corners, is the one at `k` an ear: does it turn outward, is no other corner inside it, and does
-// no seam begin at its tip and lead through it?
-bool is_ear(std::span<const Point> polygon, const std::vector<std::uint32_t>& left, std::size_t k,
-            const Vector& normal) {
-  const std::size_t n = left.size();
-  const Point& a = polygon[left[(k + n - 1) % n]];
-  const Point& b = polygon[left[k]];
-  const Point& c = polygon[left[(k + 1) % n]];
-  if (turn(normal, a, b, c) <= 0) return false;
-  for (std::size_t other = 0; other + 3 < n; ++other) {
-    const Point& x = polygon[left[(k + 2 + other) % n]];
-    if (x == b) {
-      const Point& before = polygon[left[(k + 1 + other) % n]];
-      const Point& after = polygon[left[(k + 3 + other) % n]];
-      if (is_inside_angle(normal, a, b, c, before) || is_inside_angle(normal, a, b, c, after)) return false;
-    }
-    if (x == a || x == b || x == c) continue;
-    if (contains(normal, a, b, c, x)) return false;
-  }
-  return true;
+// A corner of what is left of a polygon, between its neighbours.
+struct Corner {
+  const Point& before;
+  const Point& at;
+  const Point& after;
+};
+
+// Ear clipping (Meisters 1975): an ear is a corner that turns outward, with no other corner in its triangle, and with
+// no seam that begins at its tip and leads through it. Does `other`, no neighbour of `corner`, keep it from being one?
+bool hinders(const Corner& other, const Corner& corner, const Vector& normal) {
+  const auto& [a, b, c] = corner;
+  const Point& x = other.at;
+  if (x == b && (is_inside_angle(normal, a, b, c, other.before) || is_inside_angle(normal, a, b, c, other.after)))
+    return true;
+  if (x == a || x == b || x == c) return false;
+  return contains(normal, a, b, c, x);
 }
 
-// Where rounding leaves no ear: the corner that turns least, outward or inward.
-std::size_t flattest(std::span<const Point> polygon, const std::vector<std::uint32_t>& left, const Vector& normal) {
-  const std::size_t n = left.size();
-  std::size_t best = 0;
+// Of few corners all are looked at again and again.
+std::vector<Triangle> triangles_of_few(std::span<const Point> polygon) {
+  const Vector normal = area_vector(polygon);
+  std::vector<std::uint32_t> left(polygon.size());
+  std::iota(left.begin(), left.end(), 0U);
+  const auto corner = [&](std::size_t k) {
+    const std::size_t n = left.size();
+    return Corner{polygon[left[(k + n - 1) % n]], polygon[left[k % n]], polygon[left[(k + 1) % n]]};
+  };
+  const auto turning = [&](std::size_t k) {
+    const auto [a, b, c] = corner(k);
+    return turn(normal, a, b, c);
+  };
+  const auto is_ear = [&](std::size_t k) {
+    if (turning(k) <= 0) return false;
+    for (std::size_t other = k + 2; other + 1 < k + left.size(); ++other) {
+      if (hinders(corner(other), corner(k), normal)) return false;
+    }
+    return true;
+  };
+  std::vector<Triangle> triangles;
+  while (left.size() >= 3) {
+    std::size_t ear = 0;
+    while (ear < left.size() && left.size() > 3 && !is_ear(ear)) ++ear;
+    if (ear == left.size()) {
+      // Where rounding leaves no ear, the flattest corner is cut off: the result is complete.
+      ear = 0;
+      for (std::size_t k = 1; k < left.size(); ++k) {
+        if (std::abs(turning(k)) < std::abs(turning(ear))) ear = k;
+      }
+    }
+    const std::size_t n = left.size();
+    triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  return triangles;
+}
+
+// The same triangles of many corners. What is known of a corner stays true until one of its neighbours is cut off, or
+// the corner that keeps it from being an ear.
+class EarClipping {
+ public:
+  explicit EarClipping(std::span<const Point> polygon);
+
+  std::vector<Triangle> triangles();
+
+ private:
+  std::optional<std::uint32_t> hindrance(std::uint32_t corner) const;
+  Corner at(std::uint32_t corner) const {
+    return {polygon_[before_[corner]], polygon_[corner], polygon_[after_[corner]]};
+  }
+  void look_at(std::uint32_t corner);
+  void look_at_neighbour(std::uint32_t corner);
+  std::uint32_t flattest() const;
+  Triangle cut_off(std::uint32_t corner);
+
+  std::span<const Point> polygon_;
+  Vector normal_;
+  double rounding_;  // of turn(), over the length of the edge
+  BoxRow boxes_;     // of the corners that are left
+  std::vector<std::uint32_t> before_, after_;
+  std::vector<std::uint8_t> is_left_;
+  std::vector<std::uint8_t> is_ear_;
+  std::size_t first_ear_ = 0;                 // none comes before it
+  std::vector<std::uint32_t> at_same_place_;  // the next one there, the first after the last
+  struct Hindered {
+    std::uint32_t corner, next;
+  };
+  std::vector<Hindered> hindered_;          // lists
+  std::vector<std::uint32_t> hindered_by_;  // per corner the head of the list of those that it keeps from being ears
+};
+
+std::vector<Box> boxes_of(std::span<const Point> points) {
+  std::vector<Box> boxes;
+  boxes.reserve(points.size());
+  for (const Point& point : points) boxes.emplace_back(point);
+  return boxes;
+}
+
+// Per corner the next one at its place, after the last one the first.
+std::vector<std::uint32_t> same_places(std::span<const Point> points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto coordinates = [&](std::uint32_t k) { return std::array{points[k].x(), points[k].y(), points[k].z()}; };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return coordinates(a) < coordinates(b); });
+  std::vector<std::uint32_t> next(points.size());
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && points[order[end]] == points[order[begin]]) ++end;
+    for (std::size_t k = begin; k < end; ++k) next[order[k]] = order[k + 1 < end ? k + 1 : begin];
+  }
+  return next;
+}
+
+EarClipping::EarClipping(std::span<const Point> polygon)
+    : polygon_(polygon),
+      normal_(area_vector(polygon)),
+      boxes_(boxes_of(polygon)),
+      before_(polygon.size()),
+      after_(polygon.size()),
+      is_left_(polygon.size(), 1),
+      is_ear_(polygon.size(), 0),
+      at_same_place_(same_places(polygon)),
+      hindered_by_(polygon.size(), none) {
+  constexpr double relative = 1e-12;
+  Box whole;
+  for (const Point& corner : polygon) whole.extend(corner);
+  rounding_ = relative * normal_.norm() * whole.diagonal().norm();
+  const auto n = static_cast<std::uint32_t>(polygon.size());
+  for (std::uint32_t k = 0; k < n; ++k) {
+    before_[k] = (k + n - 1) % n;
+    after_[k] = (k + 1) % n;
+  }
+  for (std::uint32_t k = 0; k < n; ++k) look_at(k);
+}
+
+// A corner that keeps this one from being an ear, which may be itself; nothing when it is one.
+std::optional<std::uint32_t> EarClipping::hindrance(std::uint32_t corner) const {
+  const Corner own = at(corner);
+  const std::array<Point, 3> triangle{own.before, own.at, own.after};
+  if (turn(normal_, triangle[0], triangle[1], triangle[2]) <= 0) return corner;
+  // turn(a, b, x) = (n x (b - a)) . (x - a)
+  std::array<Vector, 3> inward;
+  std::array<double, 3> least{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector edge = triangle[(k + 1) % 3] - triangle[k];
+    inward[k] = normal_.cross(edge);
+    least[k] = inward[k].dot(triangle[k]) - rounding_ * edge.norm();
+  }
+  const auto is_beside = [&](const Box& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector& n = inward[k];
+      if (n.cwiseMax(0).dot(box.max()) + n.cwiseMin(0).dot(box.min()) < least[k]) return true;
+    }
+    return false;
+  };
+  const auto found = boxes_.first(0, is_beside, [&](std::size_t place) {
+    const auto other = static_cast<std::uint32_t>(place);
+    const bool is_neighbour = other == before_[corner] || other == corner || other == after_[corner];
+    return !is_neighbour && hinders(at(other), own, normal_);
+  });
+  return found ? std::optional(static_cast<std::uint32_t>(*found)) : std::nullopt;
+}
+
+void EarClipping::look_at(std::uint32_t corner) {
+  if (!is_left_[corner]) return;
+  const std::optional<std::uint32_t> by = hindrance(corner);
+  is_ear_[corner] = by ? 0 : 1;
+  if (!by) {
+    first_ear_ = std::min<std::size_t>(first_ear_, corner);
+    return;
+  }
+  hindered_.push_back({corner, hindered_by_[*by]});
+  hindered_by_[*by] = static_cast<std::uint32_t>(hindered_.size() - 1);
+}
+
+// Of one whose neighbour was cut off. Where corners stand at one place, each looks at the neighbours of the others.
+void EarClipping::look_at_neighbour(std::uint32_t corner) {
+  std::uint32_t other = corner;
+  do {
+    look_at(other);
+    other = at_same_place_[other];
+  } while (other != corner);
+}
+
+// The corner that turns least, outward or inward.
+std::uint32_t EarClipping::flattest() const {
+  std::uint32_t best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < n; ++k) {
-    const double amount =
-        std::abs(turn(normal, polygon[left[(k + n - 1) % n]], polygon[left[k]], polygon[left[(k + 1) % n]]));
+  for (std::uint32_t k = 0; k < is_left_.size(); ++k) {
+    if (!is_left_[k]) continue;
+    const double amount = std::abs(turn(normal_, polygon_[before_[k]], polygon_[k], polygon_[after_[k]]));
     if (amount < least) least = amount, best = k;
   }
   return best;
+}
+
+Triangle EarClipping::cut_off(std::uint32_t corner) {
+  const std::uint32_t before = before_[corner];
+  const std::uint32_t after = after_[corner];
+  is_left_[corner] = 0;
+  boxes_.remove(corner);
+  is_ear_[corner] = 0;
+  after_[before] = after;
+  before_[after] = before;
+  look_at_neighbour(before);
+  look_at_neighbour(after);
+  for (std::uint32_t k = hindered_by_[corner]; k != none; k = hindered_[k].next) {
+    if (!is_ear_[hindered_[k].corner]) look_at(hindered_[k].corner);
+  }
+  return {before, corner, after};
+}
+
+std::vector<Triangle> EarClipping::triangles() {
+  std::vector<Triangle> triangles;
+  const std::size_t n = polygon_.size();
+  for (std::size_t left = n; left > 3; --left) {
+    while (first_ear_ < n && !is_ear_[first_ear_]) ++first_ear_;
+    triangles.push_back(cut_off(first_ear_ < n ? static_cast<std::uint32_t>(first_ear_) : flattest()));
+  }
+  const auto last = static_cast<std::uint32_t>(std::find(is_left_.begin(), is_left_.end(), 1) - is_left_.begin());
+  triangles.push_back({before_[last], last, after_[last]});
+  return triangles;
 }
 
 }  // namespace
@@ -70,26 +265,14 @@ bool is_convex(std::span<const Point> polygon) {
 }
 
 std::vector<Triangle> triangulate(std::span<const Point> polygon) {
-  const Vector normal = area_vector(polygon);
   if (polygon.size() == 4 && is_convex(polygon)) {
     const bool shorter_02 = (polygon[2] - polygon[0]).squaredNorm() <= (polygon[3] - polygon[1]).squaredNorm();
     if (shorter_02) return {{0, 1, 2}, {0, 2, 3}};
     return {{1, 2, 3}, {1, 3, 0}};
   }
 
-  // Ear clipping (Meisters 1975). Where rounding leaves no ear, the flattest corner is cut off: the result is complete.
-  std::vector<std::uint32_t> left;
-  for (std::uint32_t k = 0; k < polygon.size(); ++k) left.push_back(k);
-  std::vector<Triangle> triangles;
-  while (left.size() >= 3) {
-    std::size_t ear = 0;
-    while (ear < left.size() && left.size() > 3 && !is_ear(polygon, left, ear, normal)) ++ear;
-    if (ear == left.size()) ear = flattest(polygon, left, normal);
-    const std::size_t n = left.size();
-    triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  return triangles;
+  constexpr std::size_t few = 32;  // from about here on the trees pay
+  return polygon.size() <= few ? triangles_of_few(polygon) : EarClipping(polygon).triangles();
 }
 
 }  // namespace patchlight

@@ -10,8 +10,8 @@
 namespace patchlight {
 
 /// Triangles (indices into `polygon`) that cover a simple planar polygon, convex or not, with its orientation; n - 2 of
-/// them for n corners. Convex quadrilaterals are cut along their shorter diagonal. O(n^3) for n corners in the worst
-/// case.
+/// them for n corners. Convex quadrilaterals are cut along their shorter diagonal. O(n log n) for n corners of
+/// most outlines, O(n^2) in the worst case.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Point> polygon);
 
 /// True when no corner of the planar polygon turns inward.

@@ -1,0 +1,137 @@
+// Geometry of many corners and faces takes N log N: four times as many take some five times as long, and not sixteen
+// times.
+#include "patchlight/base/parallel.h"
+#include "patchlight/scene/coverings.h"
+#include "patchlight/scene/triangulate.h"
+
+#include "scene/simple_polygon.h"
+#include "support/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <random>
+
+namespace patchlight {
+namespace {
+
+using namespace test;
+
+// The least of three runs.
+double seconds_of(const std::function<void()>& run) {
+  double least = 1e9;
+  for (int k = 0; k < 3; ++k) {
+    const double begin = cpu_seconds();
+    run();
+    least = std::min(least, cpu_seconds() - begin);
+  }
+  return least;
+}
+
+// How many times as long four times as many take; a millisecond is below what the clock tells well.
+double growth(const std::function<void(int)>& run, int few) {
+  const double less = seconds_of([&] { run(few); });
+  const double more = seconds_of([&] { run(4 * few); });
+  return more / std::max(less, 1e-3);
+}
+
+constexpr double most_growth = 9;
+
+std::vector<Point> disc(int corners) {
+  std::vector<Point> points;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / corners;
+    points.emplace_back(std::cos(angle), std::sin(angle), 0);
+  }
+  return points;
+}
+
+// A room with triangles that share an edge, like the leaves of a book.
+Scene book(int leaves) {
+  Scene scene = empty_scene({grey(0.5)});
+  scene.vertices = {Point(0, 0, 0), Point(0, 0, 1)};
+  for (int k = 0; k < leaves; ++k) {
+    const double angle = 2 * std::numbers::pi * k / leaves;
+    scene.vertices.emplace_back(std::cos(angle), std::sin(angle), 0.5);
+    Polygon leaf;
+    leaf.corners = {0, 1, static_cast<std::uint32_t>(k + 2)};
+    scene.polygons.push_back(leaf);
+  }
+  return scene;
+}
+
+KeptSides both_sides(const Scene& scene) { return kept_sides(scene, Sides::both); }
+
+TEST(Large, DiscsAreTriangulatedInNLogN) {
+  EXPECT_LT(growth([](int n) { EXPECT_EQ(triangulate(disc(n)).size(), static_cast<std::size_t>(n - 2)); }, 8000),
+            most_growth);
+}
+
+// Triangles that cover the polygon: their areas add up to its own, with rounding of 1e-16 for each of 10,000.
+TEST(Large, TheTrianglesOfADiscCoverIt) {
+  const std::vector<Point> outline = disc(10000);
+  double sum = 0;
+  for (const auto& [a, b, c] : triangulate(outline)) {
+    sum += area_vector(std::vector<Point>{outline[a], outline[b], outline[c]}).z();
+  }
+  EXPECT_NEAR(sum, area_vector(outline).norm(), 1e-11);
+}
+
+TEST(Large, OutlinesAreSearchedForCrossingsInNLogN) {
+  EXPECT_LT(growth([](int n) { EXPECT_FALSE(crosses_itself(disc(n))); }, 8000), most_growth);
+  // One pair of neighbours in the wrong order makes a crossing.
+  std::vector<Point> outline = disc(10000);
+  std::swap(outline[7000], outline[7001]);
+  EXPECT_TRUE(crosses_itself(outline));
+}
+
+TEST(Large, FacesOnOneEdgeAreSearchedForOverlapsInNLogN) {
+  EXPECT_LT(growth(
+                [](int n) {
+                  const Scene scene = book(n);
+                  EXPECT_TRUE(find_coverings(scene, both_sides(scene)).over.empty());
+                },
+                4000),
+            most_growth);
+}
+
+// The oracle: every pair of some hundred quadrilaterals in a few planes, clipped one by the other.
+TEST(Large, CoveringsAreThoseOfAllPairs) {
+  std::mt19937 chance(1);
+  std::uniform_real_distribution<double> place(0, 3);
+  std::uniform_int_distribution<int> plane(0, 3);
+  Scene scene = empty_scene({grey(0.5)});
+  for (int k = 0; k < 150; ++k) {
+    const double x = place(chance), y = place(chance), width = place(chance) / 2 + 0.1, depth = place(chance) / 2 + 0.1;
+    Quad quad{Point(x, y, 0), Point(x + width, y, 0), Point(x + width, y + depth, 0), Point(x, y + depth, 0)};
+    const Eigen::AngleAxisd tilt(0.5 * plane(chance), Vector::UnitX());
+    for (Point& corner : quad) corner = tilt * corner;
+    scene = with_quad(std::move(scene), quad);
+  }
+  const Coverings found = find_coverings(scene, both_sides(scene));
+  std::size_t pairs = 0;
+  for (PolygonIndex lower = 0; lower < scene.polygons.size(); ++lower) {
+    const std::vector<Point> below = corner_points(scene, lower);
+    const Vector normal = front_normal(scene, lower);
+    std::vector<PolygonIndex> expected;
+    for (PolygonIndex upper = 0; upper < scene.polygons.size(); ++upper) {
+      std::vector<Point> left = corner_points(scene, upper);
+      if (upper == lower || area_vector(left).norm() > area_vector(below).norm()) continue;
+      if (std::any_of(left.begin(), left.end(),
+                      [&](const Point& p) { return std::abs(normal.dot(p - below[0])) > 1e-9; }))
+        continue;
+      for (std::size_t k = 0; k < 4 && !left.empty(); ++k)
+        left = clip_to_half_space(left, below[k], normal.cross(below[(k + 1) % 4] - below[k]));
+      if (area_vector(left).norm() > 1e-5) expected.push_back(upper);
+    }
+    const auto over = found.over_side(lower, Side::front);
+    EXPECT_EQ(std::vector<PolygonIndex>(over.begin(), over.end()), expected) << lower;
+    pairs += expected.size();
+  }
+  EXPECT_GT(pairs, 100U);
+}
+
+}  // namespace
+}  // namespace patchlight
