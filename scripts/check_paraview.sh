@@ -5,8 +5,9 @@
 # A FOLDER that holds anything else than what this script has put there is left alone, and refused.
 # Without ParaView and without a network it says so and ends well, unless CI is set.
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
-folder=$(realpath -m "${1:-build/paraview}")
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+folder=$(realpath -m "${1:-$checkout/build/paraview}")
+cd "$checkout"
 out=build/paraview_check
 mark=.made_by_check_paraview
 

@@ -21,35 +21,17 @@ import sys
 import tempfile
 import time
 
-CORPUS = pathlib.Path(__file__).resolve().parent.parent / "tests" / "fuzz" / "corpus"
+TESTS = pathlib.Path(__file__).resolve().parent.parent / "tests"
+CORPUS = TESTS / "fuzz" / "corpus"
+sys.path.insert(0, str(TESTS / "cli"))
+import room  # noqa: E402  the folder of the tests is no package
+
 DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 130}
 PATIENCE = 20  # seconds
 
-ROOM = """mtllib room.mtl
-v -1 -1 0
-v 1 -1 0
-v 1 1 0
-v -1 1 0
-v -1 -1 2
-v 1 -1 2
-v 1 1 2
-v -1 1 2
-v -0.25 -0.25 1.9
-v 0.25 -0.25 1.9
-v 0.25 0.25 1.9
-v -0.25 0.25 1.9
-g walls
-usemtl white
-f 1 2 3 4
-f 5 8 7 6
-f 1 5 6 2
-f 2 6 7 3
-f 3 7 8 4
-f 4 8 5 1
-usemtl lamp
-f 9 12 11 10
-"""
-MATERIALS = "newmtl white\nKd 0.7 0.6 0.5\nmap_Kd wood.png\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n"
+# With a group and a picture.
+ROOM = room.ROOM.replace("usemtl white", "g walls\nusemtl white")
+MATERIALS = room.MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 0.6 0.5\nmap_Kd wood.png")
 IES = """IESNA:LM-63-2002
 [TEST] none
 TILT=NONE

@@ -1,13 +1,12 @@
 #include "patchlight/simulate.h"
 
-#include "patchlight/base/error.h"
 #include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/plan/close_lamps.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "check_request.h"
 #include "effects.h"
-#include "interest.h"
 #include "memory.h"
 #include "problem_of.h"
 #include "relative_errors.h"
@@ -20,26 +19,13 @@
 
 namespace patchlight {
 
-namespace {
-
-// Error bars follow from the errors of stored form factors.
-void require_stored_rows(const Request& request) {
-  if (!request.on_demand || !(request.error_bars || refines(request))) return;
-  throw InputError("on_demand",
-                   "rows of form factors on demand were asked for together with error bars or an accuracy, which need "
-                   "the whole matrix; leave one of them out");
-}
-
-}  // namespace
-
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
   const ThreadLimit threads(request.threads);
   StageClock clock;
 
   // 1. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
   //    how form factors and radiosities are found.
-  require_names(scene, request.interest);
-  require_stored_rows(request);
+  check(request, scene);
   Plan plan = make_plan(scene, request);
   assert(!with.exchange || (!request.on_demand && !plan.error_bars));
   assert(!with.mesh || !plan.error_bars);

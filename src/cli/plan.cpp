@@ -5,11 +5,11 @@
 #include "patchlight/output/whole_file.h"
 #include "patchlight/output/write_plan.h"
 
+#include "check_request.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
-#include "interest.h"
 #include "memory.h"
 #include "solve_mesh.h"
 
@@ -57,7 +57,7 @@ ExitCode plan(const PlanArguments& arguments) {
   const ThreadLimit limit(arguments.request.threads);
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
-  require_names(scene, arguments.request.interest);
+  check(arguments.request, scene);
   const Plan plan = make_plan(scene, arguments.request);
   const Request planned = as_planned(arguments.request, plan);
   require_memory(scene, planned);

@@ -99,15 +99,19 @@ Kind kind_of(const toml::node& node) {
   return node.is_table() ? Kind::table : Kind::other;
 }
 
+// Messages are one line.
+std::string on_one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 std::string description(const toml::node& node) {
   if (const auto* const list = node.as_array()) {
     return "a list of " + std::to_string(list->size()) + (list->size() == 1 ? " value" : " values");
   }
   if (node.is_table()) return "a table";
   if (const auto* const word = node.as_string()) {
-    std::string quoted = std::string("'").append(word->get()).append("'");
-    std::replace(quoted.begin(), quoted.end(), '\n', ' ');  // messages are one line
-    return quoted;
+    return on_one_line(std::string("'").append(word->get()).append("'"));
   }
   std::ostringstream text;
   if (const auto* const number = node.as_floating_point()) {
@@ -165,7 +169,7 @@ TomlValue parse_toml(std::string_view text, const std::string& file) {
     value.where = file;
     return value;
   } catch (const toml::parse_error& error) {
-    throw InputError(place(file, error.source()), "is not TOML: " + std::string(error.description()));
+    throw InputError(place(file, error.source()), "is not TOML: " + on_one_line(std::string(error.description())));
   }
 }
 

@@ -2,13 +2,13 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/shortest.h"
 #include "input/text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <sstream>
 #include <vector>
 
 namespace patchlight {
@@ -27,12 +27,6 @@ struct Word {
   std::string text;
   std::uint32_t line = 0;
 };
-
-std::string as_text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 // What follows TILT=, as words separated by spaces and commas; the first is what stands after the equals sign.
 struct Words {
@@ -58,15 +52,15 @@ struct Words {
   double number_from(const std::string& what, double least, double most) {
     const double value = number(what);
     if (value < least || value > most) {
-      refuse("found " + as_text(value) + " for " + what + "; expected a number from " + as_text(least) + " to " +
-             as_text(most));
+      refuse("found " + shortest(value) + " for " + what + "; expected a number from " + shortest(least) + " to " +
+             shortest(most));
     }
     return value;
   }
 
   std::size_t count(const std::string& what, double least, double most) {
     const double value = number_from(what, least, most);
-    if (value != std::floor(value)) refuse("found " + as_text(value) + " for " + what + "; expected a whole number");
+    if (value != std::floor(value)) refuse("found " + shortest(value) + " for " + what + "; expected a whole number");
     return static_cast<std::size_t>(value);
   }
 
@@ -81,7 +75,7 @@ struct Words {
     for (std::size_t k = 0; k < count; ++k) {
       values.push_back(number(what));
       if (k > 0 && !(values[k] > values[k - 1])) {
-        refuse("found " + as_text(values[k]) + " after " + as_text(values[k - 1]) + " in " + what +
+        refuse("found " + shortest(values[k]) + " after " + shortest(values[k - 1]) + " in " + what +
                "; expected ascending angles");
       }
     }
@@ -100,6 +94,7 @@ Words words_after_tilt(const std::string& text, const std::string& file) {
       if (content.rfind("TILT=", 0) != 0) continue;
       in_numbers = true;
       content = content.substr(5);
+      std::replace(content.begin(), content.end(), ',', ' ');
       if (trimmed(content).empty()) content = "nothing";
     }
     std::replace(content.begin(), content.end(), ',', ' ');
@@ -143,15 +138,15 @@ void check_vertical(const PhotometricWeb& web, const Words& words) {
   const double middle = (lowest + highest) / 2;
   if (whole && (is_near(first, lowest) || is_near(first, middle)) && (is_near(last, highest) || is_near(last, middle)))
     return;
-  words.refuse("found vertical angles from " + as_text(first) + " to " + as_text(last) +
-               "; expected them to begin at " + as_text(lowest) + " or " + as_text(middle) + " and to end at " +
-               as_text(middle) + " or " + as_text(highest));
+  words.refuse("found vertical angles from " + shortest(first) + " to " + shortest(last) +
+               "; expected them to begin at " + shortest(lowest) + " or " + shortest(middle) + " and to end at " +
+               shortest(middle) + " or " + shortest(highest));
 }
 
 void check_horizontal(const PhotometricWeb& web, const Words& words) {
   const double first = web.horizontal.front();
   const double last = web.horizontal.back();
-  const std::string found = "found horizontal angles from " + as_text(first) + " to " + as_text(last);
+  const std::string found = "found horizontal angles from " + shortest(first) + " to " + shortest(last);
   if (web.type != PhotometricType::c) {
     if ((is_near(first, 0) || is_near(first, -90)) && is_near(last, 90)) return;
     words.refuse(found + "; expected 0 to 90 or -90 to 90 with photometric type A or B");
@@ -182,7 +177,7 @@ Header read_header(Words& words) {
   const auto lamps = static_cast<double>(words.count("the number of lamps", 1, many));
   const double lumens = words.number("the lumens per lamp");
   if (lumens < 0 && lumens != -1) {
-    words.refuse("found " + as_text(lumens) + " lumens per lamp; expected 0 or more, or -1 for absolute photometry");
+    words.refuse("found " + shortest(lumens) + " lumens per lamp; expected 0 or more, or -1 for absolute photometry");
   }
   header.lamp_lumens = lumens < 0 ? 0 : lamps * lumens;
   header.factor = words.number_from("the candela multiplier", 0, huge);

@@ -126,6 +126,9 @@ TEST(ReadIes, FluxOfADirectAndIndirectLuminaireIsItsLumensTimesItsEfficiency) {
 
 TEST(ReadIes, RefusesWithFileAndLine) {
   expect_refusal("v 0 0 0\nf 1 2 3\n", "2", "TILT=");
+  expect_refusal("\nTILT=, ", "2", "TILT=nothing");
+  expect_refusal("TILT=,\n\n,,\n", "1", "TILT=nothing");
+  expect_refusal(with(downlight(), "3 1 1 2", "3 1.0000001 1 2"), "5", "found 1.0000001 for");
   expect_refusal(with(downlight(), "10 5 0", "10 five 0"), "9", "'five'");
   expect_refusal(with(downlight(), "10 5 0", "10 -5 0"), "9", "-5");
   expect_refusal(with(downlight(), "10 5 0", "10 5"), "9", "ends before");

@@ -209,6 +209,13 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
   }
 }
 
+// Also where the parser shows the text that it stumbled over.
+TEST_F(SceneFile, IsRefusedOnOneLine) {
+  const std::string message = refused(std::string(room) + "truth = t\n\"m\"\n");
+  EXPECT_NE(message.find("is not TOML"), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
 TEST_F(SceneFile, WithoutModelIsRefused) {
   expect_refused("unit = \"m\"\n", {"scene.toml: names no model", "[[model]]"});
   EXPECT_NE(refusal(write("empty.toml", "")).find("is empty"), std::string::npos);

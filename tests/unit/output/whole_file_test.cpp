@@ -4,6 +4,7 @@
 
 #include "temporary_folder.h"
 
+#include <chrono>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <stdexcept>
@@ -93,6 +94,43 @@ TEST(CheckWritable, RemovesLeftTemporariesButNoneInUse) {
   });
   EXPECT_EQ(content_of(folder.path() / "result.vtp"), "being written");
   EXPECT_EQ(folder.entries(), 3U);
+}
+
+// A second lock of the same folder would wait for two seconds.
+TEST(WholeFiles, OfOneFolderByTwoNamesAppearTogether) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "place";
+  const fs::path link = folder.path() / "link";
+  fs::create_directory(place);
+  fs::create_directory_symlink(place, link);
+  const auto begin = std::chrono::steady_clock::now();
+  WholeFiles files;
+  files.write(place / "a.vtp", [](const fs::path& temporary) { put(temporary, "a"); });
+  files.write(link / "b.vtp", [](const fs::path& temporary) { put(temporary, "b"); });
+  EXPECT_FALSE(fs::exists(place / "a.vtp"));
+  files.publish();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_EQ(content_of(place / "a.vtp"), "a");
+  EXPECT_EQ(content_of(place / "b.vtp"), "b");
+  EXPECT_EQ(std::distance(fs::directory_iterator(place), fs::directory_iterator()), 2);
+}
+
+// In the place of the folder stands a link to itself, so that no name in it can be looked up any more.
+TEST(WholeFiles, WhoseFolderCannotBeSearchedAnyMoreAreRefusedInWords) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "place";
+  fs::create_directory(place);
+  WholeFiles files;
+  files.write(place / "a.vtp", [](const fs::path& temporary) { put(temporary, "a"); });
+  fs::rename(place, folder.path() / "elsewhere");
+  fs::create_directory_symlink(place, place);
+  try {
+    files.publish();
+    FAIL() << "a file was published in a folder that is not there";
+  } catch (const OutputError& error) {
+    EXPECT_NE(std::string(error.what()).find(place.string()), std::string::npos) << error.what();
+  }
+  fs::remove(place);
 }
 
 TEST(CheckWritable, LeavesNoTrace) {

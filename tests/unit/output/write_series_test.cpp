@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <regex>
+#include <sys/fsuid.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
@@ -146,6 +147,23 @@ TEST(CheckSeriesWritable, RefusesAFileInTheWayOfTheFolder) {
   put(folder.path() / "room_series", "a file");
   EXPECT_THROW(check_series_writable(folder.path() / "room.pvd"), OutputError);
   EXPECT_THROW(check_series_writable(folder.path() / "missing" / "room.pvd"), OutputError);
+}
+
+// Its files may be made in it, but it cannot be opened to be locked: no waiting for what never comes.
+TEST(WriteSeries, IntoAFolderThatCannotBeOpenedIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path pvd = folder.path() / "room.pvd";
+  fs::create_directory(series_folder(pvd));
+  for (const fs::path& place : {folder.path(), series_folder(pvd)}) fs::permissions(place, fs::perms::all);
+  fs::permissions(series_folder(pvd), fs::perms::owner_write | fs::perms::owner_exec | fs::perms::others_write);
+  // The superuser may open everything: as somebody else, where that is possible.
+  const int before = setfsuid(65534);
+  int asked = 0;
+  const Observer few_times = [&asked](const Progress&) { return ++asked < 10; };
+  EXPECT_THROW(write(pvd, 1, few_times), OutputError);
+  setfsuid(static_cast<uid_t>(before));
+  fs::permissions(series_folder(pvd), fs::perms::owner_all);
+  EXPECT_FALSE(fs::exists(pvd));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
+#include "patchlight/simulate.h"
 
 #include "support/scenes.h"
 
@@ -131,6 +132,20 @@ TEST(MakePlan, TakesTheEdgeThatIsAskedFor) {
   Request request;
   request.max_edge = 0.123;
   EXPECT_EQ(make_plan(furnished_room(0.5), request).max_edge, 0.123);
+}
+
+TEST(Simulate, RefusesErrorsOfFormFactorsThatAreNotKept) {
+  Request request;
+  request.on_demand = true;
+  request.solver = Solver::progressive;
+  request.accuracy = 0.1;
+  try {
+    simulate(cube_room(0.5, 1), request);
+    FAIL() << "expected an InputError";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("--on-demand: ")) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--accuracy"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+#include "check_request.h"
+
+#include "patchlight/base/error.h"
+
+#include "interest.h"
+
+namespace patchlight {
+namespace {
+
+// Error bars follow from the errors of stored form factors.
+void require_stored_rows(const Request& request) {
+  if (!request.on_demand || !(request.error_bars || refines(request))) return;
+  const char* const other = request.accuracy ? "--accuracy" : request.seconds ? "--time" : "--error-bars";
+  throw InputError("--on-demand", std::string("form factors that are not kept do not tell the errors that ") + other +
+                                      " needs; leave one of them out");
+}
+
+}  // namespace
+
+void check(const Request& request, const Scene& scene) {
+  require_names(scene, request.interest);
+  require_stored_rows(request);
+}
+
+}  // namespace patchlight
