@@ -12,7 +12,7 @@ namespace patchlight {
 namespace {
 
 // Asked for so much less than is needed, as the bound of a patch does not fall evenly with the residual.
-constexpr double margin = 0.5;
+constexpr double bar_margin = 0.5;
 
 // In one step no farther than this.
 constexpr double farthest = 1e-4;
@@ -34,7 +34,8 @@ SolvedWith solve_for_interest(const Setting& setting, const Simulation& simulati
     const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);
     // What is infinite has no bound, or no light: no tolerance mends that.
     if (!(left > *part) || !std::isfinite(left) || options.relative_error <= least_error) return best;
-    options.relative_error = std::max(least_error, options.relative_error * std::max(farthest, margin * *part / left));
+    options.relative_error =
+        std::max(least_error, options.relative_error * std::max(farthest, bar_margin * *part / left));
     Solution next = solve(options);
     if (!next.converged) return best;
     best = {std::move(next), options.relative_error};

@@ -12,7 +12,7 @@ namespace patchlight {
 namespace {
 
 // How far before a patch its space is looked at, as a share of the shell's extent.
-constexpr double step = 1e-6;
+constexpr double step_off = 1e-6;
 
 bool divides(const Scene& scene, const Solid& solid, Dividing by) {
   const bool opaque =
@@ -41,7 +41,7 @@ Shell shell_of(const Scene& scene, const Shells& shells, Solid solid) {
 bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
   const std::uint8_t own = inner[2 * mesh.polygon[i] + static_cast<std::size_t>(mesh.side[i])];
   if (own != 0) return own == 1;
-  return holds(solid, mesh.centroid[i] + step * solid.box.diagonal().norm() * mesh.normal[i]);
+  return holds(solid, mesh.centroid[i] + step_off * solid.box.diagonal().norm() * mesh.normal[i]);
 }
 
 }  // namespace

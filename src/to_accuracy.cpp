@@ -58,7 +58,7 @@ double allowed(double accuracy, double share, double others) {
 
 // Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much
 // lower.
-constexpr double margin = 1.25;
+constexpr double error_margin = 1.25;
 constexpr double enough = 1.1;
 
 // By what factor the mesh error has to fall, and that of shadow rays towards luminaires, sun and sky, which are as
@@ -66,7 +66,8 @@ constexpr double enough = 1.1;
 double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
   const double lights = solved.light_bar;
   const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
-  return margin * std::hypot(step.mesh, lights) / allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
+  return error_margin * std::hypot(step.mesh, lights) /
+         allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
 }
 
 // What shadow rays err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
@@ -79,7 +80,7 @@ double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double 
 
 // By what factor it has to fall.
 double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  return margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
+  return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
 }
 
 // It falls as one over the root of samples and patches: samples for those patches that the mesh will need. As long as
@@ -89,7 +90,7 @@ int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accur
   if (mesh_factor(solved, step, accuracy) > far_off) return step.samples;
   const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
   const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
-  return factor > margin ? next_samples(step.samples, factor) : step.samples;
+  return factor > error_margin ? next_samples(step.samples, factor) : step.samples;
 }
 
 // Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
@@ -191,7 +192,7 @@ double Search::patches_in_time() const {
   const AccuracyStep& step = steps.back();
   const double before = steps.size() > 1 ? steps[steps.size() - 2].seconds : 0;
   const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
-  return patches_in((*plan.seconds - step.seconds) / margin, seconds_per_pair, step.patches);
+  return patches_in((*plan.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one

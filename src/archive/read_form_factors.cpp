@@ -21,8 +21,6 @@
 namespace patchlight {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr PatchIndex edge = ExchangeAreas::edge;
 
 // Both halves of a symmetric matrix were rounded to float, each after a division.
@@ -43,7 +41,7 @@ Estimator estimator_of(const std::string& name) {
   throw InputError("estimator", "found '" + name + "'; expected one that --estimator takes");
 }
 
-FormFactorInfo info_of(const Json& json) {
+FormFactorInfo info_of(const nlohmann::json& json) {
   FormFactorInfo info;
   info.geometry_sha256 = json.at("geometry_sha256").get<std::string>();
   info.model = json.at("input").at("file").get<std::string>();
@@ -51,7 +49,7 @@ FormFactorInfo info_of(const Json& json) {
   info.patches = json.at("patches").get<PatchIndex>();
   info.format = json.at("matrix").get<std::string>() == "npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
   if (!json.at("closure").is_null()) info.closure = json.at("closure").get<std::string>();
-  const Json& options = json.at("options");
+  const nlohmann::json& options = json.at("options");
   info.max_edge = options.at("max_edge_m").get<double>();
   info.sides = sides_of(options.at("sides").get<std::string>());
   info.samples = options.at("samples").get<int>();
@@ -61,7 +59,7 @@ FormFactorInfo info_of(const Json& json) {
   const bool good = info.max_edge > 0 && std::isfinite(info.max_edge) && info.samples >= 1 &&
                     info.lost_share_rays >= 1 && (matrix == "npy" || matrix == "mtx");
   if (!good) throw std::out_of_range("an option has a value that it cannot have");
-  const Json& counts = json.at("counts");
+  const nlohmann::json& counts = json.at("counts");
   info.counts.facing_pairs = counts.at("facing_pairs").get<std::uint64_t>();
   info.counts.near_pairs = counts.at("near_pairs").get<std::uint64_t>();
   info.counts.hidden_pairs = counts.at("hidden_pairs").get<std::uint64_t>();
@@ -71,7 +69,7 @@ FormFactorInfo info_of(const Json& json) {
   info.counts.shadow_rays = counts.at("shadow_rays").get<std::uint64_t>();
   // Folders of earlier versions do not have these.
   info.estimator = estimator_of(options.value("estimator", name_of(Estimator::automatic)));
-  info.error = sampling_error_of(json.value("sampling_error", Json()));
+  info.error = sampling_error_of(json.value("sampling_error", nlohmann::json()));
   return info;
 }
 
@@ -197,7 +195,7 @@ FormFactorInfo read_form_factor_info(const std::filesystem::path& folder) {
                                           " in it; expected a folder that patchlight form-factors has written");
   }
   try {
-    const Json json = Json::parse(stream);
+    const nlohmann::json json = nlohmann::json::parse(stream);
     if (json.at("kind") != file_name::kind) throw InputError("kind", "found " + json.at("kind").dump());
     return info_of(json);
   } catch (const std::exception& error) {

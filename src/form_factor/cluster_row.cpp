@@ -11,11 +11,11 @@ namespace {
 
 // As for unoccluded_exchange_area(): pairs nearer than these, in diameters of the larger patch, are computed by the
 // contour integral, and with the fine rules.
-constexpr float near_diameters = 2;
-constexpr float middle_diameters = 4;
+constexpr float near_reach = 2;
+constexpr float middle_reach = 4;
 
 // Heights count as zero below this share of the radii, and of the distance, which is what rounding leaves of them.
-constexpr float height_tolerance = 1e-7F;
+constexpr float single_height_tolerance = 1e-7F;
 constexpr float height_rounding = 4e-7F;
 
 // A coordinate and its differences are right to this share of the largest; distances have to be known better than this.
@@ -110,16 +110,16 @@ PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float
     const float squared = x * x + y * y + z * z;
     const float larger = std::max(radius, second.radius.at[l]);
     const float reach = squared / (4 * larger * larger);
-    const float tolerance =
-        height_tolerance * (radius + second.radius.at[l]) + height_rounding * (std::abs(x) + std::abs(y) + std::abs(z));
+    const float tolerance = single_height_tolerance * (radius + second.radius.at[l]) +
+                            height_rounding * (std::abs(x) + std::abs(y) + std::abs(z));
     const int coarse = static_cast<int>(squared < least);
     const float lowest_seen = coarse != 0 ? -rounding : tolerance;
     const int facing =
         static_cast<int>(h.highest.at[l] > lowest_seen) & static_cast<int>(h.highest_of_one.at[l] > lowest_seen);
-    const int exact = coarse | static_cast<int>(reach < near_diameters * near_diameters) |
+    const int exact = coarse | static_cast<int>(reach < near_reach * near_reach) |
                       static_cast<int>(h.lowest.at[l] < -tolerance) |
                       static_cast<int>(h.lowest_of_one.at[l] < -tolerance);
-    const int far = static_cast<int>(reach >= middle_diameters * middle_diameters);
+    const int far = static_cast<int>(reach >= middle_reach * middle_reach);
     zone[l] = facing * (exact + (1 - exact) * (2 + far));
   }
 }

@@ -82,9 +82,9 @@ Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
 bool is_made_up(const std::string& name) { return name.starts_with("$Rel") || name.starts_with("IfcMappedItem"); }
 
 // Collects the faces of all nodes.
-class Collector {
+class AssimpCollector {
  public:
-  Collector(Scene scene, const aiScene& model) : scene_(std::move(scene)), model_(model) {}
+  AssimpCollector(Scene scene, const aiScene& model) : scene_(std::move(scene)), model_(model) {}
 
   void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above) {
     const Eigen::Matrix4d to_scene = above * matrix(node.mTransformation);
@@ -153,7 +153,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   scene = with_materials(std::move(scene), *model);
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
-  Collector collector(std::move(scene), *model);
+  AssimpCollector collector(std::move(scene), *model);
   collector.add_node(*model->mRootNode, to_scene, "");
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;

@@ -30,14 +30,14 @@ std::string free_name(const std::vector<Material>& taken, const std::string& nam
 }
 
 // The scene with another one's materials added; what becomes of those is their index in the scene.
-struct Palette {
+struct MergedPalette {
   std::vector<Material> materials;
   std::vector<std::string> notes;
   std::vector<MaterialIndex> index;
 };
 
-Palette with_materials(std::vector<Material> materials, const Scene& added) {
-  Palette palette;
+MergedPalette with_materials(std::vector<Material> materials, const Scene& added) {
+  MergedPalette palette;
   for (Material material : added.materials) {
     auto found = find(materials, material.name);
     if (found != materials.end() && !same_values(*found, material)) {
@@ -58,7 +58,7 @@ Palette with_materials(std::vector<Material> materials, const Scene& added) {
 Scene joined(Scene scene, Scene added, std::uint32_t file) {
   const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
   const auto groups = static_cast<std::uint32_t>(scene.groups.size());
-  Palette palette = with_materials(std::move(scene.materials), added);
+  MergedPalette palette = with_materials(std::move(scene.materials), added);
   scene.materials = std::move(palette.materials);
   scene.vertices.insert(scene.vertices.end(), added.vertices.begin(), added.vertices.end());
   for (Polygon& polygon : added.polygons) {

@@ -1,5 +1,6 @@
 #include "input/obj_libraries.h"
 
+#include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -9,10 +10,6 @@
 
 namespace patchlight {
 namespace {
-
-std::string at(const std::filesystem::path& file, std::uint32_t line) {
-  return file.string() + ":" + std::to_string(line);
-}
 
 // A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
 struct LibraryFile {
@@ -61,7 +58,7 @@ LibraryFile find_library(const std::filesystem::path& obj, const std::string& na
 // The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
 std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const ObjName& statement,
                                        const std::filesystem::path& confine) {
-  const std::string where = at(obj, statement.line);
+  const std::string where = at_line(obj, statement.line);
   const LibraryFile whole = find_library(obj, statement.name, where, confine);
   if (!whole.place.empty() && !whole.moved) return {whole};
   std::vector<LibraryFile> files;
@@ -107,7 +104,7 @@ Libraries read_libraries(const std::filesystem::path& obj, const std::vector<Obj
   std::set<std::string> names;
   std::set<std::filesystem::path> places;
   for (const ObjName& statement : statements) {
-    const std::string where = at(obj, statement.line);
+    const std::string where = at_line(obj, statement.line);
     for (const LibraryFile& file : library_files(obj, statement, confine)) {
       if (!names.insert(file.name).second) continue;
       const std::optional<Problem> problem = problem_with(file, where);

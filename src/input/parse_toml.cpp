@@ -11,8 +11,6 @@
 namespace patchlight {
 namespace {
 
-using Kind = TomlValue::Kind;
-
 // So deep may tables and lists lie in one another: a scene file needs four. The parser calls itself for each level.
 constexpr std::size_t most_levels = 64;
 
@@ -90,13 +88,13 @@ std::string place(const std::string& file, const toml::source_region& source) {
   return file + ":" + std::to_string(source.begin.line);
 }
 
-Kind kind_of(const toml::node& node) {
-  if (node.is_boolean()) return Kind::truth;
-  if (node.is_number()) return Kind::number;
-  if (node.is_string()) return Kind::text;
-  if (node.is_date_time()) return Kind::time;
-  if (node.is_array()) return Kind::list;
-  return node.is_table() ? Kind::table : Kind::other;
+TomlValue::Kind kind_of(const toml::node& node) {
+  if (node.is_boolean()) return TomlValue::Kind::truth;
+  if (node.is_number()) return TomlValue::Kind::number;
+  if (node.is_string()) return TomlValue::Kind::text;
+  if (node.is_date_time()) return TomlValue::Kind::time;
+  if (node.is_array()) return TomlValue::Kind::list;
+  return node.is_table() ? TomlValue::Kind::table : TomlValue::Kind::other;
 }
 
 // Messages are one line.

@@ -43,9 +43,9 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::ui
 }
 
 // Collects the triangles of all nodes.
-class Collector {
+class GltfCollector {
  public:
-  Collector(const tinygltf::Model& model, Scene scene)
+  GltfCollector(const tinygltf::Model& model, Scene scene)
       : model_(model), scene_(std::move(scene)), is_added_(model.nodes.size(), 0) {
     // The last material is the one of primitives without a material.
     scene_.materials.push_back(default_material());
@@ -188,7 +188,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() *= metres_per_unit;
-  Collector collector(gltf.model, std::move(scene));
+  GltfCollector collector(gltf.model, std::move(scene));
   for (const int node : top_nodes(gltf.model)) collector.add_node(node, to_scene);
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;

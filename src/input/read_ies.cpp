@@ -162,7 +162,7 @@ PhotometricType type_of(std::size_t number) {
 }
 
 // The two lines of single numbers after the tilt.
-struct Header {
+struct IesHeader {
   double lamp_lumens = 0;
   double factor = 1;  // of the candela values
   std::size_t vertical = 0;
@@ -172,8 +172,8 @@ struct Header {
   double watts = 0;
 };
 
-Header read_header(Words& words) {
-  Header header;
+IesHeader read_header(Words& words) {
+  IesHeader header;
   const auto lamps = static_cast<double>(words.count("the number of lamps", 1, many));
   const double lumens = words.number("the lumens per lamp");
   if (lumens < 0 && lumens != -1) {
@@ -198,7 +198,7 @@ Header read_header(Words& words) {
 PhotometricWeb parse_ies(const std::string& text, const std::string& file) {
   Words words = words_after_tilt(text, file);
   const Tilt tilt = read_tilt(words);
-  const Header header = read_header(words);
+  const IesHeader header = read_header(words);
   PhotometricWeb web{.file = file,
                      .type = header.type,
                      .opening = header.opening,

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/sha256.h"
+#include "input/at_line.h"
 #include "input/obj_libraries.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
@@ -19,10 +20,6 @@ namespace {
 
 constexpr double default_reflectance = 0.5;
 constexpr const char* default_name = "default";
-
-std::string at(const std::filesystem::path& file, std::uint32_t line) {
-  return file.string() + ":" + std::to_string(line);
-}
 
 // The index of a material among those defined; their number when there is none of that name.
 std::size_t find_material(std::span<const MtlMaterial> defined, const std::string& name) {
@@ -66,15 +63,15 @@ std::vector<std::size_t> face_materials(const ObjScan& scan, std::span<const Mtl
 }
 
 // The materials that faces use, in their order of definition.
-struct Palette {
+struct ObjPalette {
   std::vector<MtlMaterial> materials;
   std::vector<MaterialIndex> of_face;
 };
 
-Palette used_materials(std::span<const MtlMaterial> defined, std::span<const std::size_t> of_face) {
+ObjPalette used_materials(std::span<const MtlMaterial> defined, std::span<const std::size_t> of_face) {
   std::vector<std::uint8_t> is_used(defined.size(), 0);
   for (const std::size_t material : of_face) is_used[material] = 1;
-  Palette palette;
+  ObjPalette palette;
   std::vector<MaterialIndex> number(defined.size(), 0);
   for (std::size_t m = 0; m < defined.size(); ++m) {
     if (!is_used[m]) continue;
@@ -126,7 +123,7 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
   return scene;
 }
 
-std::vector<std::string> notes_on(const ObjScan& scan, const Palette& palette) {
+std::vector<std::string> notes_on(const ObjScan& scan, const ObjPalette& palette) {
   std::vector<std::string> notes;
   const auto note = [&](const std::string& what, std::size_t count) {
     if (count > 0) notes.push_back(what + ": " + std::to_string(count));
@@ -157,7 +154,7 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
   for (std::size_t m = 0; m < scan.materials.size(); ++m) {
     const ObjName& used = scan.materials[m];
     if (has_face[m] && find_material(defined, used.name) == defined.size() && used.name != default_name) {
-      unknown.push_back("'" + used.name + "' (" + at(file, used.line) + ")");
+      unknown.push_back("'" + used.name + "' (" + at_line(file, used.line) + ")");
     }
   }
   std::vector<Problem> problems;
@@ -182,7 +179,7 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
   for (const std::uint32_t line : scan.short_faces) narrow.faces.push_back({{}, 0, line, 0});
   if (narrow.count > 0) {
     narrow.what = std::to_string(narrow.count) + (narrow.count == 1 ? " face" : " faces") +
-                  " with fewer than three corners (first at " + at(file, scan.short_faces[0]) + "); left out";
+                  " with fewer than three corners (first at " + at_line(file, scan.short_faces[0]) + "); left out";
     problems.push_back(std::move(narrow));
   }
   return problems;
@@ -212,7 +209,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   std::vector<MtlMaterial> defined = libraries.materials;
   const std::vector<MtlMaterial> undefined = undefined_materials(scan, defined);
   defined.insert(defined.end(), undefined.begin(), undefined.end());
-  const Palette palette = used_materials(defined, face_materials(scan, defined));
+  const ObjPalette palette = used_materials(defined, face_materials(scan, defined));
 
   // 3. The scene, in metres.
   Scene scene;

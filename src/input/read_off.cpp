@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/sha256.h"
+#include "input/at_line.h"
 #include "input/materials.h"
 #include "input/text.h"
 
@@ -15,10 +16,6 @@ struct Statement {
   std::uint32_t line = 0;
   std::vector<std::string_view> words;
 };
-
-std::string at(const std::string& file, const Statement& statement) {
-  return file + ":" + std::to_string(statement.line);
-}
 
 std::vector<Statement> statements_of(const std::vector<TextLine>& lines) {
   std::vector<Statement> statements;
@@ -35,17 +32,18 @@ std::uint32_t whole_number(const Statement& statement, std::size_t k, std::uint3
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (word.empty() || error != std::errc() || end != word.data() + word.size() || value >= limit) {
-    throw InputError(at(file, statement), "found '" + std::string(word) + "' as number " + std::to_string(k + 1) +
-                                              "; expected a whole number from 0 to " + std::to_string(limit - 1));
+    throw InputError(at_line(file, statement.line), "found '" + std::string(word) + "' as number " +
+                                                        std::to_string(k + 1) + "; expected a whole number from 0 to " +
+                                                        std::to_string(limit - 1));
   }
   return value;
 }
 
-Point vertex(const Statement& statement, const std::string& file) {
+Point off_vertex(const Statement& statement, const std::string& file) {
   Point point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto value = axis < statement.words.size() ? finite_number(statement.words[axis]) : std::nullopt;
-    if (!value) throw InputError(at(file, statement), "expected three finite numbers: a vertex x y z");
+    if (!value) throw InputError(at_line(file, statement.line), "expected three finite numbers: a vertex x y z");
     point[static_cast<Eigen::Index>(axis)] = *value;
   }
   return point;
@@ -54,11 +52,11 @@ Point vertex(const Statement& statement, const std::string& file) {
 Polygon face(const Statement& statement, std::size_t vertices, const std::string& file) {
   const std::uint32_t corners = whole_number(statement, 0, ~std::uint32_t{0}, file);
   if (corners < 3) {
-    throw InputError(at(file, statement),
+    throw InputError(at_line(file, statement.line),
                      "this face has " + std::to_string(corners) + " corners; expected at least three. Remove the face");
   }
   if (corners >= statement.words.size()) {
-    throw InputError(at(file, statement),
+    throw InputError(at_line(file, statement.line),
                      "this face has fewer than the " + std::to_string(corners) + " corners it promises");
   }
   Polygon polygon;
@@ -70,13 +68,13 @@ Polygon face(const Statement& statement, std::size_t vertices, const std::string
 }
 
 // The statements without the key word, and the numbers of vertices and faces taken off the first of the rest.
-struct Header {
+struct OffHeader {
   std::uint32_t vertices = 0;
   std::uint32_t faces = 0;
   std::size_t first = 0;  // statement after the header
 };
 
-Header header_of(std::vector<Statement>& statements, const std::string& file) {
+OffHeader header_of(std::vector<Statement>& statements, const std::string& file) {
   constexpr std::uint32_t most = ~std::uint32_t{0};
   const std::string_view key = statements.empty() ? std::string_view() : statements[0].words[0];
   const bool is_off = key == "OFF" || key == "COFF" || key == "NOFF" || key == "CNOFF";
@@ -85,7 +83,7 @@ Header header_of(std::vector<Statement>& statements, const std::string& file) {
                      "is not an OFF file in ASCII: expected the word OFF (or COFF, NOFF, CNOFF) at its beginning");
   }
   statements[0].words.erase(statements[0].words.begin());
-  Header header;
+  OffHeader header;
   header.first = statements[0].words.empty() ? 1 : 0;
   if (header.first >= statements.size())
     throw InputError(file, "ends after the word OFF; expected the numbers of vertices and faces");
@@ -107,12 +105,12 @@ Scene read_off(const std::filesystem::path& file, double metres_per_unit) {
   const std::string text = read_text(file, file.string(), "the model file");
   const std::vector<TextLine> lines = logical_lines(text);
   std::vector<Statement> statements = statements_of(lines);
-  const Header header = header_of(statements, file.string());
+  const OffHeader header = header_of(statements, file.string());
 
   Scene scene = scene_without_materials(file.string(), metres_per_unit);
   scene.groups.push_back(file.stem().string());
   for (std::size_t k = 0; k < header.vertices; ++k) {
-    scene.vertices.emplace_back(metres_per_unit * vertex(statements[header.first + k], file.string()));
+    scene.vertices.emplace_back(metres_per_unit * off_vertex(statements[header.first + k], file.string()));
   }
   for (std::size_t k = 0; k < header.faces; ++k) {
     scene.polygons.push_back(face(statements[header.first + header.vertices + k], header.vertices, file.string()));

@@ -57,7 +57,7 @@ Scene with_binary(Scene scene, std::string_view bytes) {
   return scene;
 }
 
-Point vertex(const std::vector<std::string_view>& statement, const std::string& where) {
+Point stl_vertex(const std::vector<std::string_view>& statement, const std::string& where) {
   Point point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto value = axis + 1 < statement.size() ? finite_number(statement[axis + 1]) : std::nullopt;
@@ -84,7 +84,7 @@ Scene with_ascii(Scene scene, const std::string& text) {
       begin = line.number;
       is_whole = false;
     } else if (statement[0] == "vertex") {
-      scene.vertices.emplace_back(scene.metres_per_unit * vertex(statement, where));
+      scene.vertices.emplace_back(scene.metres_per_unit * stl_vertex(statement, where));
     } else if (statement[0] == "endloop") {
       const auto corners = static_cast<std::uint32_t>(scene.vertices.size() - first);
       if (corners < 3) {

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/at_line.h"
 #include "input/text.h"
 
 #include <charconv>
@@ -22,11 +23,9 @@ struct HighestVertex {
   std::uint32_t line = 0;
 };
 
-std::string at(const std::string& file, std::uint32_t line) { return file + ":" + std::to_string(line); }
-
 std::string quoted(std::string_view word) { return std::string("'").append(word).append("'"); }
 
-Point vertex(const std::vector<std::string_view>& statement, const std::string& where) {
+Point obj_vertex(const std::vector<std::string_view>& statement, const std::string& where) {
   if (statement.size() < 4) {
     throw InputError(where, "this vertex has " + std::to_string(statement.size() - 1) +
                                 " coordinates; expected three numbers after v");
@@ -91,9 +90,9 @@ ObjScan with_face(ObjScan scan, ObjFace face, std::span<const std::int64_t> corn
 
 void check_vertices_exist(const HighestVertex& highest, std::size_t vertices, const std::string& file) {
   if (highest.number <= static_cast<std::int64_t>(vertices)) return;
-  throw InputError(at(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
-                                               ", but there are " + std::to_string(vertices) +
-                                               " vertices in the file; mend the number");
+  throw InputError(at_line(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
+                                                    ", but there are " + std::to_string(vertices) +
+                                                    " vertices in the file; mend the number");
 }
 
 }  // namespace
@@ -108,11 +107,11 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
     if (statement.empty()) continue;
     const std::string_view keyword = statement[0];
     if (keyword == "v") {
-      scan.vertices.push_back(vertex(statement, at(file, line.number)));
+      scan.vertices.push_back(obj_vertex(statement, at_line(file, line.number)));
       scan.geometry += line.text + "\n";
       scan.colored_vertices += statement.size() == 7;  // x y z r g b
     } else if (keyword == "f") {
-      const auto corners = face_corners(statement, scan.vertices.size(), at(file, line.number));
+      const auto corners = face_corners(statement, scan.vertices.size(), at_line(file, line.number));
       for (const std::int64_t corner : corners) {
         if (corner > highest.number) highest = {corner, line.number};
       }

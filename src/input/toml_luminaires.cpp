@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-enum class Kind { point, spot, ies, sphere };
+enum class LuminaireKind { point, spot, ies, sphere };
 
 // The colour of a light whose lumens are given: any multiple of it.
 Spectrum colour_of(const TomlValue& table) {
@@ -73,7 +73,7 @@ WebLight web_of(const TomlValue& table, const TomlFrame& frame) {
   return {web, not_negative(*lumens) / flux * watts_per_lumen};
 }
 
-void require_keys_of(const TomlValue& table, Kind kind) {
+void require_keys_of(const TomlValue& table, LuminaireKind kind) {
   const std::vector<std::string> common = {"name", "kind", "position", "positions", "lumens", "color"};
   const std::vector<std::vector<std::string>> own = {
       {"watts"}, {"watts", "aim", "beam_angle", "field_angle"}, {"aim", "zero_plane", "file"}, {"watts", "radius"}};
@@ -95,16 +95,18 @@ std::vector<Point> positions_of(const TomlValue& table, const TomlFrame& frame) 
 
 LuminaireEntry entry_of(const TomlValue& table, const TomlFrame& frame) {
   const TomlValue& named = required(table, "kind", "one of 'point', 'spot', 'ies', 'sphere'");
-  const Kind kind =
-      choice<Kind>(named, {{"point", Kind::point}, {"spot", Kind::spot}, {"ies", Kind::ies}, {"sphere", Kind::sphere}});
+  const LuminaireKind kind = choice<LuminaireKind>(named, {{"point", LuminaireKind::point},
+                                                           {"spot", LuminaireKind::spot},
+                                                           {"ies", LuminaireKind::ies},
+                                                           {"sphere", LuminaireKind::sphere}});
   require_keys_of(table, kind);
   LuminaireEntry entry;
   entry.where = table.where;
   entry.luminaire.place = table.where;
-  if (kind == Kind::point) entry.luminaire.light = PointLight{flux_of(table) / (4 * pi)};
-  if (kind == Kind::spot) entry.luminaire.light = spot_of(table);
-  if (kind == Kind::ies) entry.luminaire.light = web_of(table, frame);
-  if (kind == Kind::sphere) entry.luminaire.light = sphere_of(table, frame);
+  if (kind == LuminaireKind::point) entry.luminaire.light = PointLight{flux_of(table) / (4 * pi)};
+  if (kind == LuminaireKind::spot) entry.luminaire.light = spot_of(table);
+  if (kind == LuminaireKind::ies) entry.luminaire.light = web_of(table, frame);
+  if (kind == LuminaireKind::sphere) entry.luminaire.light = sphere_of(table, frame);
   if (const TomlValue* const aim = find(table, "aim")) entry.aim = direction(*aim);
   if (const TomlValue* const zero = find(table, "zero_plane")) entry.zero_plane = direction(*zero);
   return entry;

@@ -11,11 +11,9 @@
 namespace patchlight {
 namespace {
 
-using Kind = TomlValue::Kind;
-
 bool is_spectrum(const TomlValue& value) {
-  if (value.kind == Kind::number) return true;
-  return value.kind == Kind::list && value.items.size() == 3;
+  if (value.kind == TomlValue::Kind::number) return true;
+  return value.kind == TomlValue::Kind::list && value.items.size() == 3;
 }
 
 }  // namespace
@@ -44,7 +42,7 @@ std::string one_of(const TomlValue& table, const std::vector<std::string>& keys)
 }
 
 void allow_keys(const TomlValue& table, const std::vector<std::string>& keys) {
-  if (table.kind != Kind::table) refuse(table, "a table with keys " + listed(keys));
+  if (table.kind != TomlValue::Kind::table) refuse(table, "a table with keys " + listed(keys));
   for (std::size_t k = 0; k < table.keys.size(); ++k) {
     const std::string& key = table.keys[k];
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
@@ -57,14 +55,15 @@ void allow_keys(const TomlValue& table, const std::vector<std::string>& keys) {
 
 std::vector<TomlValue> tables(const TomlValue* list) {
   if (list == nullptr) return {};
-  const bool all_tables = list->kind == Kind::list && std::all_of(list->items.begin(), list->items.end(),
-                                                                  [](const auto& v) { return v.kind == Kind::table; });
+  const bool all_tables = list->kind == TomlValue::Kind::list &&
+                          std::all_of(list->items.begin(), list->items.end(),
+                                      [](const auto& v) { return v.kind == TomlValue::Kind::table; });
   if (!all_tables) refuse(*list, "tables [[" + list->name + "]], in double brackets");
   return list->items;
 }
 
 double number(const TomlValue& value, const std::string& expected) {
-  if (value.kind != Kind::number || !std::isfinite(value.number)) refuse(value, expected);
+  if (value.kind != TomlValue::Kind::number || !std::isfinite(value.number)) refuse(value, expected);
   return value.number;
 }
 
@@ -79,7 +78,7 @@ double not_negative(const TomlValue& value) {
 }
 
 std::vector<double> numbers(const TomlValue& value, std::size_t count, const std::string& expected) {
-  if (value.kind != Kind::list || value.items.size() != count) refuse(value, expected);
+  if (value.kind != TomlValue::Kind::list || value.items.size() != count) refuse(value, expected);
   std::vector<double> values;
   for (const TomlValue& item : value.items) values.push_back(number(item, expected));
   return values;
@@ -96,14 +95,14 @@ Vector direction(const TomlValue& value) {
 Spectrum spectrum(const TomlValue& value) {
   const std::string expected = "a number for all bands, or three: [R, G, B]";
   if (!is_spectrum(value)) refuse(value, expected);
-  if (value.kind == Kind::number) return Spectrum::Constant(1, not_negative(value));
+  if (value.kind == TomlValue::Kind::number) return Spectrum::Constant(1, not_negative(value));
   const std::vector<double> values = numbers(value, 3, expected);
   for (const TomlValue& item : value.items) not_negative(item);
   return rgb(values[0], values[1], values[2]);
 }
 
 std::string text(const TomlValue& value, const std::string& expected) {
-  if (value.kind != Kind::text || value.text.empty()) refuse(value, expected);
+  if (value.kind != TomlValue::Kind::text || value.text.empty()) refuse(value, expected);
   return value.text;
 }
 

@@ -10,7 +10,7 @@ namespace patchlight {
 namespace {
 
 // Nearer to the plane of a patch, relative to its corners' distance, a luminaire counts as in the plane.
-constexpr double in_plane = 1e-9;
+constexpr double luminaire_in_plane = 1e-9;
 
 bool is_before(const Point& luminaire, const Receiver& receiver, const Vector& normal) {
   double height = 0;
@@ -19,7 +19,7 @@ bool is_before(const Point& luminaire, const Receiver& receiver, const Vector& n
     height = std::max(height, normal.dot(luminaire - corner));
     distance = std::max(distance, (luminaire - corner).norm());
   }
-  return height > in_plane * distance;
+  return height > luminaire_in_plane * distance;
 }
 
 double exposed_share(const Lighting& lighting, const Receiver& receiver, SamplePoints places) {

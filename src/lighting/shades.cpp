@@ -13,7 +13,7 @@ namespace {
 
 // What nowhere rises higher over the plane of a patch, as a share of the scene's extent, throws no shadow on it:
 // rounding.
-constexpr double in_plane = 1e-9;
+constexpr double shade_in_plane = 1e-9;
 
 // Triangles towards the light that are looked at for one patch.
 constexpr std::size_t most_triangles = 1500;
@@ -80,7 +80,7 @@ bool lies_in(const Box& box, const HalfSpace& below) {
 }  // namespace
 
 Shades::Shades(const Scene& scene, const Coverings& coverings)
-    : tolerance_(in_plane * extent_of(scene)),
+    : tolerance_(shade_in_plane * extent_of(scene)),
       bands_(scene.materials.front().reflectance.size()),
       coverings_(coverings),
       transmittances_(scene.polygons.size()) {

@@ -13,13 +13,13 @@ namespace patchlight {
 namespace {
 
 // Boxes that are this share of their size apart may touch: patches of a tilted polygon do so within rounding.
-constexpr double slack = 1e-9;
+constexpr double touching_slack = 1e-9;
 
-Box box_of(const PatchMesh& mesh, PatchIndex patch) {
+Box padded_box_of(const PatchMesh& mesh, PatchIndex patch) {
   const PatchCorners corners = mesh.corner_points(patch);
   Box box;
   for (const Point& corner : std::span<const Point>(corners)) box.extend(corner);
-  const Vector pad = Vector::Constant(slack * box.diagonal().norm());
+  const Vector pad = Vector::Constant(touching_slack * box.diagonal().norm());
   return {box.min() - pad, box.max() + pad};
 }
 
@@ -38,7 +38,7 @@ Row row_of(const PatchMesh& mesh, PatchRange range) {
   Row row;
   Box bounds;
   for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
-    row.entries.push_back({box_of(mesh, patch), patch});
+    row.entries.push_back({padded_box_of(mesh, patch), patch});
     bounds.extend(row.entries.back().box);
   }
   if (row.entries.empty()) return row;
@@ -66,7 +66,7 @@ std::vector<Point> overlap(const PatchCorners& patch, const Vector& normal, cons
 // Calls visit(k, common outline) for the patches of `row` that may overlap a patch.
 template <typename Visit>
 void for_overlaps(const PatchMesh& mesh, PatchIndex patch, const PatchMesh& other, const Row& row, Visit visit) {
-  const Box box = box_of(mesh, patch);
+  const Box box = padded_box_of(mesh, patch);
   const PatchCorners corners = mesh.corner_points(patch);
   const auto low = [&](const Row::Entry& entry, double end) { return entry.box.min()[row.axis] < end; };
   const auto first = std::lower_bound(row.entries.begin(), row.entries.end(), box.min()[row.axis] - row.longest, low);

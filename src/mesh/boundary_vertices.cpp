@@ -12,8 +12,8 @@ constexpr double smooth_cosine = 0.86602540378443865;
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
-// Corners of all outlines are numbered through; an edge has the number of the corner where it begins.
-struct Corners {
+// OutlineCorners of all outlines are numbered through; an edge has the number of the corner where it begins.
+struct OutlineCorners {
   std::vector<std::uint32_t> first;  // per polygon, one more at the end
 
   std::uint32_t next(std::uint32_t polygon, std::uint32_t corner) const {
@@ -21,7 +21,7 @@ struct Corners {
   }
 };
 
-struct Edge {
+struct OutlineEdge {
   std::uint32_t low, high;  // places of its ends
   MaterialIndex material;
   std::uint32_t polygon, corner;
@@ -30,8 +30,8 @@ struct Edge {
   auto place() const { return std::tuple(low, high, material); }
 };
 
-Corners count_corners(std::span<const Outline> outlines) {
-  Corners corners{.first = {0}};
+OutlineCorners count_corners(std::span<const Outline> outlines) {
+  OutlineCorners corners{.first = {0}};
   for (const Outline& outline : outlines) {
     corners.first.push_back(corners.first.back() + static_cast<std::uint32_t>(outline.corners.size()));
   }
@@ -52,9 +52,9 @@ std::vector<std::uint32_t> weld(std::span<const Outline> outlines) {
   return place;
 }
 
-std::vector<Edge> sorted_edges(const Scene& scene, const Corners& corners, Side side,
-                               std::span<const std::uint8_t> kept, std::span<const std::uint32_t> place) {
-  std::vector<Edge> edges;
+std::vector<OutlineEdge> sorted_edges(const Scene& scene, const OutlineCorners& corners, Side side,
+                                      std::span<const std::uint8_t> kept, std::span<const std::uint32_t> place) {
+  std::vector<OutlineEdge> edges;
   for (std::uint32_t p = 0; p < kept.size(); ++p) {
     if (!kept[p]) continue;
     const MaterialIndex material = material_on(scene.polygons[p], side);
@@ -64,21 +64,21 @@ std::vector<Edge> sorted_edges(const Scene& scene, const Corners& corners, Side 
       edges.push_back({std::min(from, to), std::max(from, to), material, p, c, from < to});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+  std::sort(edges.begin(), edges.end(), [](const OutlineEdge& a, const OutlineEdge& b) {
     return std::tuple(a.place(), a.corner) < std::tuple(b.place(), b.corner);
   });
   return edges;
 }
 
 // Per edge the edge of the smooth neighbour, or none.
-std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, std::span<const Edge> edges,
+std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, std::span<const OutlineEdge> edges,
                                              std::size_t corner_count) {
   std::vector<std::uint32_t> neighbour(corner_count, none);
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end].place() == edges[begin].place()) ++end;
     if (end - begin != 2) continue;
-    const Edge& a = edges[begin];
-    const Edge& b = edges[begin + 1];
+    const OutlineEdge& a = edges[begin];
+    const OutlineEdge& b = edges[begin + 1];
     if (a.forward == b.forward) continue;
     if (outlines[a.polygon].normal.dot(outlines[b.polygon].normal) <= smooth_cosine) continue;
     neighbour[a.corner] = b.corner;
@@ -93,7 +93,7 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t corner) {
 }
 
 // Per corner the first of the corners it is united with.
-std::vector<std::uint32_t> unite(const Corners& corners, std::span<const std::uint32_t> neighbour) {
+std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const std::uint32_t> neighbour) {
   std::vector<std::uint32_t> next(neighbour.size());
   for (std::uint32_t p = 0; p + 1 < corners.first.size(); ++p) {
     for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) next[c] = corners.next(p, c);
@@ -118,9 +118,9 @@ std::vector<std::uint32_t> unite(const Corners& corners, std::span<const std::ui
 BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
                                  std::span<const std::uint8_t> kept) {
   // 1. Which edges and corners are shared.
-  const Corners corners = count_corners(outlines);
+  const OutlineCorners corners = count_corners(outlines);
   const std::vector<std::uint32_t> place = weld(outlines);
-  const std::vector<Edge> edges = sorted_edges(scene, corners, side, kept, place);
+  const std::vector<OutlineEdge> edges = sorted_edges(scene, corners, side, kept, place);
   const std::vector<std::uint32_t> neighbour = smooth_neighbours(outlines, edges, place.size());
   const std::vector<std::uint32_t> shared = unite(corners, neighbour);
 

@@ -9,7 +9,7 @@ namespace patchlight {
 namespace {
 
 // Points this share of the polygon side's extent outside of a patch still find it.
-constexpr double slack = 4e-6;
+constexpr double lookup_slack = 4e-6;
 
 using Flat = Eigen::Vector2d;
 
@@ -74,7 +74,7 @@ Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
   if (normal[longest] < 0) std::swap(grid.axis_u, grid.axis_v);
 
   // About as many cells as patches, about square.
-  const double pad = slack * bounds.diagonal().norm();
+  const double pad = lookup_slack * bounds.diagonal().norm();
   const double count = range.end - range.begin;
   const double size_u = bounds.sizes()[grid.axis_u] + 2 * pad;
   const double size_v = bounds.sizes()[grid.axis_v] + 2 * pad;
@@ -103,7 +103,7 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
   Grid grid = lay_out<Grid>(mesh_, range, bounds);
 
   // Sort the patches into the cells that their padded bounds overlap: count, then fill from the back.
-  const Point pad = Point::Constant(slack * bounds.diagonal().norm());
+  const Point pad = Point::Constant(lookup_slack * bounds.diagonal().norm());
   const auto for_cells_of = [&](PatchIndex patch, const auto& visit) {
     const Box box = box_of(mesh_, patch);
     const Cell low = cell_at(grid, box.min() - pad);

@@ -9,13 +9,13 @@
 namespace patchlight {
 namespace {
 
-using Corners = std::array<std::uint32_t, 4>;
+using CornerIndices = std::array<std::uint32_t, 4>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller index first
 
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
 std::vector<Edge> edges_of(const PatchMesh& mesh, PatchIndex patch) {
-  const Corners& corners = mesh.corners[patch];
+  const CornerIndices& corners = mesh.corners[patch];
   const auto count = static_cast<std::size_t>(mesh.corner_points(patch).count);
   std::vector<Edge> edges;
   for (std::size_t k = 0; k < count; ++k) edges.push_back(edge_of(corners[k], corners[(k + 1) % count]));
@@ -74,7 +74,7 @@ class Cutter {
     result_.mesh.middles = mesh.middles;
   }
 
-  void add(const PatchMesh& from, PatchIndex patch, const Corners& corners) {
+  void add(const PatchMesh& from, PatchIndex patch, const CornerIndices& corners) {
     PatchMesh& mesh = result_.mesh;
     mesh.corners.push_back(corners);
     mesh.normal.push_back(from.normal[patch]);
@@ -88,7 +88,7 @@ class Cutter {
     result_.parent.push_back(patch);
   }
 
-  std::array<Corners, 4> quarters(const Corners& c, bool is_triangle) {
+  std::array<CornerIndices, 4> quarters(const CornerIndices& c, bool is_triangle) {
     const std::uint32_t ab = middle(c[0], c[1]);
     const std::uint32_t bc = middle(c[1], c[2]);
     if (is_triangle) {
@@ -142,7 +142,7 @@ Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
       cutter.add(mesh, i, mesh.corners[i]);
       continue;
     }
-    for (const Corners& corners : cutter.quarters(mesh.corners[i], mesh.corner_points(i).count == 3))
+    for (const CornerIndices& corners : cutter.quarters(mesh.corners[i], mesh.corner_points(i).count == 3))
       cutter.add(mesh, i, corners);
   }
   for (; slot < mesh.first_patch.size(); ++slot) cutter.first_patch().push_back(cutter.size());

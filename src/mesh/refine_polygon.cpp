@@ -29,7 +29,7 @@ double dot(const Workbench::Point& a, const Workbench::Point& b, const Workbench
 
 // The polygon's plane: the origin is the beginning of its longest edge, the axes are that edge's direction, the one to
 // its left, and the normal.
-struct Plane {
+struct OutlinePlane {
   Point origin;
   Eigen::Matrix3d axes;
   double spacing;  // of the points on that edge
@@ -38,7 +38,7 @@ struct Plane {
   Point lifted(const FlatPoint& point) const { return origin + axes.leftCols<2>() * point; }
 };
 
-Plane plane_of(const Outline& outline) {
+OutlinePlane plane_of(const Outline& outline) {
   // Edges that are equal but for rounding count as equal: the first is taken.
   constexpr double rounding = 1e-9;
   const std::size_t n = outline.corners.size();
@@ -48,22 +48,22 @@ Plane plane_of(const Outline& outline) {
     const Vector edge = outline.corners[(k + 1) % n] - outline.corners[k];
     if (edge.norm() > (1 + rounding) * longest.norm()) longest = edge, first = k;
   }
-  Plane plane{.origin = outline.corners[first], .axes = {}, .spacing = longest.norm() / outline.parts[first]};
+  OutlinePlane plane{.origin = outline.corners[first], .axes = {}, .spacing = longest.norm() / outline.parts[first]};
   const Vector left = outline.normal.cross(longest).normalized();
   plane.axes << left.cross(outline.normal), left, outline.normal;
   return plane;
 }
 
 // The triangles of one polygon in its plane, and the inner edges that are too long.
-class Refinement {
+class Triangulation {
  public:
-  Refinement(const Outline& outline, const Plane& plane, double max_edge);
+  Triangulation(const Outline& outline, const OutlinePlane& plane, double max_edge);
 
   void make_delaunay();
   void cut_boundary();
   void insert_rows(const std::vector<std::vector<FlatPoint>>& rows);
   void split_long_edges();
-  PolygonMesh result(const Plane& plane) const;
+  PolygonMesh result(const OutlinePlane& plane) const;
 
  private:
   struct LongEdge {
@@ -92,7 +92,8 @@ class Refinement {
   std::priority_queue<LongEdge> long_edges_;
 };
 
-Refinement::Refinement(const Outline& outline, const Plane& plane, double max_edge) : max_square_(max_edge * max_edge) {
+Triangulation::Triangulation(const Outline& outline, const OutlinePlane& plane, double max_edge)
+    : max_square_(max_edge * max_edge) {
   const std::vector<Point> boundary = boundary_points(outline);
   boundary_count_ = boundary.size();
   for (const Point& point : boundary) {
@@ -105,7 +106,7 @@ Refinement::Refinement(const Outline& outline, const Plane& plane, double max_ed
   for (const auto& [a, b, c] : triangulate(outline.corners)) mesh_.add_face(corners[a], corners[b], corners[c]);
 }
 
-double Refinement::squared_length(EdgeHandle edge) const {
+double Triangulation::squared_length(EdgeHandle edge) const {
   const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
   const auto& from = mesh_.point(mesh_.from_vertex_handle(h));
   const auto& to = mesh_.point(mesh_.to_vertex_handle(h));
@@ -114,12 +115,12 @@ double Refinement::squared_length(EdgeHandle edge) const {
 
 // 2^20 log2 of the squared length in units of max_edge: lengths that differ by rounding only come out equal, so that a
 // turned polygon is split in the same order.
-std::int64_t Refinement::rounded_length(EdgeHandle edge) const {
+std::int64_t Triangulation::rounded_length(EdgeHandle edge) const {
   return std::llround(0x1p20 * std::log2(squared_length(edge) / max_square_));
 }
 
 // An edge of max_edge but for rounding is not too long.
-void Refinement::remember_if_long(EdgeHandle edge) {
+void Triangulation::remember_if_long(EdgeHandle edge) {
   constexpr double rounding = 1e-9;
   if (mesh_.is_boundary(edge) || squared_length(edge) <= (1 + rounding) * max_square_) return;
   long_edges_.push({rounded_length(edge), edge});
@@ -127,7 +128,7 @@ void Refinement::remember_if_long(EdgeHandle edge) {
 
 // Is the sum of the angles opposite to the edge above 180 degrees, and do the edge's two triangles form a strictly
 // convex quadrilateral? The tolerances keep rounding from flipping an edge to and fro.
-bool Refinement::must_flip(EdgeHandle edge) const {
+bool Triangulation::must_flip(EdgeHandle edge) const {
   constexpr double angle_tolerance = 1e-9;
   constexpr double convex_tolerance = 1e-14;
   const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
@@ -144,7 +145,7 @@ bool Refinement::must_flip(EdgeHandle edge) const {
 }
 
 // Lawson 1977.
-void Refinement::flip_suspects() {
+void Triangulation::flip_suspects() {
   while (!suspects_.empty()) {
     const EdgeHandle edge = suspects_.back();
     suspects_.pop_back();
@@ -159,12 +160,12 @@ void Refinement::flip_suspects() {
   }
 }
 
-void Refinement::make_delaunay() {
+void Triangulation::make_delaunay() {
   for (const EdgeHandle edge : mesh_.edges()) suspects_.push_back(edge);
   flip_suspects();
 }
 
-void Refinement::split(EdgeHandle edge, VertexHandle at) {
+void Triangulation::split(EdgeHandle edge, VertexHandle at) {
   mesh_.split(edge, at);
   for (const auto spoke : mesh_.voh_range(at)) {
     remember_if_long(spoke.edge());
@@ -175,7 +176,7 @@ void Refinement::split(EdgeHandle edge, VertexHandle at) {
 
 // Halves the boundary edges, longest first, until every boundary point is in: an edge from point i to j > i, where the
 // first point also ends the last edge, is cut at (i + j) / 2.
-void Refinement::cut_boundary() {
+void Triangulation::cut_boundary() {
   std::priority_queue<LongEdge> uncut;
   for (const EdgeHandle edge : mesh_.edges()) {
     if (mesh_.is_boundary(edge)) uncut.push({rounded_length(edge), edge});
@@ -198,7 +199,7 @@ void Refinement::cut_boundary() {
 
 // Twice the signed area of the triangle of an edge and a point, a point on the edge but for rounding counting as
 // inside.
-bool Refinement::is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const {
+bool Triangulation::is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const {
   constexpr double rounding = 1e-9;
   const auto& from = mesh_.point(mesh_.from_vertex_handle(edge));
   const auto& to = mesh_.point(mesh_.to_vertex_handle(edge));
@@ -207,7 +208,7 @@ bool Refinement::is_left_of(HalfedgeHandle edge, const Workbench::Point& point) 
 
 // Walks from triangle to triangle towards the point. Where the boundary of a concave polygon is in the way, every
 // triangle is tried.
-FaceHandle Refinement::find_face(FaceHandle start, const Workbench::Point& point) const {
+FaceHandle Triangulation::find_face(FaceHandle start, const Workbench::Point& point) const {
   const auto exit_of = [&](FaceHandle face) {
     for (const auto edge : mesh_.fh_range(face)) {
       if (!is_left_of(edge, point)) return HalfedgeHandle(edge);
@@ -226,7 +227,7 @@ FaceHandle Refinement::find_face(FaceHandle start, const Workbench::Point& point
   return FaceHandle();
 }
 
-void Refinement::insert_rows(const std::vector<std::vector<FlatPoint>>& rows) {
+void Triangulation::insert_rows(const std::vector<std::vector<FlatPoint>>& rows) {
   struct Known {
     double x;
     FaceHandle face;
@@ -250,7 +251,7 @@ void Refinement::insert_rows(const std::vector<std::vector<FlatPoint>>& rows) {
   }
 }
 
-void Refinement::split_long_edges() {
+void Triangulation::split_long_edges() {
   long_edges_ = {};
   for (const EdgeHandle edge : mesh_.edges()) remember_if_long(edge);
   while (!long_edges_.empty()) {
@@ -265,7 +266,7 @@ void Refinement::split_long_edges() {
 }
 
 // Is the triangle no more than a line? It then covers nothing: a corner of the polygon that lies on an edge.
-bool Refinement::is_flat(FaceHandle face) const {
+bool Triangulation::is_flat(FaceHandle face) const {
   constexpr double rounding = 1e-12;
   std::array<Workbench::Point, 3> corners;
   std::size_t k = 0;
@@ -274,7 +275,7 @@ bool Refinement::is_flat(FaceHandle face) const {
   return std::abs(turn(a, b, c)) <= rounding * (dot(a, b, b) + dot(b, c, c) + dot(c, a, a));
 }
 
-PolygonMesh Refinement::result(const Plane& plane) const {
+PolygonMesh Triangulation::result(const OutlinePlane& plane) const {
   PolygonMesh result;
   for (std::size_t v = boundary_count_; v < mesh_.n_vertices(); ++v) {
     const auto& point = mesh_.point(mesh_.vertex_handle(static_cast<unsigned>(v)));
@@ -297,16 +298,16 @@ PolygonMesh Refinement::result(const Plane& plane) const {
 PolygonMesh refine_polygon(const Outline& outline, double max_edge) {
   // Of the lattice to the boundary: of .3 to .7, the one with the fewest patches.
   constexpr double margin = 0.6;
-  const Plane plane = plane_of(outline);
+  const OutlinePlane plane = plane_of(outline);
   std::vector<FlatPoint> corners;
   for (const Point& corner : outline.corners) corners.push_back(plane.flat(corner));
 
-  Refinement refinement(outline, plane, max_edge);
-  refinement.make_delaunay();
-  refinement.cut_boundary();
-  refinement.insert_rows(lattice_rows(corners, plane.spacing, margin * plane.spacing));
-  refinement.split_long_edges();
-  return refinement.result(plane);
+  Triangulation triangulation(outline, plane, max_edge);
+  triangulation.make_delaunay();
+  triangulation.cut_boundary();
+  triangulation.insert_rows(lattice_rows(corners, plane.spacing, margin * plane.spacing));
+  triangulation.split_long_edges();
+  return triangulation.result(plane);
 }
 
 }  // namespace patchlight

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* extension = ".partial";
+constexpr const char* partial_extension = ".partial";
 
 // An unlocked file, or an unlocked folder with our extension.
 void remove_if_left(const fs::path& path) {
@@ -24,7 +24,7 @@ void remove_if_left(const fs::path& path) {
   struct stat status {};
   const bool is_known = fstat(descriptor, &status) == 0;
   const bool is_ours =
-      is_known && (S_ISREG(status.st_mode) || (S_ISDIR(status.st_mode) && path.extension() == extension));
+      is_known && (S_ISREG(status.st_mode) || (S_ISDIR(status.st_mode) && path.extension() == partial_extension));
   if (is_ours && flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, ignored);
   close(descriptor);
 }
@@ -34,7 +34,7 @@ void remove_if_left(const fs::path& path) {
 PartialFolder::PartialFolder(const fs::path& target, const fs::path& known) {
   // A name that is taken is another program's.
   for (int tries = 0; descriptor_ < 0; ++tries) {
-    path_ = temporary_beside(target).replace_extension(extension);
+    path_ = temporary_beside(target).replace_extension(partial_extension);
     if (mkdir(path_.c_str(), 0777) != 0) {
       if (errno == EEXIST && tries < most_tries) continue;
       fail_writing(known, "cannot write into the folder above it", errno);

@@ -10,13 +10,13 @@ namespace {
 
 // Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white: the eyes of the
 // colour-blind tell them apart. 7 colours and 8 markers: the pairs repeat after 56 curves only.
-constexpr std::array<std::array<double, 3>, 7> colours = {{{0, 0.447, 0.698},
-                                                           {0.835, 0.369, 0},
-                                                           {0, 0.620, 0.451},
-                                                           {0.800, 0.475, 0.655},
-                                                           {0.902, 0.624, 0},
-                                                           {0.337, 0.706, 0.914},
-                                                           {0, 0, 0}}};
+constexpr std::array<std::array<double, 3>, 7> curve_colours = {{{0, 0.447, 0.698},
+                                                                 {0.835, 0.369, 0},
+                                                                 {0, 0.620, 0.451},
+                                                                 {0.800, 0.475, 0.655},
+                                                                 {0.902, 0.624, 0},
+                                                                 {0.337, 0.706, 0.914},
+                                                                 {0, 0, 0}}};
 // Every seven curves other dashes: lengths of lines and gaps in pixels.
 const std::array<std::vector<double>, 4> dashes = {{{}, {8, 4}, {2.5, 3}, {10, 3, 2.5, 3}}};
 
@@ -26,10 +26,10 @@ constexpr double marker_distance = 60;
 
 enum class Marker { circle, square, triangle, diamond, turned_triangle, star, pentagon, cross };
 constexpr std::size_t markers = 8;
-static_assert(std::gcd(colours.size(), markers) == 1, "else pairs of colour and marker repeat earlier");
+static_assert(std::gcd(curve_colours.size(), markers) == 1, "else pairs of colour and marker repeat earlier");
 
 void set_colour(cairo_t* cairo, std::size_t curve) {
-  const auto [red, green, blue] = colours[curve % colours.size()];
+  const auto [red, green, blue] = curve_colours[curve % curve_colours.size()];
   cairo_set_source_rgb(cairo, red, green, blue);
 }
 
@@ -78,7 +78,7 @@ double distance(const Pixel& a, const Pixel& b) { return std::hypot(a.x - b.x, a
 
 void draw_line(cairo_t* cairo, const std::vector<Pixel>& points, std::size_t curve) {
   for (const Pixel& point : points) cairo_line_to(cairo, point.x, point.y);
-  const std::vector<double>& pattern = dashes[curve / colours.size() % dashes.size()];
+  const std::vector<double>& pattern = dashes[curve / curve_colours.size() % dashes.size()];
   set_colour(cairo, curve);
   cairo_set_dash(cairo, pattern.data(), static_cast<int>(pattern.size()), 0);
   cairo_set_line_width(cairo, line_width);

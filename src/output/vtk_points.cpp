@@ -100,7 +100,7 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   data.SetActiveScalars(name.c_str());
 }
 
-std::vector<std::string> units(const Readings& readings) {
+std::vector<std::string> units_of(const Readings& readings) {
   std::vector<std::string> all = {"irradiance and its standard error: W/m^2"};
   all.push_back(readings.photometric ? "illuminance and its standard error: lx"
                                      : "weighted_irradiance and its standard error: W/m^2");
@@ -118,7 +118,7 @@ void write_points_for_paraview(const std::filesystem::path& file, std::span<cons
   std::vector<std::string> names;
   for (const SensorGroup& group : groups) names.push_back(group.name);
   shape->GetFieldData()->AddArray(strings("group_names", names));
-  shape->GetFieldData()->AddArray(strings("units", units(readings)));
+  shape->GetFieldData()->AddArray(strings("units", units_of(readings)));
   write_polygons(file, *shape);
 }
 

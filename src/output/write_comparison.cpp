@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 // Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kind = "patchlight comparison of solvers";
-constexpr const char* facts_file = "compare.json";
-constexpr const char* table_file = "compare.csv";
+constexpr const char* comparison_kind = "patchlight comparison of solvers";
+constexpr const char* comparison_facts_file = "compare.json";
+constexpr const char* comparison_table_file = "compare.csv";
 constexpr const char* history_file = "history.csv";
 
 // What the error is drawn against.
@@ -115,7 +115,7 @@ Json run_part(const SolverRun& run, PatchIndex patches) {
 std::string facts(const Scene& scene, const Comparison& comparison, const Provenance& provenance) {
   const Simulation& simulation = comparison.simulation;
   Json json;
-  json["kind"] = kind;
+  json["kind"] = comparison_kind;
   json["version"] = version();
   json["command_line"] = provenance.command_line;
   json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}};
@@ -175,8 +175,8 @@ void write_frames(const fs::path& pvd, const Scene& scene, Simulation simulation
 }
 
 // An earlier result holds compare.json with the right kind, and nothing that was not written with it.
-bool is_earlier_result(const fs::path& folder) {
-  std::vector<std::string> names = {facts_file, table_file, history_file};
+bool is_earlier_comparison(const fs::path& folder) {
+  std::vector<std::string> names = {comparison_facts_file, comparison_table_file, history_file};
   for (const Abscissa& abscissa : abscissas(1)) {
     for (const char* extension : {".svg", ".png"}) names.push_back(std::string(abscissa.file) + extension);
   }
@@ -187,9 +187,9 @@ bool is_earlier_result(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (std::find(names.begin(), names.end(), entry.path().filename().string()) == names.end()) return false;
   }
-  std::ifstream stream(folder / facts_file);
+  std::ifstream stream(folder / comparison_facts_file);
   const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("kind", Json()) == kind;
+  return json.is_object() && json.value("kind", Json()) == comparison_kind;
 }
 
 }  // namespace
@@ -204,8 +204,8 @@ double seconds_of(const SolverRun& run, const Iteration& iteration) {
 
 void write_comparison(const fs::path& folder, const Scene& scene, const Comparison& comparison,
                       const Provenance& provenance, const Observer& observer) {
-  write_whole_folder(folder, is_earlier_result, [&](const fs::path& in) {
-    write_bytes(in / table_file, table(comparison));
+  write_whole_folder(folder, is_earlier_comparison, [&](const fs::path& in) {
+    write_bytes(in / comparison_table_file, table(comparison));
     write_bytes(in / history_file, histories(comparison));
     for (const Abscissa& abscissa : abscissas(comparison.simulation.mesh.size())) draw(in, scene, comparison, abscissa);
     for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
@@ -215,10 +215,10 @@ void write_comparison(const fs::path& folder, const Scene& scene, const Comparis
       if (run.frames.empty()) continue;
       write_frames(in / (name_of(run.contestant) + ".pvd"), scene, comparison.simulation, run, provenance, observer);
     }
-    write_bytes(in / facts_file, facts(scene, comparison, provenance));
+    write_bytes(in / comparison_facts_file, facts(scene, comparison, provenance));
   });
 }
 
-void check_comparison_writable(const fs::path& folder) { check_folder_writable(folder, is_earlier_result); }
+void check_comparison_writable(const fs::path& folder) { check_folder_writable(folder, is_earlier_comparison); }
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "output/append_bytes.h"
+#include "output/json_array.h"
 #include "output/vertex_colours.h"
 #include "output/write_bytes.h"
 
@@ -73,8 +74,6 @@ Buffer buffer_of(const Scene& scene, const Simulation& simulation, const Point& 
   return buffer;
 }
 
-Json array_of(const Eigen::Array3f& values) { return Json::array({values[0], values[1], values[2]}); }
-
 Json description(const Buffer& buffer, const Vector& translation, const Provenance& provenance) {
   const auto view = [](std::size_t offset, std::size_t length, int target) -> Json {
     return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
@@ -100,8 +99,8 @@ Json description(const Buffer& buffer, const Vector& translation, const Provenan
         {"componentType", type_float},
         {"count", buffer.vertices},
         {"type", "VEC3"},
-        {"min", array_of(buffer.lowest)},
-        {"max", array_of(buffer.highest)}},
+        {"min", json_array(buffer.lowest)},
+        {"max", json_array(buffer.highest)}},
        {{"bufferView", 1},
         {"componentType", type_unsigned_short},
         {"normalized", true},

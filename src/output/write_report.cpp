@@ -4,6 +4,7 @@
 
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"
+#include "output/json_array.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
@@ -17,13 +18,6 @@ namespace {
 // Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;
 
-template <class Values>
-Json array_of(const Values& values) {
-  Json array = Json::array();
-  for (const auto& value : values) array.push_back(value);
-  return array;
-}
-
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json json_of(const std::optional<std::size_t>& value) { return value ? Json(*value) : Json(); }
 
@@ -34,7 +28,7 @@ Json input_part(const Scene& scene) {
   part["polygons"] = scene.polygons.size();
   part["materials"] = scene.materials.size();
   part["metres_per_unit"] = scene.metres_per_unit;
-  part["up"] = array_of(scene.up);
+  part["up"] = json_array(scene.up);
   part["notes"] = scene.notes;
   return part;
 }
@@ -153,14 +147,14 @@ Json materials_part(const Scene& scene, const Simulation& simulation) {
     Json part;
     part["name"] = material.name;
     part["area_m2"] = total.area;
-    part["reflectance"] = array_of(material.reflectance);
-    part["exitance_W_m2"] = array_of(material.exitance);
-    part["flux_emitted_W"] = array_of(total.emitted);
-    part["flux_absorbed_W"] = array_of(total.absorbed);
+    part["reflectance"] = json_array(material.reflectance);
+    part["exitance_W_m2"] = json_array(material.exitance);
+    part["flux_emitted_W"] = json_array(total.emitted);
+    part["flux_absorbed_W"] = json_array(total.absorbed);
     // Without patches 0 / 0 and the infinities become null.
-    part["irradiance_min_W_m2"] = array_of(total.lowest);
-    part["irradiance_mean_W_m2"] = array_of(Bands(total.incident / total.area));
-    part["irradiance_max_W_m2"] = array_of(total.highest);
+    part["irradiance_min_W_m2"] = json_array(total.lowest);
+    part["irradiance_mean_W_m2"] = json_array(Bands(total.incident / total.area));
+    part["irradiance_max_W_m2"] = json_array(total.highest);
     parts.push_back(std::move(part));
   }
   return parts;
@@ -192,7 +186,7 @@ Json worst_rows_part(const Scene& scene, const Simulation& simulation) {
                     {"source_polygon", polygon.face},
                     {"group", group_name(scene, polygon.group)},
                     {"material", scene.materials[mesh.material[row.patch]].name},
-                    {"centre_m", array_of(mesh.centroid[row.patch])},
+                    {"centre_m", json_array(mesh.centroid[row.patch])},
                     {"area_m2", simulation.problem.area[row.patch]},
                     {"raw_row_sum", row.row_sum},
                     {"expected", row.expected}});
@@ -229,12 +223,12 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
 // The defect is the row sums' and not known without them.
 Json energy_part(const EnergyBalance& balance, bool row_sums_known) {
   Json part;
-  part["emitted_W"] = array_of(balance.emitted);
-  part["arriving_W"] = array_of(balance.arriving);
-  part["absorbed_W"] = array_of(balance.absorbed);
-  part["escaped_W"] = array_of(balance.escaped);
-  part["lost_at_backs_W"] = array_of(balance.lost_at_backs);
-  part["defect_W"] = row_sums_known ? array_of(balance.defect) : Json();
+  part["emitted_W"] = json_array(balance.emitted);
+  part["arriving_W"] = json_array(balance.arriving);
+  part["absorbed_W"] = json_array(balance.absorbed);
+  part["escaped_W"] = json_array(balance.escaped);
+  part["lost_at_backs_W"] = json_array(balance.lost_at_backs);
+  part["defect_W"] = row_sums_known ? json_array(balance.defect) : Json();
   part["imbalance"] = balance.imbalance;
   return part;
 }

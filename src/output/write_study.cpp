@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 // Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kind = "patchlight study of accuracy and cost";
-constexpr const char* facts_file = "study.json";
-constexpr const char* table_file = "study.csv";
+constexpr const char* study_kind = "patchlight study of accuracy and cost";
+constexpr const char* study_facts_file = "study.json";
+constexpr const char* study_table_file = "study.csv";
 
 // The stages that a setting consists of.
 constexpr Stage stages[] = {Stage::plan,    Stage::mesh,  Stage::form_factors,
@@ -123,7 +123,7 @@ Json price_part(double error, const Study& study) {
 
 std::string facts(const Scene& scene, const Study& study, const Provenance& provenance) {
   Json json;
-  json["kind"] = kind;
+  json["kind"] = study_kind;
   json["version"] = version();
   json["command_line"] = provenance.command_line;
   json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}};
@@ -205,29 +205,29 @@ void draw(const fs::path& folder, const Scene& scene, const Study& study, const 
 }
 
 // An earlier result holds study.json with the right kind, and nothing that was not written with it.
-bool is_earlier_result(const fs::path& folder) {
-  std::vector<std::string> names = {facts_file, table_file};
+bool is_earlier_study(const fs::path& folder) {
+  std::vector<std::string> names = {study_facts_file, study_table_file};
   for (const Picture& picture : pictures()) {
     for (const char* extension : {".svg", ".png"}) names.push_back(std::string(picture.file) + extension);
   }
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (std::find(names.begin(), names.end(), entry.path().filename().string()) == names.end()) return false;
   }
-  std::ifstream stream(folder / facts_file);
+  std::ifstream stream(folder / study_facts_file);
   const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("kind", Json()) == kind;
+  return json.is_object() && json.value("kind", Json()) == study_kind;
 }
 
 }  // namespace
 
 void write_study(const fs::path& folder, const Scene& scene, const Study& study, const Provenance& provenance) {
-  write_whole_folder(folder, is_earlier_result, [&](const fs::path& in) {
-    write_bytes(in / table_file, table(study));
+  write_whole_folder(folder, is_earlier_study, [&](const fs::path& in) {
+    write_bytes(in / study_table_file, table(study));
     for (const Picture& picture : pictures()) draw(in, scene, study, picture);
-    write_bytes(in / facts_file, facts(scene, study, provenance));
+    write_bytes(in / study_facts_file, facts(scene, study, provenance));
   });
 }
 
-void check_study_writable(const fs::path& folder) { check_folder_writable(folder, is_earlier_result); }
+void check_study_writable(const fs::path& folder) { check_folder_writable(folder, is_earlier_study); }
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "patchlight/light/photometry.h"
 #include "patchlight/output/provenance.h"
 
+#include "output/json_array.h"
 #include "output/write_bytes.h"
 
 #include <algorithm>
@@ -16,21 +17,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_faces = 1000;
 
-template <class Values>
-Json array_of(const Values& values) {
-  Json array = Json::array();
-  for (const auto& value : values) array.push_back(value);
-  return array;
-}
-
 Json material_part(const MaterialFacts& facts) {
   Json part;
   part["name"] = facts.material.name;
-  part["reflectance"] = array_of(facts.material.reflectance);
-  part["exitance_W_m2"] = array_of(facts.material.exitance);
+  part["reflectance"] = json_array(facts.material.reflectance);
+  part["exitance_W_m2"] = json_array(facts.material.exitance);
   part["faces"] = facts.faces;
   part["area_m2"] = facts.area;
-  part["flux_W"] = array_of(facts.flux);
+  part["flux_W"] = json_array(facts.flux);
   part["flux_lm"] = luminance(facts.flux);
   return part;
 }
@@ -61,8 +55,8 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   json["sha256"] = scene.sha256;
   json["usable"] = report.usable;
   json["metres_per_unit"] = scene.metres_per_unit;
-  json["bounds_m"] = {array_of(report.bounds.min()), array_of(report.bounds.max())};
-  json["size_m"] = array_of(Vector(report.bounds.sizes()));
+  json["bounds_m"] = {json_array(report.bounds.min()), json_array(report.bounds.max())};
+  json["size_m"] = json_array(Vector(report.bounds.sizes()));
   json["unit_guess"] = report.unit_guess ? Json(report.unit_guess->unit) : Json();
   json["polygons"] = report.polygons;
   json["vertices"] = report.vertices;

@@ -17,7 +17,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 22> units = {
+constexpr std::array<std::array<const char*, 2>, 22> units_of_arrays = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -151,7 +151,7 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   up->SetNumberOfComponents(3);
   facts.AddArray(up);
   // One array per unit: ParaView's information panel shows the value of a string array with one entry.
-  for (const auto& [name, unit] : units) facts.AddArray(strings(std::string("unit_") + name, {unit}));
+  for (const auto& [name, unit] : units_of_arrays) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 constexpr double nearness = 5e-7;
 
 // A lamp that passes through a triangle by less than so many times the nearness only touches its outline.
-constexpr double touching = 8;
+constexpr double touching_lengths = 8;
 
 Box with_margin(const Box& box, double margin) {
   const Vector all = Vector::Constant(margin);
@@ -94,7 +94,7 @@ bool passes_through(const std::array<Point, 3>& lamp, const std::array<Point, 3>
     if ((height[k] < 0) == (height[next] < 0)) continue;
     crossing[ends++] = lamp[k] + height[k] / (height[k] - height[next]) * (lamp[next] - lamp[k]);
   }
-  return length_within(crossing, triangle, normal, near) > touching * near;
+  return length_within(crossing, triangle, normal, near) > touching_lengths * near;
 }
 
 bool passes_through(const LampShape& lamp, const Solid& solid, double near) {

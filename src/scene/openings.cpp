@@ -7,6 +7,7 @@
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
 #include "scene/simple_polygon.h"
+#include "scene/turn.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +28,6 @@ std::vector<Point> points_of(const Scene& scene, const Loop& loop) {
   return points;
 }
 
-// Twice the area of a triangle seen against a unit normal, positive counter-clockwise.
-double turn(const Point& a, const Point& b, const Point& c, const Vector& normal) {
-  return normal.dot((b - a).cross(c - a));
-}
-
 double distance(const Point& point, const Point& from, const Point& to) {
   const Vector edge = to - from;
   const double along = std::clamp(edge.dot(point - from) / edge.squaredNorm(), 0.0, 1.0);
@@ -40,8 +36,8 @@ double distance(const Point& point, const Point& from, const Point& to) {
 
 // True when two segments of one plane cross or come nearer than `near`.
 bool meet(const std::pair<Point, Point>& a, const std::pair<Point, Point>& b, const Vector& normal, double near) {
-  const bool cross = turn(a.first, a.second, b.first, normal) * turn(a.first, a.second, b.second, normal) < 0 &&
-                     turn(b.first, b.second, a.first, normal) * turn(b.first, b.second, a.second, normal) < 0;
+  const bool cross = turn(normal, a.first, a.second, b.first) * turn(normal, a.first, a.second, b.second) < 0 &&
+                     turn(normal, b.first, b.second, a.first) * turn(normal, b.first, b.second, a.second) < 0;
   return cross || distance(a.first, b.first, b.second) <= near || distance(a.second, b.first, b.second) <= near ||
          distance(b.first, a.first, a.second) <= near || distance(b.second, a.first, a.second) <= near;
 }
@@ -63,9 +59,9 @@ bool contains(const std::vector<Point>& outline, const Point& point) {
   const auto triangles = triangulate(outline);
   const Vector normal = area_vector(outline);
   return std::any_of(triangles.begin(), triangles.end(), [&](const auto& t) {
-    return turn(outline[t[0]], outline[t[1]], point, normal) >= 0 &&
-           turn(outline[t[1]], outline[t[2]], point, normal) >= 0 &&
-           turn(outline[t[2]], outline[t[0]], point, normal) >= 0;
+    return turn(normal, outline[t[0]], outline[t[1]], point) >= 0 &&
+           turn(normal, outline[t[1]], outline[t[2]], point) >= 0 &&
+           turn(normal, outline[t[2]], outline[t[0]], point) >= 0;
   });
 }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 // Rounding of an angle; degrees.
-constexpr double tolerance = 1e-6;
+constexpr double angle_tolerance = 1e-6;
 
 struct Angles {
   double vertical = 0;
@@ -33,15 +33,15 @@ double by_symmetry(const PhotometricWeb& web, double angle) {
   const double first = web.horizontal.front();
   const double last = web.horizontal.back();
   if (web.type != PhotometricType::c) return first >= 0 ? std::abs(angle) : angle;
-  const bool about_quarter = first > 90 - tolerance && last > 180;
+  const bool about_quarter = first > 90 - angle_tolerance && last > 180;
   if (about_quarter) {
     // The halves on both sides of the plane through 90 and 270 degrees are alike.
     const double from_quarter = std::abs(angle - 90) <= 180 ? std::abs(angle - 90) : 360 - std::abs(angle - 90);
     return 90 + from_quarter;
   }
-  if (last > 180 + tolerance) return angle < 0 ? angle + 360 : angle;
+  if (last > 180 + angle_tolerance) return angle < 0 ? angle + 360 : angle;
   const double half = std::abs(angle);
-  return last > 90 + tolerance ? half : std::min(half, 180 - half);
+  return last > 90 + angle_tolerance ? half : std::min(half, 180 - half);
 }
 
 // Where an angle lies in ascending ones: between `index` and the next, at `share` of the way.
@@ -52,7 +52,7 @@ struct Position {
 };
 
 Position position_of(const std::vector<double>& angles, double angle) {
-  const bool inside = angle >= angles.front() - tolerance && angle <= angles.back() + tolerance;
+  const bool inside = angle >= angles.front() - angle_tolerance && angle <= angles.back() + angle_tolerance;
   if (angles.size() < 2) return {0, 0, inside};
   const auto above = std::upper_bound(angles.begin() + 1, angles.end() - 1, angle);
   const auto index = static_cast<std::size_t>(above - angles.begin()) - 1;

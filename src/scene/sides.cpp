@@ -96,12 +96,12 @@ SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vect
 }
 
 // How far over a plane a luminaire may lie by rounding, as a share of the extent.
-constexpr double rounding = 1e-12;
+constexpr double plane_rounding = 1e-12;
 
 bool shines_before(const Luminaire& luminaire, const Point& on_plane, const Vector& normal, double extent) {
   const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
   const double height = normal.dot(luminaire.position - on_plane) + (sphere != nullptr ? sphere->radius : 0);
-  return height > rounding * extent;
+  return height > plane_rounding * extent;
 }
 
 // The sides before which nothing lies and no light is: they see nothing. Lamps shine all the same.

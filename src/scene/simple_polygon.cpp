@@ -3,6 +3,7 @@
 #include "patchlight/scene/triangulate.h"
 
 #include "scene/box_row.h"
+#include "scene/turn.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 constexpr double vanishing_area = 1e-6;
 
 // Ten times nearer than check() asks for.
-constexpr double planarity_tolerance = 1e-5;
+constexpr double repaired_planarity = 1e-5;
 
 // Triangles whose area is negative by no more than this share of the squared perimeter have none.
 constexpr double area_rounding = 1e-12;
@@ -45,11 +46,6 @@ struct Crossing {
   std::size_t first, second;
   Point point;
 };
-
-// Twice the signed area of a triangle, positive when it turns left around the normal.
-double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
-  return normal.dot((b - a).cross(c - a));
-}
 
 // Per edge the box around it, seen along the normal and made larger by `margin`.
 std::vector<Box> boxes_of_edges(std::span<const Point> polygon, const Vector& normal, double margin) {
@@ -132,7 +128,7 @@ bool is_narrow(std::span<const Point> polygon, double width) {
 bool is_planar(std::span<const Point> polygon) {
   if (polygon.size() == 3) return true;
   const Vector normal = plane_normal(polygon);
-  const double tolerance = planarity_tolerance * perimeter(polygon);
+  const double tolerance = repaired_planarity * perimeter(polygon);
   return std::all_of(polygon.begin(), polygon.end(),
                      [&](const Point& corner) { return std::abs(normal.dot(corner - polygon[0])) <= tolerance; });
 }

@@ -13,7 +13,7 @@ namespace patchlight {
 namespace {
 
 // How far before its side a point is looked for, as a share of the scene's extent.
-constexpr double offset = 1e-6;
+constexpr double step_off_surface = 1e-6;
 
 // Corners that touch a wall are looked for nearer to the middle by this share.
 constexpr double inset = 1e-4;
@@ -64,7 +64,7 @@ Point inner_point(const std::vector<Point>& corners) {
 
 // No vertex lies before a face as seen from inside. What has its corners in a solid lies in it as a whole only then.
 bool is_convex(const Solid& solid) {
-  const double tolerance = offset * solid.box.diagonal().norm();
+  const double tolerance = step_off_surface * solid.box.diagonal().norm();
   const double outward = solid.fronts_face_inside ? -1 : 1;
   return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const std::array<Point, 3>& of) {
     const Vector normal = outward * (of[1] - of[0]).cross(of[2] - of[0]).normalized();
@@ -128,7 +128,7 @@ bool holds(const Solid& solid, const Point& point) {
 }
 
 Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
-  return (side == Side::front ? offset : -offset) * extent * front_normal(scene, polygon);
+  return (side == Side::front ? step_off_surface : -step_off_surface) * extent * front_normal(scene, polygon);
 }
 
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {

@@ -1,6 +1,7 @@
 #include "patchlight/scene/triangulate.h"
 
 #include "scene/box_row.h"
+#include "scene/turn.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +13,9 @@
 namespace patchlight {
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
+using IndexTriangle = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
-
-// Twice the signed area of a triangle, positive when it turns like the polygon.
-double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
-  return normal.dot((b - a).cross(c - a));
-}
 
 bool contains(const Vector& normal, const Point& a, const Point& b, const Point& c, const Point& x) {
   return turn(normal, a, b, x) >= 0 && turn(normal, b, c, x) >= 0 && turn(normal, c, a, x) >= 0;
@@ -49,7 +45,7 @@ bool hinders(const Corner& other, const Corner& corner, const Vector& normal) {
 }
 
 // Of few corners all are looked at again and again.
-std::vector<Triangle> triangles_of_few(std::span<const Point> polygon) {
+std::vector<IndexTriangle> triangles_of_few(std::span<const Point> polygon) {
   const Vector normal = area_vector(polygon);
   std::vector<std::uint32_t> left(polygon.size());
   std::iota(left.begin(), left.end(), 0U);
@@ -68,7 +64,7 @@ std::vector<Triangle> triangles_of_few(std::span<const Point> polygon) {
     }
     return true;
   };
-  std::vector<Triangle> triangles;
+  std::vector<IndexTriangle> triangles;
   while (left.size() >= 3) {
     std::size_t ear = 0;
     while (ear < left.size() && left.size() > 3 && !is_ear(ear)) ++ear;
@@ -92,7 +88,7 @@ class EarClipping {
  public:
   explicit EarClipping(std::span<const Point> polygon);
 
-  std::vector<Triangle> triangles();
+  std::vector<IndexTriangle> triangles();
 
  private:
   std::optional<std::uint32_t> hindrance(std::uint32_t corner) const;
@@ -102,7 +98,7 @@ class EarClipping {
   void look_at(std::uint32_t corner);
   void look_at_neighbour(std::uint32_t corner);
   std::uint32_t flattest() const;
-  Triangle cut_off(std::uint32_t corner);
+  IndexTriangle cut_off(std::uint32_t corner);
 
   std::span<const Point> polygon_;
   Vector normal_;
@@ -225,7 +221,7 @@ std::uint32_t EarClipping::flattest() const {
   return best;
 }
 
-Triangle EarClipping::cut_off(std::uint32_t corner) {
+IndexTriangle EarClipping::cut_off(std::uint32_t corner) {
   const std::uint32_t before = before_[corner];
   const std::uint32_t after = after_[corner];
   is_left_[corner] = 0;
@@ -241,8 +237,8 @@ Triangle EarClipping::cut_off(std::uint32_t corner) {
   return {before, corner, after};
 }
 
-std::vector<Triangle> EarClipping::triangles() {
-  std::vector<Triangle> triangles;
+std::vector<IndexTriangle> EarClipping::triangles() {
+  std::vector<IndexTriangle> triangles;
   const std::size_t n = polygon_.size();
   for (std::size_t left = n; left > 3; --left) {
     while (first_ear_ < n && !is_ear_[first_ear_]) ++first_ear_;
@@ -264,7 +260,7 @@ bool is_convex(std::span<const Point> polygon) {
   return true;
 }
 
-std::vector<Triangle> triangulate(std::span<const Point> polygon) {
+std::vector<IndexTriangle> triangulate(std::span<const Point> polygon) {
   if (polygon.size() == 4 && is_convex(polygon)) {
     const bool shorter_02 = (polygon[2] - polygon[0]).squaredNorm() <= (polygon[3] - polygon[1]).squaredNorm();
     if (shorter_02) return {{0, 1, 2}, {0, 2, 3}};

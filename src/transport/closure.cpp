@@ -4,6 +4,7 @@
 #include "patchlight/base/parallel.h"
 
 #include "transport/narrow.h"
+#include "transport/tile_edge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@
 namespace patchlight {
 namespace {
 
-constexpr PatchIndex edge = ExchangeAreas::edge;
-
 // Relative standard error of an entry of which nothing is known, for weighing entries against a measured lost share.
 // docs/theory.md section 6.
 constexpr double entry_error = 0.02;
@@ -24,7 +23,7 @@ constexpr double entry_error = 0.02;
 constexpr double least_error = 1e-4;
 
 // Partial sums are kept per stripe of blocks; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex stripes = 8;
+constexpr PatchIndex block_stripes = 8;
 
 // Row sums of a closed scene are met to this share of the area; narrowing to float then loses more than that.
 constexpr double row_tolerance = 1e-10;
@@ -56,9 +55,9 @@ template <typename Use>
 void for_entries(const ExchangeAreas& S, PatchIndex I, Use use) {
   for (PatchIndex J = I; J < S.blocks(); ++J) {
     const std::span<const float> tile = S.tile(I, J);
-    for (PatchIndex k = 0; k < edge * edge; ++k) {
-      const PatchIndex i = I * edge + k / edge;
-      const PatchIndex j = J * edge + k % edge;
+    for (PatchIndex k = 0; k < tile_edge * tile_edge; ++k) {
+      const PatchIndex i = I * tile_edge + k / tile_edge;
+      const PatchIndex j = J * tile_edge + k % tile_edge;
       if (i < j && tile[k] != 0) use(i, j, static_cast<double>(tile[k]));
     }
   }
@@ -103,10 +102,10 @@ double EntryWeights::standard_error(PatchIndex i, PatchIndex j, double entry) co
 
 Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
   if (known_ == nullptr) return entry_error * entry_error * multiply(S_, column(x), 2).matrix();
-  std::vector<Eigen::VectorXd> partial(stripes, Eigen::VectorXd::Zero(x.size()));
-  parallel_for(stripes, [&](std::size_t stripe) {
+  std::vector<Eigen::VectorXd> partial(block_stripes, Eigen::VectorXd::Zero(x.size()));
+  parallel_for(block_stripes, [&](std::size_t stripe) {
     Eigen::VectorXd& sum = partial[stripe];
-    for (auto I = static_cast<PatchIndex>(stripe); I < S_.blocks(); I += stripes) {
+    for (auto I = static_cast<PatchIndex>(stripe); I < S_.blocks(); I += block_stripes) {
       for_entries(S_, I, [&](PatchIndex i, PatchIndex j, double entry) {
         const double weight = at(i, j, entry);
         sum[i] += weight * x[j];
@@ -114,7 +113,7 @@ Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
       });
     }
   });
-  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
+  for (std::size_t stripe = 1; stripe < block_stripes; ++stripe) partial[0] += partial[stripe];
   return partial[0];
 }
 
@@ -160,9 +159,10 @@ ExchangeAreas changed(ExchangeAreas S, const Change& value) {
     const auto I = static_cast<PatchIndex>(row);
     for (PatchIndex J = I; J < blocks; ++J) {
       const std::span<float> tile = S.tile(I, J);
-      for (PatchIndex k = 0; k < edge * edge; ++k) {
+      for (PatchIndex k = 0; k < tile_edge * tile_edge; ++k) {
         if (tile[k] == 0) continue;
-        tile[k] = narrow_toward_zero(value(I * edge + k / edge, J * edge + k % edge, static_cast<double>(tile[k])));
+        tile[k] = narrow_toward_zero(
+            value(I * tile_edge + k / tile_edge, J * tile_edge + k % tile_edge, static_cast<double>(tile[k])));
       }
     }
   });

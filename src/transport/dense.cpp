@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "transport/tile_edge.h"
 #include "transport/tile_kernel.h"
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 namespace patchlight {
 namespace {
 
-constexpr PatchIndex edge = ExchangeAreas::edge;
-
 // Partial sums of a gather are kept per stripe of neighbouring blocks, a fixed number.
-constexpr PatchIndex stripes = 8;
+constexpr PatchIndex gather_stripes = 8;
 
 // The first of `count` blocks that belongs to a stripe.
-PatchIndex first_of(std::size_t stripe, PatchIndex count) { return static_cast<PatchIndex>(stripe * count / stripes); }
+PatchIndex first_of(std::size_t stripe, PatchIndex count) {
+  return static_cast<PatchIndex>(stripe * count / gather_stripes);
+}
 
 class DenseTransport : public RowTransport {
  public:
@@ -37,7 +38,7 @@ class DenseTransport : public RowTransport {
   Sweep sweep(Sweep from, const Relax& there, const Relax& back) const override;
 
  private:
-  PatchRange range_of(PatchIndex I) const { return {I * edge, std::min(size(), (I + 1) * edge)}; }
+  PatchRange range_of(PatchIndex I) const { return {I * tile_edge, std::min(size(), (I + 1) * tile_edge)}; }
   Field gather_row(PatchIndex I, const PackedField& b) const;
   Field push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const;
   Field irradiance_of(PatchIndex I, const Field& sum, const PackedField& b) const;
@@ -51,8 +52,8 @@ class DenseTransport : public RowTransport {
 // sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones.
 Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
   const PatchIndex count = S_.blocks() - I;
-  PackedField partial(stripes, b.bands);
-  parallel_for(stripes, [&](std::size_t stripe) {
+  PackedField partial(gather_stripes, b.bands);
+  parallel_for(gather_stripes, [&](std::size_t stripe) {
     RowSums sums(b.bands);
     for (PatchIndex J = I + first_of(stripe, count); J < I + first_of(stripe + 1, count); ++J) {
       gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), sums.lanes.data());
@@ -60,7 +61,7 @@ Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
     add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
   const PatchRange range = range_of(I);
-  return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
+  return summed(std::move(partial), gather_stripes).rows(0, range.end - range.begin);
 }
 
 // Adds what the patches of block I send to those of all later blocks, and gathers for the next block: the threads meet
@@ -68,8 +69,8 @@ Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
 Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const {
   const PatchIndex next = I + 1;
   const PatchIndex count = S_.blocks() - next;
-  PackedField partial(stripes, b.bands);
-  parallel_for(stripes, [&](std::size_t stripe) {
+  PackedField partial(gather_stripes, b.bands);
+  parallel_for(gather_stripes, [&](std::size_t stripe) {
     RowSums sums(b.bands);
     for (PatchIndex J = next + first_of(stripe, count); J < next + first_of(stripe + 1, count); ++J) {
       push_tile(S_.tile(I, J).data(), b.bands, b.block(I), pushed.block(J));
@@ -79,7 +80,7 @@ Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, P
   });
   if (next == S_.blocks()) return Field(0, b.bands);
   const PatchRange range = range_of(next);
-  return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
+  return summed(std::move(partial), gather_stripes).rows(0, range.end - range.begin);
 }
 
 // H_i = (sum + d_i B_i) / A_i for the patches of block I.
@@ -126,8 +127,8 @@ Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) c
 
 Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) const {
   assert(receivers.begin <= receivers.end && receivers.end <= size());
-  const PatchIndex first = receivers.begin / edge;
-  const PatchIndex blocks = receivers.begin < receivers.end ? (receivers.end - 1) / edge + 1 - first : 0;
+  const PatchIndex first = receivers.begin / tile_edge;
+  const PatchIndex blocks = receivers.begin < receivers.end ? (receivers.end - 1) / tile_edge + 1 - first : 0;
   const PackedField b(radiosity, S_.blocks());
   PackedField sum(blocks, b.bands);
   parallel_for(blocks, [&](std::size_t block) {
@@ -146,7 +147,7 @@ Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) c
   const Eigen::Index rows = receivers.end - receivers.begin;
   const Field own =
       radiosity.middleRows(receivers.begin, rows).colwise() * remainder_.segment(receivers.begin, rows).array();
-  return (sum.rows(receivers.begin % edge, rows) + own).colwise() / area_.segment(receivers.begin, rows).array();
+  return (sum.rows(receivers.begin % tile_edge, rows) + own).colwise() / area_.segment(receivers.begin, rows).array();
 }
 
 Field DenseTransport::shoot(PatchRange sources, const FieldView& radiosity) const {
@@ -154,14 +155,15 @@ Field DenseTransport::shoot(PatchRange sources, const FieldView& radiosity) cons
   Field irradiance = Field::Zero(size(), radiosity.cols());
   parallel_for(S_.blocks(), [&](std::size_t block) {
     const auto I = static_cast<PatchIndex>(block);
-    const PatchIndex end = std::min(S_.size(), (I + 1) * edge);
+    const PatchIndex end = std::min(S_.size(), (I + 1) * tile_edge);
     for (PatchIndex j = sources.begin; j < sources.end; ++j) {
-      const PatchIndex J = j / edge;
+      const PatchIndex J = j / tile_edge;
       const std::span<const float> tile = I <= J ? S_.tile(I, J) : S_.tile(J, I);
-      const std::size_t first = I <= J ? j % edge : static_cast<std::size_t>(j % edge) * edge;
-      const std::size_t step = I <= J ? edge : 1;
-      for (PatchIndex i = I * edge; i < end; ++i) {
-        irradiance.row(i) += static_cast<double>(tile[first + step * (i % edge)]) * radiosity.row(j - sources.begin);
+      const std::size_t first = I <= J ? j % tile_edge : static_cast<std::size_t>(j % tile_edge) * tile_edge;
+      const std::size_t step = I <= J ? tile_edge : 1;
+      for (PatchIndex i = I * tile_edge; i < end; ++i) {
+        irradiance.row(i) +=
+            static_cast<double>(tile[first + step * (i % tile_edge)]) * radiosity.row(j - sources.begin);
       }
     }
   });

@@ -16,8 +16,7 @@ namespace {
 // How many rays arrived at which patch.
 using Arrivals = std::map<PatchIndex, std::uint32_t>;
 
-// Rays traced at once.
-constexpr std::size_t batch = 4096;
+constexpr std::size_t rays_at_once = 4096;
 
 struct Hemisphere {
   const PatchMesh& mesh;
@@ -39,7 +38,7 @@ Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<doub
     if (!occluder.is_covered(mesh.polygon[from], mesh.side[from], start)) {
       rays.push_back({start, frame * square_to_cosine_hemisphere(s, t), mesh.polygon[from]});
     }
-    if (rays.size() < batch && k + 1 < points.size()) continue;
+    if (rays.size() < rays_at_once && k + 1 < points.size()) continue;
     for (const auto& hit : occluder.first_held_hits(rays, hash({seed, k}))) {
       const auto patch = hit ? patches.patch_at(hit->polygon, hit->side, hit->point) : std::nullopt;
       if (patch) ++arrived[*patch];

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
+#include "transport/tile_edge.h"
 #include "transport/tile_kernel.h"
 
 #include <algorithm>
@@ -12,13 +13,11 @@
 namespace patchlight {
 namespace {
 
-constexpr PatchIndex edge = ExchangeAreas::edge;
-
 // Partial sums are kept per stripe of block rows; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex stripes = 8;
+constexpr PatchIndex product_stripes = 8;
 
-std::array<float, std::size_t{edge} * edge> squared(std::span<const float> tile) {
-  std::array<float, std::size_t{edge} * edge> squares;
+std::array<float, std::size_t{tile_edge} * tile_edge> squared(std::span<const float> tile) {
+  std::array<float, std::size_t{tile_edge} * tile_edge> squares;
   for (std::size_t k = 0; k < squares.size(); ++k) squares[k] = tile[k] * tile[k];
   return squares;
 }
@@ -52,50 +51,50 @@ void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, in
 ExchangeAreas::ExchangeAreas(PatchIndex size) : size_(size), entries_(bytes(size) / sizeof(float), 0.0F) {}
 
 std::size_t ExchangeAreas::bytes(PatchIndex size) {
-  const std::size_t n = (size + edge - 1) / edge;
-  return n * (n + 1) / 2 * edge * edge * sizeof(float);
+  const std::size_t n = (size + tile_edge - 1) / tile_edge;
+  return n * (n + 1) / 2 * tile_edge * tile_edge * sizeof(float);
 }
 
 std::size_t ExchangeAreas::offset(PatchIndex I, PatchIndex J) const {
   assert(I <= J && J < blocks());
   const std::size_t n = blocks();
-  return (I * n - static_cast<std::size_t>(I) * (I + 1) / 2 + J) * edge * edge;
+  return (I * n - static_cast<std::size_t>(I) * (I + 1) / 2 + J) * tile_edge * tile_edge;
 }
 
 std::span<float> ExchangeAreas::tile(PatchIndex I, PatchIndex J) {
-  return {entries_.data() + offset(I, J), static_cast<std::size_t>(edge) * edge};
+  return {entries_.data() + offset(I, J), static_cast<std::size_t>(tile_edge) * tile_edge};
 }
 
 std::span<const float> ExchangeAreas::tile(PatchIndex I, PatchIndex J) const {
-  return {entries_.data() + offset(I, J), static_cast<std::size_t>(edge) * edge};
+  return {entries_.data() + offset(I, J), static_cast<std::size_t>(tile_edge) * tile_edge};
 }
 
 float ExchangeAreas::at(PatchIndex i, PatchIndex j) const {
-  if (i / edge > j / edge) std::swap(i, j);
-  return tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge];
+  if (i / tile_edge > j / tile_edge) std::swap(i, j);
+  return tile(i / tile_edge, j / tile_edge)[static_cast<std::size_t>(i % tile_edge) * tile_edge + j % tile_edge];
 }
 
 void ExchangeAreas::set(PatchIndex i, PatchIndex j, float value) {
-  if (i / edge > j / edge) std::swap(i, j);
-  const std::span<float> entries = tile(i / edge, j / edge);
-  const std::size_t r = i % edge;
-  const std::size_t c = j % edge;
-  entries[r * edge + c] = value;
-  if (i / edge == j / edge) entries[c * edge + r] = value;
+  if (i / tile_edge > j / tile_edge) std::swap(i, j);
+  const std::span<float> entries = tile(i / tile_edge, j / tile_edge);
+  const std::size_t r = i % tile_edge;
+  const std::size_t c = j % tile_edge;
+  entries[r * tile_edge + c] = value;
+  if (i / tile_edge == j / tile_edge) entries[c * tile_edge + r] = value;
 }
 
 Field multiply(const ExchangeAreas& S, const FieldView& B, int power) {
   assert(B.rows() == static_cast<Eigen::Index>(S.size()) && (power == 1 || power == 2));
   const PackedField b(B, S.blocks());
 
-  // Stripe s takes the block rows s, s + stripes, ...: long and short rows spread evenly.
-  PackedField partial(stripes * S.blocks(), b.bands);
-  parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto I = static_cast<PatchIndex>(stripe); I < S.blocks(); I += stripes) {
+  // Stripe s takes the block rows s, s + product_stripes, ...: long and short rows spread evenly.
+  PackedField partial(product_stripes * S.blocks(), b.bands);
+  parallel_for(product_stripes, [&](std::size_t stripe) {
+    for (auto I = static_cast<PatchIndex>(stripe); I < S.blocks(); I += product_stripes) {
       multiply_row(S, I, b, power, {partial, static_cast<PatchIndex>(stripe) * S.blocks()});
     }
   });
-  return summed(std::move(partial), stripes).rows(0, B.rows());
+  return summed(std::move(partial), product_stripes).rows(0, B.rows());
 }
 
 Eigen::VectorXd row_sums(const ExchangeAreas& S) {

@@ -12,7 +12,7 @@ namespace patchlight {
 namespace {
 
 // Partial sums are kept per stripe of parents; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex stripes = 16;
+constexpr PatchIndex parent_stripes = 16;
 
 struct Effects {
   const ExchangeAreas& S;
@@ -61,9 +61,9 @@ Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh,
                                  const FieldView& weight) {
   const PatchIndex count = mesh.parents.size();
   const Effects effects{S, difference, weight};
-  std::vector<Eigen::VectorXd> partial(stripes, Eigen::VectorXd::Zero(count));
-  parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto G = static_cast<PatchIndex>(stripe); G < count; G += stripes) {
+  std::vector<Eigen::VectorXd> partial(parent_stripes, Eigen::VectorXd::Zero(count));
+  parallel_for(parent_stripes, [&](std::size_t stripe) {
+    for (auto G = static_cast<PatchIndex>(stripe); G < count; G += parent_stripes) {
       const PatchRange g = mesh.patches_of(G);
       for (PatchIndex H = 0; H < G; ++H) {
         const PatchRange h = mesh.patches_of(H);
@@ -72,7 +72,7 @@ Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh,
       }
     }
   });
-  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
+  for (std::size_t stripe = 1; stripe < parent_stripes; ++stripe) partial[0] += partial[stripe];
   return partial[0];
 }
 

@@ -13,8 +13,7 @@
 namespace patchlight {
 namespace {
 
-// Shadow rays traced at once.
-constexpr std::size_t batch = 4096;
+constexpr std::size_t shadow_rays_at_once = 4096;
 
 struct PairLoop {
   const PatchMesh& mesh;
@@ -89,7 +88,7 @@ AssemblyCounts PairLoop::fill_row(PatchIndex i, ExchangeAreas& S) const {
     if (mesh.polygon[i] == mesh.polygon[j] || orientation(shapes[i], shapes[j]) == Orientation::averted) continue;
     counts.near_pairs += is_near(shapes[i], shapes[j]) ? 1 : 0;
     pairs.push_back(draw(i, j));
-    if (pairs.size() * pairs.front().samples.size() < batch) continue;
+    if (pairs.size() * pairs.front().samples.size() < shadow_rays_at_once) continue;
     counts += trace(pairs, S);
     pairs.clear();
   }

@@ -12,7 +12,7 @@ namespace patchlight {
 namespace {
 
 // Partial sums are kept per stripe of rows; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex stripes = 8;
+constexpr PatchIndex row_stripes = 8;
 
 // S_ij without occluders, from centroid to centroid.
 double unoccluded(const PatchMesh& mesh, const Eigen::VectorXd& area, PatchIndex i, PatchIndex j) {
@@ -87,11 +87,11 @@ void Drawer::add_variances(PatchIndex j, const FieldView& x, Field& sum) const {
 // What add(j, sum) adds for all rows j, in `columns` columns.
 template <typename Add>
 Field sum_over_rows(std::size_t size, Eigen::Index columns, Add add) {
-  std::vector<Field> partial(stripes, Field::Zero(static_cast<Eigen::Index>(size), columns));
-  parallel_for(stripes, [&](std::size_t stripe) {
-    for (auto j = static_cast<PatchIndex>(stripe); j < size; j += stripes) add(j, partial[stripe]);
+  std::vector<Field> partial(row_stripes, Field::Zero(static_cast<Eigen::Index>(size), columns));
+  parallel_for(row_stripes, [&](std::size_t stripe) {
+    for (auto j = static_cast<PatchIndex>(stripe); j < size; j += row_stripes) add(j, partial[stripe]);
   });
-  for (std::size_t stripe = 1; stripe < stripes; ++stripe) partial[0] += partial[stripe];
+  for (std::size_t stripe = 1; stripe < row_stripes; ++stripe) partial[0] += partial[stripe];
   return partial[0];
 }
 

@@ -1,6 +1,7 @@
 #include "transport/tile_kernel.h"
 
 #include "base/target_clones.h"
+#include "transport/tile_edge.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@
 namespace patchlight {
 namespace {
 
-constexpr std::size_t edge = ExchangeAreas::edge;
 constexpr std::size_t width = 8;  // patches side by side: doubles of an AVX-512 register
 
 // The compiler makes of these what the instruction set has.
@@ -30,7 +30,7 @@ struct BandRange {
 template <std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const TileProduct product) {
   constexpr std::size_t rows = 4;
-  for (std::size_t r = 0; r < edge; r += rows) {
+  for (std::size_t r = 0; r < tile_edge; r += rows) {
     Doubles sums[rows][bands];
     const std::size_t place_sums = (r * range.of + range.first) * width;
     if constexpr (gather) {
@@ -52,17 +52,17 @@ PATCHLIGHT_INLINE void multiply(const float* tile, const BandRange range, const 
       }
     }
     // The rows in double, and those of later on their way into the cache, be it beyond the last tile.
-    alignas(64) double wide[rows * edge];
-    const auto later = reinterpret_cast<std::uintptr_t>(tile + r * edge) + ahead * sizeof(float);
-    for (std::size_t line = 0; line < rows * edge * sizeof(float); line += 64) {
+    alignas(64) double wide[rows * tile_edge];
+    const auto later = reinterpret_cast<std::uintptr_t>(tile + r * tile_edge) + ahead * sizeof(float);
+    for (std::size_t line = 0; line < rows * tile_edge * sizeof(float); line += 64) {
       __builtin_prefetch(reinterpret_cast<const void*>(later + line));
     }
-    for (std::size_t c = 0; c < rows * edge; ++c) wide[c] = static_cast<double>(tile[r * edge + c]);
+    for (std::size_t c = 0; c < rows * tile_edge; ++c) wide[c] = static_cast<double>(tile[r * tile_edge + c]);
 
-    for (std::size_t c = 0; c < edge; c += width) {
+    for (std::size_t c = 0; c < tile_edge; c += width) {
       const std::size_t place = c * range.of + range.first * width;
       Doubles s[rows];
-      for (std::size_t k = 0; k < rows; ++k) s[k] = *reinterpret_cast<const Doubles*>(&wide[k * edge + c]);
+      for (std::size_t k = 0; k < rows; ++k) s[k] = *reinterpret_cast<const Doubles*>(&wide[k * tile_edge + c]);
       for (std::size_t band = 0; band < bands; ++band) {
         if constexpr (gather) {
           const Doubles from = *reinterpret_cast<const Doubles*>(product.b_J + place + band * width);
@@ -113,11 +113,11 @@ void multiply_tile(const float* tile, int bands, const TileProduct& product) {
   for_bands<true, true>(tile, bands, product);
 }
 
-RowSums::RowSums(int bands) : lanes(edge * static_cast<std::size_t>(bands) * width, 0.0) {}
+RowSums::RowSums(int bands) : lanes(tile_edge * static_cast<std::size_t>(bands) * width, 0.0) {}
 
 void add_sums(const RowSums& sums, int bands, double* out_I) {
   const auto of = static_cast<std::size_t>(bands);
-  for (std::size_t r = 0; r < edge; ++r) {
+  for (std::size_t r = 0; r < tile_edge; ++r) {
     for (std::size_t band = 0; band < of; ++band) {
       const double* const v = &sums.lanes[(r * of + band) * width];
       out_I[(r / width * of + band) * width + r % width] +=
@@ -137,7 +137,7 @@ PackedField summed(PackedField parts, PatchIndex count) {
 }
 
 PackedField::PackedField(PatchIndex blocks, int bands_of_each)
-    : bands(bands_of_each), values(static_cast<std::size_t>(blocks) * edge * bands_of_each, 0.0) {}
+    : bands(bands_of_each), values(static_cast<std::size_t>(blocks) * tile_edge * bands_of_each, 0.0) {}
 
 PackedField::PackedField(const FieldView& field, PatchIndex blocks)
     : PackedField(blocks, static_cast<int>(field.cols())) {

@@ -13,9 +13,7 @@
 namespace patchlight::validation {
 namespace {
 
-// What unoccluded_exchange_area() and contour_exchange_area() promise of the relative error of one pair; the cases have
-// no far patches at grazing angles.
-constexpr double quadrature_error = 1e-3;
+// What contour_exchange_area() promises of the relative error of one pair.
 constexpr double closed_form_error = 1e-6;
 // Entries are floats, narrowed toward zero.
 constexpr double float_error = 0x1p-23;

@@ -7,6 +7,10 @@
 
 namespace patchlight::validation {
 
+/// What unoccluded_exchange_area() promises of the relative error of one pair; the cases have no far patches at grazing
+/// angles.
+inline constexpr double quadrature_error = 1e-3;
+
 /// A scene repaired, checked and cut into patches, with its exchange areas before closure, summed by group.
 struct GroupExchange {
   Eigen::MatrixXd exchange_area;  ///< m^2

@@ -83,7 +83,6 @@ ValidationCase furnace_case(double reflectance) {
 // Where nothing reflects, the floor's irradiance below a ceiling of 1 W/m^2 is the form factor, after closure. Closure
 // changes no row sum by more than its defect before.
 Measured measure_black_cube(const Observer& observer) {
-  constexpr double quadrature_error = 1e-3;  // promised by unoccluded_exchange_area() where no cosine is small
   const Solved black = solved(cube(0, 0, true), 0.125, observer);
   const double defect = (black.simulation.transport.raw_row_sum.array() - 1).abs().maxCoeff();
   const double form_factor = mean_irradiance(black, 0);

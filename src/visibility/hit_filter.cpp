@@ -11,11 +11,9 @@ namespace {
 // in_plane_tolerance for rays whose ends are given in double.
 constexpr double on_plane_tolerance = 1e-9;
 
-constexpr unsigned packet_size = ShadowPacket::size;
-
 // A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
 // ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
-bool separates(const Plane& plane, const ExactRay& ray, double tolerance) {
+bool separates(const TrianglePlane& plane, const ExactRay& ray, double tolerance) {
   if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);
@@ -41,7 +39,7 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
 }
 
 // Where the ray meets the plane, does another polygon lie over it?
-bool is_covered(const Plane& plane, const ExactRay& ray, const CoveredPlaces& places) {
+bool is_covered(const TrianglePlane& plane, const ExactRay& ray, const CoveredPlaces& places) {
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);
   const Point place = ray.from + from / (from - to) * (ray.to - ray.from);
@@ -59,7 +57,7 @@ ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
 PATCHLIGHT_TARGET_CLONES
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
+  const auto* planes = static_cast<const TrianglePlane*>(arguments->geometryUserPtr);
   std::array<unsigned char, packet_size> clear{};
   if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
   for (unsigned k = 0; k < arguments->N; ++k) {
@@ -83,12 +81,12 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
 
 void list_crossed(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* planes = static_cast<const Plane*>(arguments->geometryUserPtr);
+  const auto* planes = static_cast<const TrianglePlane*>(arguments->geometryUserPtr);
   for (unsigned k = 0; k < arguments->N; ++k) {
     if (arguments->valid[k] != -1) continue;
     arguments->valid[k] = 0;
     const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
-    const Plane& plane = planes[RTCHitN_primID(arguments->hit, arguments->N, k)];
+    const TrianglePlane& plane = planes[RTCHitN_primID(arguments->hit, arguments->N, k)];
     const bool crosses = context->packet != nullptr
                              ? separates(plane, exact_ray(*context->packet, ray), in_plane_tolerance)
                              : separates(plane, context->rays[ray], on_plane_tolerance);

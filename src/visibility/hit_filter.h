@@ -13,13 +13,16 @@
 namespace patchlight {
 
 /// The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
-struct Plane {
+struct TrianglePlane {
   Vector normal;
   double offset = 0;
   PolygonIndex polygon = no_polygon;
 
   double height(const Point& point) const { return normal.dot(point) - offset; }
 };
+
+/// Rays of a packet, as Embree counts.
+inline constexpr unsigned packet_size = ShadowPacket::size;
 
 /// One ray in double: what decides whether a hit that Embree finds in single precision is one.
 struct ExactRay {

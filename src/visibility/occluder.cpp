@@ -27,8 +27,6 @@ namespace {
 // Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
 constexpr double beyond = 1e6;
 
-constexpr unsigned packet_size = ShadowPacket::size;
-
 void fail_on_error(void*, RTCError code, const char* message) {
   if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw std::runtime_error(std::string("Embree: ") + message);
@@ -87,7 +85,7 @@ std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& sce
 // The triangles of some polygons, ready to be traced.
 struct TriangleScene {
   RTCScene scene = nullptr;
-  std::vector<Plane> planes;  // per triangle
+  std::vector<TrianglePlane> planes;  // per triangle
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -380,7 +378,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 
     // The hit in double: where the ray meets the triangle's plane, unless it grazes.
-    const Plane& plane = tracer_->everything.planes[query.hit.primID];
+    const TrianglePlane& plane = tracer_->everything.planes[query.hit.primID];
     const double cosine = plane.normal.dot(ray.direction);
     const bool grazes = std::abs(cosine) < 1e-3;
     const double distance =
