@@ -96,8 +96,7 @@ std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, 
   }
   const double bands = std::max<double>(1, static_cast<double>((unoccluded > 0).count()));
   const Spectrum weight = (unoccluded > 0).select(1 / (bands * unoccluded), 0.0);
-  for (Source& source : found)
-    source.light_share = source.form_factor * (radiosity.row(source.patch) * weight.transpose()).sum();
+  for (Source& source : found) source.light_share = source.form_factor * (radiosity.row(source.patch) * weight).sum();
   return found;
 }
 
