@@ -4,8 +4,8 @@
 usage: scripts/mutate.py TOOL [--runs N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...] [--keep FOLDER]
 
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, brackets piled
-up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s, or
-returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
+up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s of the
+processor, or returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
 with sanitizers. Run number k of a seed is always the same. Bad inputs are kept in FOLDER (default: mutate_found).
 """
 import argparse
@@ -15,6 +15,7 @@ import pathlib
 import random
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -27,7 +28,11 @@ sys.path.insert(0, str(TESTS / "cli"))
 import room  # noqa: E402  the folder of the tests is no package
 
 DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 130}
-PATIENCE = 20  # seconds
+PATIENCE = 20  # seconds of the processor
+WAITING = 600  # seconds by the clock, for a run that waits for what never comes; the machine may be busy
+# Sanitizers end a run with exit code 1 by default, which is documented.
+ENVIRONMENT = {"ASAN_OPTIONS": "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1",
+               "UBSAN_OPTIONS": "abort_on_error=1:print_stacktrace=1", **os.environ}
 
 # With a group and a picture.
 ROOM = room.ROOM.replace("usemtl white", "g walls\nusemtl white")
@@ -194,12 +199,14 @@ def run_one(tool, cases, kinds, seed, number, keep):
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(damaged(data, chance) if file == name else data)
         try:
-            done = subprocess.run([tool, *words, *([] if words[0] == "check" else ["--threads", "1"])], cwd=folder, check=False,
-                                  stdin=subprocess.DEVNULL, capture_output=True, timeout=PATIENCE)
+            done = subprocess.run(["prlimit", f"--cpu={PATIENCE}", tool, *words, *([] if words[0] == "check" else ["--threads", "1"])],
+                                  cwd=folder, check=False, stdin=subprocess.DEVNULL, capture_output=True, timeout=WAITING,
+                                  env=ENVIRONMENT)
             code, said = done.returncode, done.stderr[-2000:].decode(errors="replace")
-            fault = None if code in DOCUMENTED else f"exit code {code}"
+            late = code in (-signal.SIGXCPU, -signal.SIGKILL)
+            fault = None if code in DOCUMENTED else f"over {PATIENCE} s" if late else f"exit code {code}"
         except subprocess.TimeoutExpired:
-            fault, said = f"over {PATIENCE} s", ""
+            fault, said = f"no end after {WAITING} s", ""
         if fault is None:
             return None
         place = keep / f"{kind}-{seed}-{number}"

@@ -65,6 +65,7 @@ struct PlanArguments {
 struct CheckArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
+  std::optional<Sides> sides;      ///< whose number is wanted, if any
   std::filesystem::path problems;  ///< .vtp
   std::filesystem::path json;      ///< .json
   bool json_on_stdout = false;     ///< instead of the text

@@ -56,6 +56,15 @@ std::string counts_lines(const SceneReport& report) {
   return text.str();
 }
 
+std::string sides_lines(const SceneReport& report) {
+  if (!report.sides) return {};
+  std::ostringstream text;
+  text << "sides (" << name_of(report.sides->chosen) << "): " << report.sides->kept << " of " << 2 * report.polygons
+       << " take part, " << rounded(report.sides->area, digits) << " m^2\n";
+  for (const std::string& note : report.sides->notes) text << "  note: " << shown_name(note) << '\n';
+  return text.str();
+}
+
 std::string material_lines(const SceneReport& report) {
   std::size_t width = 0;
   for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
@@ -115,7 +124,8 @@ ExitCode check(const CheckArguments& arguments) {
   }
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}}, scene.inputs);
-  const SceneReport report = survey(scene);
+  SceneReport report = survey(scene);
+  if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_survey(arguments.json, scene, report);
@@ -124,8 +134,8 @@ ExitCode check(const CheckArguments& arguments) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
-              << size_line(scene, report) << counts_lines(report) << material_lines(report) << lamp_lines(report)
-              << problem_lines(scene, report) << std::flush;
+              << size_line(scene, report) << counts_lines(report) << sides_lines(report) << material_lines(report)
+              << lamp_lines(report) << problem_lines(scene, report) << std::flush;
   }
   if (report.usable) return good;
   print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));

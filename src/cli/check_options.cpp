@@ -1,7 +1,10 @@
 #include "cli/check_options.h"
 
+#include "cli/add_option.h"
 #include "cli/distinct_files.h"
+#include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/parse_value.h"
 
 #include <filesystem>
 #include <string>
@@ -16,6 +19,7 @@ constexpr int most_models = 1'000'000;
 
 struct CheckOptions {
   ModelOptions model;
+  std::optional<Sides> sides;
   std::string problems, json;
   bool wants_json = false;
 };
@@ -25,6 +29,9 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
   CheckOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("check", "tells what a model holds and what is wrong with it");
   add_model_options(command, to.model);
+  add(command, "--sides", "auto|front|both",
+      "counts the sides of the polygons that take part in a solve with\nthis option; default: they are not counted",
+      [&to](const std::string& text) { to.sides = sides_named(text); });
   command
       .add_option_function<std::vector<std::string>>(
           "--json",
@@ -54,6 +61,7 @@ CheckArguments finish_check(const CheckOptions& options) {
   CheckArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
+  arguments.sides = options.sides;
   arguments.json = options.json;
   arguments.json_on_stdout = options.wants_json && arguments.json.empty();
   arguments.problems = options.problems;

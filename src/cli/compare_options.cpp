@@ -1,6 +1,7 @@
 #include "cli/compare_options.h"
 
 #include "cli/add_option.h"
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -69,6 +70,7 @@ std::shared_ptr<CompareCommandOptions> add_compare(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("compare", "solves a model with every solver: which converges how fast");
   add_model_options(command, to.model);
   add_sides_option(command, to.mesh);
+  add_effect_options(command, to.mesh.request, effects_but({Effect::interreflection}));
   add_compare_options(command, to);
   add_patch_options(command, to.mesh);
   add_sampling_options(command, to.mesh);
@@ -94,6 +96,7 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
   if (arguments.request.relaxation && std::none_of(all.begin(), all.end(), is_sor)) {
     throw UsageError("--relaxation needs sor among --solvers");
   }
+  require_consistent_effects(arguments.request, {});
   const auto on_demand = [](const Contestant& contestant) { return contestant.on_demand; };
   const std::vector<Contestant>& chosen = arguments.options.contestants;
   if (std::any_of(chosen.begin(), chosen.end(), on_demand) && arguments.request.estimator != Estimator::automatic) {

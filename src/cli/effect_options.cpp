@@ -10,15 +10,15 @@
 namespace patchlight::cli {
 namespace {
 
-std::string names(const std::string& separator) {
+std::string names(const std::vector<Effect>& effects, const std::string& separator) {
   std::string list;
-  for (const Effect effect : simulated_effects()) list += (list.empty() ? "" : separator) + name_of(effect);
+  for (const Effect effect : effects) list += (list.empty() ? "" : separator) + name_of(effect);
   return list;
 }
 
-Effect effect_named(const std::string& option, const std::string& text) {
+Effect effect_named(const std::string& option, const std::string& text, const std::vector<Effect>& effects) {
   std::vector<std::pair<std::string, Effect>> allowed;
-  for (const Effect effect : simulated_effects()) allowed.emplace_back(name_of(effect), effect);
+  for (const Effect effect : effects) allowed.emplace_back(name_of(effect), effect);
   return choice<Effect>(option, text, allowed);
 }
 
@@ -29,12 +29,18 @@ void require_without(const std::vector<Effect>& effects, Effect effect, const st
   throw UsageError(option + " " + name_of(effect) + " and " + other + " exclude each other; give one of them");
 }
 
-void add_effects(CLI::App& command, const std::string& option, const std::string& help, std::vector<Effect>& effects) {
+// What --force and --skip have in common.
+struct EffectList {
+  const std::vector<Effect>& allowed;
+  std::vector<Effect>& chosen;
+};
+
+void add_effects(CLI::App& command, const std::string& option, const std::string& help, const EffectList& list) {
   command
       .add_option_function<std::vector<std::string>>(
           option,
-          [option, &effects](const std::vector<std::string>& words) {
-            for (const std::string& word : words) effects.push_back(effect_named(option, word));
+          [option, allowed = list.allowed, &chosen = list.chosen](const std::vector<std::string>& words) {
+            for (const std::string& word : words) chosen.push_back(effect_named(option, word, allowed));
           },
           help)
       ->allow_extra_args(false)
@@ -43,14 +49,20 @@ void add_effects(CLI::App& command, const std::string& option, const std::string
 
 }  // namespace
 
-void add_effect_options(CLI::App& command, Request& request) {
+std::vector<Effect> effects_but(const std::vector<Effect>& without) {
+  std::vector<Effect> effects = simulated_effects();
+  std::erase_if(effects, [&](Effect effect) { return contains(without, effect); });
+  return effects;
+}
+
+void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects) {
   add_effects(command, "--force",
-              "simulates an effect even where the scene does not call for it:\n" + names(", ") +
+              "simulates an effect even where the scene does not call for it:\n" + names(effects, ", ") +
                   ";\nmay be repeated; default: as the scene calls for",
-              request.force);
+              {effects, request.force});
   add_effects(command, "--skip",
               "leaves an effect out that the scene calls for; the same words; may be\nrepeated; default: none",
-              request.skip);
+              {effects, request.skip});
 }
 
 void require_consistent_effects(const Request& request, const std::string& form_factors) {

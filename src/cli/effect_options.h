@@ -4,11 +4,15 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <vector>
 
 namespace patchlight::cli {
 
-/// Adds --force and --skip. What is parsed lands in `request`, which must outlive the command.
-void add_effect_options(CLI::App& command, Request& request);
+/// Adds --force and --skip for these effects. What is parsed lands in `request`, which must outlive the command.
+void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects = simulated_effects());
+
+/// All effects that a command may be asked for but these.
+std::vector<Effect> effects_but(const std::vector<Effect>& without);
 
 /// `form_factors` is the folder of known ones, in which occlusion is decided. \throws UsageError when the effects that
 /// are forced and skipped contradict each other or other options.

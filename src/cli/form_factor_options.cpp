@@ -1,6 +1,7 @@
 #include "cli/form_factor_options.h"
 
 #include "cli/distinct_files.h"
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -51,6 +52,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("form-factors", "computes the form factors between the patches of a model");
   add_model_options(command, to.model);
   add_sides_option(command, to.mesh);
+  add_effect_options(command, to.mesh.request, {Effect::reach, Effect::backs, Effect::closure});
   command
       .add_option(
           "-o,--output", to.output,
@@ -91,6 +93,8 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
   arguments.request.close = !options.raw;
+  require_consistent_effects(arguments.request, {});
+  arguments.request.close = !options.raw && !contains(arguments.request.skip, Effect::closure);
   arguments.by = options.by;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {

@@ -10,10 +10,11 @@ namespace patchlight::cli {
 void add_sides_option(CLI::App& command, MeshOptions& options) {
   add(command, "--sides", "auto|front|both",
       "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
-      [&options](const std::string& text) {
-        options.request.sides = choice<Sides>(
-            "--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
-      });
+      [&options](const std::string& text) { options.request.sides = sides_named(text); });
+}
+
+Sides sides_named(const std::string& text) {
+  return choice<Sides>("--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
 }
 
 void add_patch_options(CLI::App& command, MeshOptions& options) {

@@ -16,6 +16,9 @@ struct MeshOptions {
 /// Adds --sides. What is parsed lands in `options`, which must outlive the command; so below.
 void add_sides_option(CLI::App& command, MeshOptions& options);
 
+/// What --sides is given. \throws UsageError when it is none of its words.
+Sides sides_named(const std::string& text);
+
 /// Adds --max-edge and --patches.
 void add_patch_options(CLI::App& command, MeshOptions& options);
 

@@ -1,5 +1,6 @@
 #include "cli/relight_options.h"
 
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/solution_options.h"
@@ -28,6 +29,7 @@ std::shared_ptr<RelightOptions> add_relight(CLI::App& tool) {
       ->option_text(" ");
   add_set_option(command, to.settings);
   add_up_option(command, to.up);
+  add_effect_options(command, to.solution.request, effects_but({Effect::occlusion, Effect::reach, Effect::backs}));
   add_output_options(command, to.solution);
   add_solver_options(command, to.solution);
   add_machine_options(command, to.solution.request);
@@ -44,7 +46,9 @@ SolveArguments finish_relight(const RelightOptions& options) {
   arguments.read.settings = material_settings(options.settings);
   arguments.read.up = options.up;
   arguments.request = options.solution.request;
-  return with_solution(std::move(arguments), "relight", options.solution);
+  arguments = with_solution(std::move(arguments), "relight", options.solution);
+  require_consistent_effects(arguments.request, {});
+  return arguments;
 }
 
 }  // namespace patchlight::cli

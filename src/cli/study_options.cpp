@@ -1,6 +1,7 @@
 #include "cli/study_options.h"
 
 #include "cli/add_option.h"
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -50,6 +51,7 @@ std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("study", "solves a model in many ways: what accuracy costs");
   add_model_options(command, to.model);
   add_sides_option(command, to.mesh);
+  add_effect_options(command, to.mesh.request, effects_but({Effect::interreflection, Effect::closure}));
   add_study_options(command, to);
   add_patch_options(command, to.mesh);
   add_sampling_options(command, to.mesh);
@@ -71,6 +73,7 @@ StudyArguments finish_study(const StudyCommandOptions& options) {
   if (arguments.request.estimator != Estimator::automatic) {
     throw UsageError("--estimator: study compares all of them; leave the option out");
   }
+  require_consistent_effects(arguments.request, {});
   return arguments;
 }
 

@@ -95,6 +95,26 @@ std::string sums_of(const VerifiedPart& part) {
   return text.str();
 }
 
+std::string sides_left_out(const Scene& scene, const Verification& verification) {
+  const auto& sides = verification.left_out;
+  if (sides.empty()) return {};
+  std::ostringstream text;
+  const auto lit = std::count_if(sides.begin(), sides.end(), [](const LeftOutSide& side) { return side.is_lit; });
+  text << "sides that --sides auto leaves out: " << sides.size() << " looked at, "
+       << (lit == 0 ? "none" : std::to_string(lit)) << " with light\n";
+  for (const LeftOutSide& side : sides) {
+    if (!side.is_lit) continue;
+    const Polygon& polygon = scene.polygons[side.polygon];
+    Eigen::Index band = 0;
+    side.irradiance.maxCoeff(&band);
+    text << "  light on the " << (side.side == Side::front ? "front" : "back") << " of "
+         << shown_name(place_of(scene, polygon)) << ", " << shown_name(group_name(scene, polygon.group)) << ": "
+         << rounded(side.irradiance[band], 4) << " +- " << rounded(side.standard_error[band], 2)
+         << " W/m^2; --sides both takes it in\n";
+  }
+  return text.str();
+}
+
 std::string verdict(const Verification& verification, const std::string& granted) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
@@ -103,7 +123,9 @@ std::string verdict(const Verification& verification, const std::string& granted
   const bool differs = verification.verdict == Verdict::disagrees;
   const char* const words[] = {"agrees", "DISAGREES", "INCONCLUSIVE"};
   text << words[static_cast<std::size_t>(verification.verdict)] << ": with " << granted
-       << ", p = " << verification.probability << (differs ? " < " : " >= ") << least_probability;
+       << ", p = " << verification.probability << (verification.probability < least_probability ? " < " : " >= ")
+       << least_probability;
+  if (differs && verification.probability >= least_probability) text << ", but a side that was left out is lit";
   if (verification.verdict == Verdict::inconclusive) {
     text << ", but bars above " << rounded(100 * widest_bar, 2)
          << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
@@ -150,7 +172,8 @@ ExitCode verify(const VerifyArguments& arguments) {
             << verification.patches.size() << " of " << simulation.mesh.size() << " patches, "
             << verification.paths.paths << " paths each, " << rounded(static_cast<double>(verification.paths.rays), 3)
             << " rays in " << rounded(seconds, 3) << " s; irradiance in W/m^2\n"
-            << verdict(verification, bars(arguments.bar, simulation)) << std::flush;
+            << sides_left_out(scene, verification) << verdict(verification, bars(arguments.bar, simulation))
+            << std::flush;
   return verification.verdict == Verdict::agrees ? good : validation_failed;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/verify_options.h"
 
 #include "cli/add_option.h"
+#include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
@@ -8,6 +9,9 @@
 #include <string>
 
 namespace patchlight::cli {
+
+// So many sides that --sides auto leaves out are looked at.
+constexpr std::size_t left_out_checked = 16;
 
 struct VerifyCommandOptions {
   ModelOptions model;
@@ -53,6 +57,7 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("verify", "solves a model and checks the answer by path tracing");
   add_model_options(command, to.model);
   add_sides_option(command, to.mesh);
+  add_effect_options(command, to.mesh.request);
   add_verify_options(command, to);
   add_patch_options(command, to.mesh);
   add_sampling_options(command, to.mesh);
@@ -70,11 +75,18 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
   arguments.options = options.verify;
   arguments.options.seed = arguments.request.seed;
+  arguments.options.left_out = arguments.request.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
   arguments.request.error_bars = !options.bar;
   if (!options.bar && arguments.request.estimator != Estimator::automatic) {
     throw UsageError("--estimator leaves the error bars unknown; give --bar PERCENT with it");
   }
+  for (const Effect effect : {Effect::closure, Effect::interreflection}) {
+    if (options.bar || !contains(arguments.request.skip, effect)) continue;
+    throw UsageError(std::string("--skip ") + name_of(effect) +
+                     " leaves the error bars unknown; give --bar PERCENT with it");
+  }
+  require_consistent_effects(arguments.request, {});
   arguments.json = options.json;
   return arguments;
 }

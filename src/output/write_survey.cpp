@@ -46,6 +46,17 @@ Json problem_part(const Scene& scene, const Problem& problem) {
   return part;
 }
 
+Json sides_part(const SceneReport& report) {
+  if (!report.sides) return nullptr;
+  Json part;
+  part["chosen"] = name_of(report.sides->chosen);
+  part["take_part"] = report.sides->kept;
+  part["of"] = 2 * report.polygons;
+  part["area_m2"] = report.sides->area;
+  part["notes"] = report.sides->notes;
+  return part;
+}
+
 }  // namespace
 
 std::string survey_json(const Scene& scene, const SceneReport& report) {
@@ -67,6 +78,7 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   json["closed_shells"] = report.closed_shells;
   json["open_edges"] = report.open_edges;
   json["open_edge_length_m"] = report.open_edge_length;
+  json["sides"] = sides_part(report);
   json["materials"] = Json::array();
   for (const MaterialFacts& facts : report.materials) json["materials"].push_back(material_part(facts));
   json["problems"] = Json::array();

@@ -68,6 +68,16 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
                                {"z", row(z, i)},
                                {"z_with_bar", row(with_bar, i)}});
   }
+  json["left_out_sides"] = Json::array();
+  for (const LeftOutSide& side : verification.left_out) {
+    const Polygon& polygon = scene.polygons[side.polygon];
+    json["left_out_sides"].push_back({{"place", place_of(scene, polygon)},
+                                      {"source_polygon", polygon.face},
+                                      {"side", side.side == Side::front ? "front" : "back"},
+                                      {"traced_W_m2", list(side.irradiance)},
+                                      {"standard_error_W_m2", list(side.standard_error)},
+                                      {"lit", side.is_lit}});
+  }
   write_bytes(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

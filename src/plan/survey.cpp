@@ -158,6 +158,15 @@ std::string advice_without_lamp(const Scene& scene) {
   return advice;
 }
 
+SideCounts count_sides(const Scene& scene, Sides sides) {
+  const Sides chosen = has_lamp(scene) || sides == Sides::both ? sides : Sides::front;
+  const KeptSides kept = kept_sides(scene, chosen);
+  const auto count = [](const std::vector<std::uint8_t>& marks) {
+    return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
+  };
+  return {chosen, count(kept.front) + count(kept.back), kept_area(scene, kept), kept.notes};
+}
+
 SceneReport survey(const Scene& scene) {
   SceneReport report;
   report.bounds = bounds(scene);

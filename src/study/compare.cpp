@@ -95,6 +95,7 @@ SolverRun run_on_demand(const Scene& scene, const Request& request, const Contes
                         const Observer& observer) {
   Request asked = request;
   asked.on_demand = true;
+  std::erase(asked.force, Effect::closure);
   asked.solver = contestant.solver;
   SolverRun run;
   const SolveWith solve_it = [&](const RowTransport& transport, const RadiosityProblem& problem,

@@ -3,12 +3,15 @@
 #include "patchlight/base/parallel.h"
 #include "patchlight/base/sampling.h"
 
+#include "effects.h"
 #include "spaces.h"
+#include "study/left_out.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -28,20 +31,13 @@ std::vector<Space> spaces_of(const Scene& scene, const Simulation& simulation) {
   return {{"inside", inside}, {"outside", 1 - inside}};
 }
 
-// Without replacement, in proportion to the exposed area: those with the largest log(u) / area, u uniform in (0, 1)
-// (Efraimidis and Spirakis 2006).
+// Without replacement, in proportion to the exposed area.
 std::vector<PatchIndex> choose_by_area(const Eigen::VectorXd& area, const Space& space, std::size_t count,
                                        std::uint64_t seed) {
-  std::vector<std::pair<double, PatchIndex>> keys;
-  for (PatchIndex i = 0; i < static_cast<PatchIndex>(area.size()); ++i) {
-    if (space.holds[i] == 0) continue;
-    const double u = (hash({seed, 0x63686f6f7365, i}) + 0.5) * 0x1p-32;
-    keys.emplace_back(-std::log(u) / area[i], i);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<PatchIndex> chosen;
-  for (std::size_t k = 0; k < std::min(count, keys.size()); ++k) chosen.push_back(keys[k].second);
-  return chosen;
+  const Eigen::VectorXd weight = area.cwiseProduct(space.holds.matrix());
+  const auto drawn =
+      drawn_by_weight({weight.data(), static_cast<std::size_t>(weight.size())}, count, {seed, 0x63686f6f7365});
+  return {drawn.begin(), drawn.end()};
 }
 
 // As many of each space.
@@ -139,9 +135,10 @@ Verification judged(Verification result) {
     wide = wide || !(part.width <= widest_bar);
   }
   result.probability = std::min(1.0, tests * least);
-  result.verdict = result.probability < least_probability ? Verdict::disagrees
-                   : wide                                 ? Verdict::inconclusive
-                                                          : Verdict::agrees;
+  const bool lit = std::any_of(result.left_out.begin(), result.left_out.end(), std::mem_fn(&LeftOutSide::is_lit));
+  result.verdict = result.probability < least_probability || lit ? Verdict::disagrees
+                   : wide                                        ? Verdict::inconclusive
+                                                                 : Verdict::agrees;
   return result;
 }
 
@@ -193,8 +190,11 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
   result.patches = choose(simulation.problem.area, spaces, options);
   result.irradiance = rows_of(simulation.solution.irradiance, result.patches);
   result.bar = rows_of(bar, result.patches);
-  result.paths = trace_irradiance(scene, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
+  const Scene seen = scene_for_sensors(scene, simulation.plan);
+  result.paths = trace_irradiance(seen, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
                                   {.paths = options.paths, .seed = options.seed}, observer);
+  const Spectrum mean = result.paths.irradiance.colwise().mean();
+  result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, observer);
 
   for (const Space& space : spaces) result.parts.push_back(part_of(space, result, simulation, bar));
   return judged(std::move(result));

@@ -46,6 +46,9 @@ class VerifyTest(ToolTest):
         self.assertIn("with a bar of 5 % of the irradiance", done.stdout)
         facts = json.loads((self.folder / "out.json").read_text())
         self.assertIsNone(facts["relative_error"])
+        # The outer sides of the room are dark.
+        self.assertRegex(done.stdout, r"leaves out: (\d+) looked at, none with light")
+        self.assertEqual({side["lit"] for side in facts["left_out_sides"]}, {False})
         for patch in facts["checked"]:
             for ours, bar in zip(patch["irradiance_W_m2"], patch["bar_W_m2"]):
                 self.assertGreaterEqual(bar, 0.05 * ours)

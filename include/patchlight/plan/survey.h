@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
 
 #include <cstddef>
 #include <optional>
@@ -23,6 +24,14 @@ struct UnitGuess {
   std::string reason;
 };
 
+/// The sides of polygons that take part in a solve.
+struct SideCounts {
+  Sides chosen = Sides::automatic;
+  std::size_t kept = 0;            ///< of twice as many as there are polygons
+  double area = 0;                 ///< m^2
+  std::vector<std::string> notes;  ///< what was left out, and why
+};
+
 /// What a scene holds and what is wrong with it.
 struct SceneReport {
   Box bounds;  ///< metres
@@ -38,11 +47,15 @@ struct SceneReport {
   double open_edge_length = 0;    ///< metres
   std::vector<Problem> problems;  ///< those of reading and repair and those found here, worst first
   std::optional<UnitGuess> unit_guess;
-  bool usable = true;  ///< false when nothing emits: it cannot be solved
+  std::optional<SideCounts> sides = {};  ///< when they are counted: count_sides()
+  bool usable = true;                    ///< false when nothing emits: it cannot be solved
 };
 
 /// Looks at a scene that repair() and check() have passed. Pure. O(n log n) for n corners.
 SceneReport survey(const Scene& scene);
+
+/// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
+SideCounts count_sides(const Scene& scene, Sides sides);
 
 /// One sentence on a scene in which nothing emits: which material looks like a lamp, and the --set that switches it on.
 std::string advice_without_lamp(const Scene& scene);

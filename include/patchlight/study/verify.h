@@ -25,7 +25,18 @@ struct VerifyOptions {
   std::uint32_t paths = 4096;  ///< per patch; rounded up to path_batches times a power of two
   std::size_t checked = 64;    ///< patches, half of them inside closed shells with openings where these divide the
                                ///< scene; all when there are fewer
+  std::size_t left_out = 0;    ///< sides without patches that must be dark, chosen at random by area
   std::uint64_t seed = 1;
+};
+
+/// A side without patches, with the light that paths find on it when every side takes part.
+struct LeftOutSide {
+  PolygonIndex polygon = 0;
+  Side side = Side::front;
+  Spectrum irradiance;      ///< W/m^2
+  Spectrum standard_error;  ///< W/m^2
+  bool is_lit = false;      ///< above three standard errors, and a thousandth of the mean of the checked patches, in a
+                            ///< band: nine of 4,096 paths at least, which rounding does not let through
 };
 
 /// The checked patches inside closed shells with openings, those outside, or all where none divide them. Per band: sums
@@ -47,11 +58,12 @@ struct Verification {
   Field irradiance;                 ///< of the solution, W/m^2
   Field bar;                        ///< the standard error it is given, W/m^2
   PathEstimate paths;               ///< by path tracing
+  std::vector<LeftOutSide> left_out;
   std::vector<VerifiedPart> parts;
   double probability = 0;  ///< of the least likely chi-square or offset of a part and band, or a larger one, in a right
                            ///< solution, times their number
-  Verdict verdict = Verdict::inconclusive;  ///< disagrees below least_probability; else inconclusive where a part is
-                                            ///< wider than widest_bar
+  Verdict verdict = Verdict::inconclusive;  ///< disagrees below least_probability, or where a side that was left out
+                                            ///< is lit; else inconclusive where a part is wider than widest_bar
 };
 
 /// A bar on the irradiance of every patch, W/m^2: `relative` of it or of the mean by area, whichever is larger, as what
@@ -61,7 +73,8 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares the irradiance of randomly chosen patches, the larger the likelier, with path tracing in `scene`. Bars are
 /// per patch of the simulation and band, one standard deviation each. Both their differences and their common offset
-/// are tested. Too good an agreement is none the less one. The same bits for any number of threads. \throws Cancelled.
+/// are tested. Too good an agreement is none the less one. Paths see the scene without the lights and the colours that
+/// are skipped by force; every other effect they simulate. The same bits for any number of threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 

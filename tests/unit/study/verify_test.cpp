@@ -6,6 +6,7 @@
 #include "support/meshes.h"
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
@@ -122,6 +123,34 @@ TEST(Verify, LargePatchesAreChosenMoreOften) {
     large += verify(scene, simulation, irradiance_bar(simulation, 1), options).patches.front() == 0 ? 1 : 0;
   }
   EXPECT_NEAR(large, 100, 28);
+}
+
+// A room with a block in it: the outer sides of the room and the inner ones of the block are left out and dark. One lit
+// side that is left out with them by mistake is black to the solution and to its paths alike, so that both agree on the
+// rest; it is found by itself. In m, turned, and in mm.
+TEST(Verify, FindsLightOnASideThatWasLeftOut) {
+  for (const double scale : {1.0, 1e-3}) {
+    const Eigen::AngleAxisd turn(scale == 1 ? 0.0 : 0.7, Vector(1, 2, -0.5).normalized());
+    const Scene scene = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::Scaling(scale) * turn));
+    for (const bool wrong : {false, true}) {
+      Request request;
+      request.max_edge = 0.5 * scale;
+      request.kept_sides = kept_sides(scene, Sides::automatic);
+      std::vector<std::uint8_t>& front = request.kept_sides->front;
+      const auto lit = static_cast<PolygonIndex>(std::find(front.begin(), front.end(), 1) - front.begin());
+      if (wrong) front[lit] = 0;
+      const Simulation simulation = simulate(scene, request);
+      const Verification verification =
+          verify(scene, simulation, irradiance_bar(simulation, 0.05), {.paths = 1024, .checked = 16, .left_out = 100});
+      EXPECT_FALSE(verification.left_out.empty());
+      EXPECT_LT(verification.left_out.size(), 100U);
+      for (const LeftOutSide& side : verification.left_out)
+        EXPECT_EQ(side.is_lit, wrong && side.polygon == lit && side.side == Side::front)
+            << scale << ' ' << side.polygon;
+      EXPECT_GT(verification.probability, least_probability);
+      EXPECT_EQ(verification.verdict, wrong ? Verdict::disagrees : Verdict::agrees);
+    }
+  }
 }
 
 TEST(Verify, SameBitsWithAnyNumberOfThreads) {

@@ -1,0 +1,97 @@
+"""Commands that read a model take the same options for it, and the same decisions about effects."""
+import json
+import unittest
+
+from support import ToolTest
+
+GOOD, USAGE = 0, 1
+SCENE = '''[[model]]
+file = "room.obj"
+[[luminaire]]
+kind = "point"
+watts = 200
+position = [0.5, 0.5, 1.5]
+'''
+
+
+class OptionsTest(ToolTest):
+    def good(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, GOOD, (arguments, done.stdout, done.stderr))
+        return done.stdout
+
+    def refused(self, named, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, USAGE, (arguments, done.stderr))
+        for word in named:
+            self.assertIn(word, done.stderr)
+
+    def test_all_that_read_a_model_take_the_same(self):
+        model = ["--format", "--unit", "--set", "--up", "--confine", "--sides"]
+        effects = ["--force", "--skip"]
+        for command, options in (("solve", model + effects), ("plan", model + effects), ("verify", model + effects),
+                                 ("compare", model + effects), ("study", model + effects),
+                                 ("form-factors", model + effects), ("check", model),
+                                 ("relight", ["--set", "--up"] + effects)):
+            words = [line.split()[0] for line in self.good(command, "--help").splitlines() if line.startswith("  -")]
+            for option in options:
+                with self.subTest(command=command, option=option):
+                    self.assertIn(option, words)
+
+    def test_paths_leave_out_the_lights_that_are_skipped(self):
+        """The luminaire gives far more than the bar: with it on one side alone both would differ."""
+        self.write("scene.toml", SCENE)
+        means = []
+        for skip in ((), ("--skip", "luminaires")):
+            self.good("verify", "scene.toml", "--patches", 400, "--paths", 1024, "--bar", "5%", "--json", "a.json", *skip)
+            checked = json.loads((self.folder / "a.json").read_text())["checked"]
+            means.append(sum(patch["traced_W_m2"][0] for patch in checked) / len(checked))
+        self.assertGreater(means[0], 3 * means[1])
+
+    def test_verify_needs_a_bar_where_errors_are_not_known(self):
+        for effect in ("closure", "interreflection"):
+            self.refused([effect, "--bar"], "verify", "room.obj", "--skip", effect)
+        self.good("verify", "room.obj", "--patches", 400, "--paths", 1024, "--skip", "closure", "--bar", "5%")
+        # Paths simulate what the solution leaves out.
+        done = self.run_tool("verify", "room.obj", "--patches", 400, "--paths", 256, "--skip", "interreflection", "--bar", "2%")
+        self.assertIn("DISAGREES", done.stdout)
+
+    def test_form_factors_of_sides_that_are_forced(self):
+        rows = {}
+        for name, words in (("auto", ()), ("forced", ("--force", "backs")), ("both", ("--sides", "both"))):
+            self.good("form-factors", "room.obj", "--patches", 100, "-o", name, "-q", *words)
+            sides = json.loads((self.folder / name / "scene.json").read_text())["kept_sides"]
+            rows[name] = sum(sides["front"]) + sum(sides["back"])
+        self.assertLess(rows["auto"], rows["forced"])
+        self.assertLessEqual(rows["forced"], rows["both"])
+        self.good("form-factors", "room.obj", "--patches", 100, "-o", "raw", "-q", "--skip", "closure")
+        self.assertIsNone(json.loads((self.folder / "raw" / "info.json").read_text())["closure"])
+        self.refused(["sun", "reach"], "form-factors", "room.obj", "-o", "F", "--skip", "sun")
+
+    def test_relight_and_compare_decide_about_effects(self):
+        self.good("form-factors", "room.obj", "--patches", 100, "-o", "F", "-q")
+        radiosity = []
+        for words in ((), ("--skip", "interreflection")):
+            self.good("relight", "F", "-q", "--report", "a.json", *words)
+            radiosity.append(json.loads((self.folder / "a.json").read_text())["energy_balance"]["absorbed_W"][0])
+        self.assertGreater(radiosity[0], 1.1 * radiosity[1])
+        self.refused(["occlusion", "closure"], "relight", "F", "-q", "-o", "a.ply", "--skip", "occlusion")
+        self.good("compare", "room.obj", "--patches", 100, "-o", "C", "-q", "--solvers", "cg,progressive-on-demand",
+                  "--no-series", "--force", "closure")
+        self.refused(["interreflection"], "compare", "room.obj", "-o", "D", "--skip", "interreflection")
+        self.refused(["closure"], "study", "room.obj", "-o", "D", "--skip", "closure")
+
+    def test_check_counts_the_sides_that_take_part(self):
+        counts = {}
+        for sides in ("auto", "front", "both"):
+            facts = json.loads(self.good("check", "room.obj", "--sides", sides, "--json"))["sides"]
+            self.assertEqual((facts["chosen"], facts["of"]), (sides, 16))
+            counts[sides] = facts["take_part"]
+            self.assertIn(f"sides ({sides}): {counts[sides]} of 16", self.good("check", "room.obj", "--sides", sides))
+        # The six walls by one side, plate and lamp by two; fronts; all.
+        self.assertEqual(counts, {"auto": 10, "front": 8, "both": 16})
+        self.assertIsNone(json.loads(self.good("check", "room.obj", "--json"))["sides"])
+
+
+if __name__ == "__main__":
+    unittest.main()
