@@ -2,6 +2,7 @@
 
 #include "patchlight/scene/weld.h"
 
+#include "scene/limits.h"
 #include "scene/simple_polygon.h"
 
 #include <algorithm>
@@ -131,7 +132,8 @@ Box main_bounds(const Scene& scene) {
   for (const Point& corner : corners.points) {
     if (distance(corner) <= reach) main.extend(corner);
   }
-  return main;
+  // Of what is still farther no ray can tell: then most of the model are faces too small to be meant.
+  return most_extents * main.diagonal().norm() < all.diagonal().norm() ? all : main;
 }
 
 double extent_of(const Scene& scene) { return main_bounds(scene).diagonal().norm(); }

@@ -9,8 +9,8 @@ namespace patchlight {
 /// Bounds of the model without what lies far from most of it: from a stray vertex a hundred kilometres away nothing is
 /// learned about how large details are. The middle is the median of the corners, weighted by the area of their
 /// polygons, of which none counts for more than an eighth of all; what is farther from it than 100 times the distance
-/// within which three fifths of that area lie is left out. In most models that is nothing: then these are the bounds of
-/// all vertices that polygons use. O(n) for n corners, expected.
+/// within which three fifths of that area lie is left out, unless that is 1e12 times as large as the rest. In most
+/// models that is nothing: then these are the bounds of all vertices that polygons use. O(n) for n corners, expected.
 Box main_bounds(const Scene& scene);
 
 /// The diagonal of main_bounds() in metres: what tolerances are relative to.

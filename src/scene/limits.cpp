@@ -2,13 +2,14 @@
 
 #include "patchlight/base/error.h"
 
+#include "scene/extent.h"
+
 #include <sstream>
 #include <variant>
 
 namespace patchlight {
 namespace {
 
-constexpr double most_extents = 1e12;
 constexpr double brightest = 1e25;
 
 void require_strength(const Spectrum& strength, const std::string& where, const std::string& what) {
@@ -47,7 +48,7 @@ void check_daylight(const Scene& scene) {
 }  // namespace
 
 Reach reach_of(const Scene& scene) {
-  const Box box = bounds(scene);
+  const Box box = main_bounds(scene);
   return {box.center(), most_extents * box.diagonal().norm()};
 }
 

@@ -6,8 +6,11 @@
 
 namespace patchlight {
 
-/// How far a position may be from the middle of a scene. Rays are traced in single precision in a scene of unit extent:
-/// beyond 1e12 of its extents a ray cannot be told from a parallel one, and beyond 1e18 there is none.
+/// Rays are traced in single precision in a scene of unit extent: beyond so many extents a ray cannot be told from a
+/// parallel one, and beyond 1e18 there is none.
+inline constexpr double most_extents = 1e12;
+
+/// How far a position may be from the middle of a scene: most_extents of its main_bounds().
 struct Reach {
   Point centre;
   double distance = 0;  ///< m

@@ -73,6 +73,15 @@ class HostileTest(ToolTest):
                         else:
                             self.refused(INPUT, ["from the middle of the scene"], *run)
 
+    def test_faces_that_are_nothing_beside_another(self):
+        """Rays of the large one would be infinitely long in extents of the others."""
+        a = 2.278e-41
+        faces = (((0, 0, 0), (1, 0, 0), (1, 1, 0)), ((0, 0, 0), (0, a, a), (0, 0, a)), ((0, 0, 0), (a, 0, a), (a, a, a)),
+                 ((0, 0, 0), (a, a, a), (a, a, 0)))
+        (self.folder / "tiny.stl").write_bytes(bytes(80) + struct.pack("<I", 4) + b"".join(
+            struct.pack("<12f", 0, 0, 0, *(x for corner in face for x in corner)) + bytes(2) for face in faces))
+        self.good("solve", "tiny.stl", "--set", "*.exitance=1", "--patches", "40", "-q", "-o", "a.ply")
+
     def test_deep_keys_and_long_lists(self):
         for deep in (".".join(["a"] * 20000) + " = 1\n", "[" + ".".join(["a"] * 20000) + "]\n",
                      "a = " + 20000 * "[" + 20000 * "]" + "\n", "a = " + 9000 * "{a.a.a = " + "1" + 9000 * "}" + "\n",

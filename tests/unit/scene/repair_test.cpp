@@ -357,5 +357,23 @@ TEST(WorstFirst, SortsByKindAndKeepsTheOrderWithinOne) {
   EXPECT_EQ(severity_of(ProblemKind::welded_vertices), Severity::remark);
 }
 
+// Most faces are so small beside the largest that a ray of one cannot be told from that of another: the small ones are
+// left out, not the large one as far from most of the model.
+TEST(Repair, LeavesOutFacesThatAreNothingBesideTheRest) {
+  for (const double unit : {1.0, 1e-3}) {
+    for (const double small : {1e-13, 2e-20, 2.278e-41}) {
+      const double a = small * unit;
+      Scene scene = empty_scene({grey(0.5, 1)});
+      scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(unit, 0, 0), Point(unit, unit, 0)});
+      scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(0, a, a), Point(0, 0, a)});
+      scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(a, 0, a), Point(a, a, a)});
+      scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(a, a, a), Point(a, a, 0)});
+      const Scene repaired = repair(std::move(scene));
+      ASSERT_EQ(repaired.polygons.size(), 1U) << unit << ' ' << small;
+      EXPECT_EQ(corner_points(repaired, 0)[1], Point(unit, 0, 0));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace patchlight
