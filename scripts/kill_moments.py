@@ -8,6 +8,7 @@ there. All must be of one run, or the kill fell between the first and the last o
 new ones are those that are renamed first. After one more run no temporary file is left.
 """
 import argparse
+import json
 import os
 import pathlib
 import random
@@ -24,21 +25,48 @@ from mutate import MATERIALS, POINTS, ROOM
 FILES = ("out.vtp", "out.ply", "out.png", "spots.csv", "out.json", "out.pvd")
 
 
-def words(tool, brightness):
-    return [tool, "solve", "room.obj", "-q", "--patches", "100", "--set", f"lamp.exitance={brightness}", "-o", "out.vtp", "-o",
+# Two lamps that give other colours, so that pictures differ, too.
+LAMPS = {1: "3,2,1", 2: "1,2,3"}
+
+
+def words(tool, lamp):
+    return [tool, "solve", "room.obj", "-q", "--patches", "100", "--set", f"lamp.exitance={LAMPS[lamp]}", "-o", "out.vtp", "-o",
             "out.ply", "--picture", "out.png", "--points", "spots.pts", "--points-output", "spots.csv", "--report",
             "out.json", "--series", "out.pvd"]
 
 
-def state(folder):
-    """The bytes of each file; of the series the names in the .pvd, each of which must be a whole file."""
+def check_series(folder):
+    """The names in the .pvd are those of whole files."""
     for entry in xml.etree.ElementTree.parse(folder / "out.pvd").getroot().iter("DataSet"):
         data = (folder / entry.get("file")).read_bytes()
         if not data.rstrip().endswith(b"</VTKFile>"):
             raise AssertionError(f"{entry.get('file')} is cut off")
-    # The report has times in it, so that it differs from run to run; what it says of the model does not.
-    return tuple((folder / name).read_bytes() if name != "out.json" else
-                 (folder / name).read_text().split('"command_line": ')[1].split("\n")[0] for name in FILES)
+
+
+def fact(folder, name):
+    """What a file says of its run, but for the times in it."""
+    data = (folder / name).read_bytes()
+    if name == "out.vtp":
+        return data.rstrip().endswith(b"</VTKFile>")
+    return json.loads(data)["command_line"] if name == "out.json" else data
+
+
+def state(folder):
+    """Each file by its inode, which a rename changes, and its bytes."""
+    return {name: ((folder / name).stat().st_ino, (folder / name).read_bytes()) for name in FILES}
+
+
+def renamed(folder, before, whole):
+    """Which files are those of the run that was killed. Fails when one is neither its nor the older one."""
+    check_series(folder)
+    found = []
+    for name, now in state(folder).items():
+        found.append(now[0] != before[name][0])
+        if fact(folder, name) != whole[name] if found[-1] else now != before[name]:
+            raise AssertionError(f"{name} is neither the older one nor the new one")
+    if sorted(found, reverse=True) != found:
+        raise AssertionError(f"not in the order of the renames: {dict(zip(FILES, found))}")
+    return found
 
 
 def main():
@@ -55,14 +83,15 @@ def main():
         for name, text in (("room.obj", ROOM), ("room.mtl", MATERIALS), ("spots.pts", POINTS)):
             (folder / name).write_text(text)
         whole = {}
-        for brightness in (2, 1):
+        for lamp in (2, 1):
             begin = time.monotonic()
-            subprocess.run(words(options.tool, brightness), cwd=folder, check=True)
+            subprocess.run(words(options.tool, lamp), cwd=folder, check=True)
             duration = time.monotonic() - begin
-            whole[brightness] = state(folder)
+            whole[lamp] = {name: fact(folder, name) for name in FILES}
         now, killed = 1, 0
         while killed < options.moments:
             wanted = 3 - now
+            before = state(folder)
             moment = chance.uniform(0, duration)
             process = subprocess.Popen(words(options.tool, wanted), cwd=folder)
             time.sleep(moment)
@@ -71,10 +100,11 @@ def main():
                 duration, now = moment, wanted  # faster than was thought
                 continue
             killed += 1
-            found = [file == new for file, new in zip(state(folder), whole[wanted])]
-            whole_or_old = [file in both for file, *both in zip(state(folder), whole[1], whole[2])]
-            if not all(whole_or_old) or sorted(found, reverse=True) != found:
-                faults.append(f"moment {killed}: {dict(zip(FILES, found))}")
+            try:
+                found = renamed(folder, before, whole[wanted])
+            except AssertionError as error:
+                faults.append(f"moment {killed}: {error}")
+                break
             counts["new" if all(found) else "between" if any(found) else "old"] += 1
             if all(found):
                 now = wanted
