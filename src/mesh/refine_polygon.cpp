@@ -7,10 +7,14 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <cmath>
 #include <queue>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
 namespace {
+
+// Of the lattice to the boundary, in spacings: of .3 to .7, the one with the fewest patches.
+constexpr double lattice_margin = 0.6;
 
 using Workbench = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 using OpenMesh::EdgeHandle;
@@ -54,6 +58,24 @@ OutlinePlane plane_of(const Outline& outline) {
   return plane;
 }
 
+// How far the lattice's points are from each other: as those on the longest edge, but of an outline that is finer than
+// the patches no nearer than that there is one to four corners. A triangulation of n points on the outline and m inside
+// has n - 2 + 2 m triangles, so that these are at most half as many again as the outline takes by itself. Where that
+// would leave edges that are too long the lattice is as fine as it has to be: no point of the outline is farther from
+// it than (lattice_margin + 1 / sqrt(3)) spacings.
+double lattice_spacing(const Outline& outline, double spacing, double max_edge) {
+  constexpr double much_finer = 0.5;
+  constexpr double corners_per_point = 4;
+  constexpr double reaches_outline = 0.8;  // < 1 / (lattice_margin + 1 / sqrt(3))
+  const double area_per_spacing = std::sqrt(0.75);
+  if (spacing >= much_finer * max_edge) return spacing;
+  const double area = area_vector(outline.corners).norm();
+  const auto corners = static_cast<double>(outline.corners.size());
+  if (area <= corners * area_per_spacing * spacing * spacing) return spacing;
+  const double of_few = std::sqrt(corners_per_point * area / (corners * area_per_spacing));
+  return std::max(spacing, std::min(reaches_outline * max_edge, of_few));
+}
+
 // The triangles of one polygon in its plane, and the inner edges that are too long.
 class Triangulation {
  public:
@@ -79,6 +101,8 @@ class Triangulation {
   std::int64_t rounded_length(EdgeHandle edge) const;
   void remember_if_long(EdgeHandle edge);
   bool must_flip(EdgeHandle edge) const;
+  bool can_flip(EdgeHandle edge) const;
+  void flip(EdgeHandle edge);
   void flip_suspects();
   void split(EdgeHandle edge, VertexHandle at);
   bool is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const;
@@ -144,13 +168,50 @@ bool Triangulation::must_flip(EdgeHandle edge) const {
   return turn(a, p, b) > smallest && turn(b, q, a) > smallest;
 }
 
+// Are the two vertices opposite to the edge not joined yet? Around both at once, as one may have very many neighbours.
+bool Triangulation::can_flip(EdgeHandle edge) const {
+  const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
+  const VertexHandle a = mesh_.opposite_vh(h);
+  const VertexHandle b = mesh_.opposite_vh(mesh_.opposite_halfedge_handle(h));
+  auto around_a = mesh_.cvv_iter(a);
+  auto around_b = mesh_.cvv_iter(b);
+  for (; around_a.is_valid() && around_b.is_valid(); ++around_a, ++around_b) {
+    if (*around_a == b || *around_b == a) return false;
+  }
+  return a != b;
+}
+
+// As OpenMesh does it, which asks around one vertex first and may have to go around very many.
+void Triangulation::flip(EdgeHandle edge) {
+  const HalfedgeHandle a0 = mesh_.halfedge_handle(edge, 0);
+  const HalfedgeHandle b0 = mesh_.halfedge_handle(edge, 1);
+  const HalfedgeHandle a1 = mesh_.next_halfedge_handle(a0);
+  const HalfedgeHandle a2 = mesh_.next_halfedge_handle(a1);
+  const HalfedgeHandle b1 = mesh_.next_halfedge_handle(b0);
+  const HalfedgeHandle b2 = mesh_.next_halfedge_handle(b1);
+  const VertexHandle to_a = mesh_.to_vertex_handle(a0);
+  const VertexHandle to_b = mesh_.to_vertex_handle(b0);
+  const FaceHandle face_a = mesh_.face_handle(a0);
+  const FaceHandle face_b = mesh_.face_handle(b0);
+  mesh_.set_vertex_handle(a0, mesh_.to_vertex_handle(a1));
+  mesh_.set_vertex_handle(b0, mesh_.to_vertex_handle(b1));
+  for (const auto& [one, next] : {std::pair{a0, a2}, {a2, b1}, {b1, a0}, {b0, b2}, {b2, a1}, {a1, b0}})
+    mesh_.set_next_halfedge_handle(one, next);
+  mesh_.set_face_handle(a1, face_b);
+  mesh_.set_face_handle(b1, face_a);
+  mesh_.set_halfedge_handle(face_a, a0);
+  mesh_.set_halfedge_handle(face_b, b0);
+  if (mesh_.halfedge_handle(to_a) == b0) mesh_.set_halfedge_handle(to_a, a1);
+  if (mesh_.halfedge_handle(to_b) == a0) mesh_.set_halfedge_handle(to_b, b1);
+}
+
 // Lawson 1977.
 void Triangulation::flip_suspects() {
   while (!suspects_.empty()) {
     const EdgeHandle edge = suspects_.back();
     suspects_.pop_back();
-    if (mesh_.is_boundary(edge) || !must_flip(edge) || !mesh_.is_flip_ok(edge)) continue;
-    mesh_.flip(edge);
+    if (mesh_.is_boundary(edge) || !must_flip(edge) || !can_flip(edge)) continue;
+    flip(edge);
     remember_if_long(edge);
     for (const int side : {0, 1}) {
       const HalfedgeHandle h = mesh_.halfedge_handle(edge, side);
@@ -296,16 +357,15 @@ PolygonMesh Triangulation::result(const OutlinePlane& plane) const {
 }  // namespace
 
 PolygonMesh refine_polygon(const Outline& outline, double max_edge) {
-  // Of the lattice to the boundary: of .3 to .7, the one with the fewest patches.
-  constexpr double margin = 0.6;
   const OutlinePlane plane = plane_of(outline);
+  const double spacing = lattice_spacing(outline, plane.spacing, max_edge);
   std::vector<FlatPoint> corners;
   for (const Point& corner : outline.corners) corners.push_back(plane.flat(corner));
 
   Triangulation triangulation(outline, plane, max_edge);
   triangulation.make_delaunay();
   triangulation.cut_boundary();
-  triangulation.insert_rows(lattice_rows(corners, plane.spacing, margin * plane.spacing));
+  triangulation.insert_rows(lattice_rows(corners, spacing, lattice_margin * spacing));
   triangulation.split_long_edges();
   return triangulation.result(plane);
 }

@@ -8,6 +8,7 @@
 #include "patchlight/plan/survey.h"
 
 #include "plan/luminaires_behind.h"
+#include "scene/problem_face.h"
 
 #include <algorithm>
 #include <cassert>
@@ -66,6 +67,23 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
          ", for its large ones to be cut as well; a simpler model takes fewer";
 }
 
+// Every corner of an outline is one of patches, so that a round face may take more of them than were asked for.
+std::vector<std::string> notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked) {
+  constexpr std::size_t parts = 4;  // of the patches asked for: a face that takes as many is worth a word
+  std::vector<ProblemFace> faces;
+  std::size_t most = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::size_t corners = scene.polygons[p].corners.size();
+    if (!(sides.front[p] || sides.back[p]) || parts * (corners - 2) < asked || corners <= 4) continue;
+    faces.push_back(problem_face(scene, scene.polygons[p]));
+    most = std::max(most, corners);
+  }
+  if (faces.empty()) return {};
+  return {listed(scene, faces) + " with an outline of up to " + std::to_string(most) +
+          " corners, finer than the patches asked for: all are kept, so that each side takes " +
+          std::to_string(most - 2) + " patches at least; an outline of fewer corners takes fewer"};
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
@@ -112,6 +130,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
     const std::size_t least = least_patches(scene, plan.sides);
     const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
     if (wanted > asked && !nested) plan.notes.push_back(note_on_patches(scene, asked, wanted));
+    for (std::string& note : notes_on_fine_outlines(scene, plan.sides, asked)) plan.notes.push_back(std::move(note));
     // A nested mesh is made from parents with edges twice as long.
     plan.max_edge = nested ? max_edge_for(scene, plan.sides, wanted / 4) / 2 : max_edge_for(scene, plan.sides, wanted);
   }
