@@ -13,6 +13,10 @@ namespace patchlight {
 namespace {
 
 constexpr std::size_t most_samples = 1024;
+constexpr std::size_t samples_at_once = 64;
+
+// Where rays are that slow, fewer samples tell as well.
+constexpr double most_seconds = 2;
 
 // Two clusters of so many, each pair as likely as any other; of the lower number first.
 ClusterPair random_pair(std::size_t clusters, std::uint32_t sample) {
@@ -49,10 +53,17 @@ double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder
   if (samples == 0) return 0;
   std::vector<double> sums(samples);
   const double start = cpu_seconds();
-  parallel_for(samples,
-               [&](std::size_t k) { sums[k] = find(pairs, random_pair(clusters, static_cast<std::uint32_t>(k))); });
-  const double seconds = cpu_seconds() - start;
-  return seconds * all / static_cast<double>(samples);
+  double seconds = 0;
+  std::size_t done = 0;
+  while (done < samples && seconds < most_seconds) {
+    const std::size_t count = std::min(samples_at_once, samples - done);
+    parallel_for(count, [&](std::size_t k) {
+      sums[done + k] = find(pairs, random_pair(clusters, static_cast<std::uint32_t>(done + k)));
+    });
+    done += count;
+    seconds = cpu_seconds() - start;
+  }
+  return seconds * all / static_cast<double>(done);
 }
 
 }  // namespace patchlight

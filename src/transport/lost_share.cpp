@@ -41,7 +41,7 @@ struct Observatory {
   const Occluder& occluder;
   double extent;
 
-  std::vector<Sight> look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
+  std::vector<Sight> look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
   Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
@@ -72,20 +72,22 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-std::vector<Sight> Observatory::look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+std::vector<Sight> Observatory::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
   const auto sight_of = [&](const Hit& hit) {
     const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
     return range.begin == range.end ? Sight::back : Sight::patch;
   };
   std::vector<Sight> sights(rays.size(), Sight::nothing);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (!occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) continue;
+    sights[k] = Sight::contact;
+    rays[k].direction.setZero();  // need not be traced
+  }
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
   const auto hits = occluder.first_held_hits(rays, seed);
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) {
-      sights[k] = Sight::contact;
-      continue;
-    }
+    if (sights[k] == Sight::contact) continue;
     if (hits[k]) {
       sights[k] = sight_of(*hits[k]);
       continue;

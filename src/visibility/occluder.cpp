@@ -95,6 +95,10 @@ struct TriangleScene {
   }
 };
 
+bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
+  return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
+}
+
 }  // namespace
 
 struct Occluder::Tracer {
@@ -214,15 +218,15 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     rays.mask[k] = ~0U;
     rays.id[k] = k;
     rays.flags[k] = 0;
-    valid[k] = k < segments.size() ? -1 : 0;
+    // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
+    const bool covered = covered_places.any() && covers_end(covered_places, exact[k]);
+    valid[k] = k < segments.size() && !covered ? -1 : 0;
   }
   Context context{new_context(), exact, nullptr, covered_places.any() ? &covered_places : nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    const bool blocked = rays.tfar[k] < 0 || (covered_places.any() &&
-                                              covered_places.covers_end(exact[k].from, exact[k].to,
-                                                                        exact[k].from_polygon, exact[k].to_polygon));
+    const bool blocked = valid[k] == 0 || rays.tfar[k] < 0;
     arriving[k] = blocked ? 0.0F : 1.0F;
     valid[k] = blocked ? 0 : -1;
   }
@@ -261,19 +265,17 @@ RTCRay16 rays_of(const ShadowPacket& packet) {
 std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
-  std::fill(std::begin(valid), std::end(valid), -1);
+  // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
+  unsigned blocked = 0;
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) {
+    const bool covered = tracer_->covered_places.any() && covers_end(tracer_->covered_places, exact_ray(packet, k));
+    blocked |= static_cast<unsigned>(covered) << k;
+    valid[k] = covered ? 0 : -1;
+  }
   Context context{new_context(), nullptr, &packet, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, tracer_->blockers.scene, &context.embree, &rays);
-  unsigned blocked = 0;
   for (unsigned k = 0; k < ShadowPacket::size; ++k) blocked |= static_cast<unsigned>(rays.tfar[k] < 0) << k;
-  if (tracer_->covered_places.any()) {
-    for (unsigned k = 0; k < ShadowPacket::size; ++k) {
-      const ExactRay ray = exact_ray(packet, k);
-      const bool covered = tracer_->covered_places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
-      blocked |= static_cast<unsigned>(covered) << k;
-    }
-  }
   return static_cast<std::uint16_t>(blocked);
 }
 
@@ -370,6 +372,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   std::vector<std::optional<Hit>> hits(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
+    if (ray.direction.isZero(0)) continue;
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
