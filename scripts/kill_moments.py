@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Kills runs that write five files and a series at random moments, and looks at what is left.
 
-usage: scripts/kill_moments.py TOOL [--moments N] [--seed N]
+usage: scripts/kill_moments.py TOOL [--moments N] [--seconds S] [--seed N]
 
 After each kill every file must be the older one or the whole new one; so must the series, whose .pvd names files that are
 there. All must be of one run, or the kill fell between the first and the last of the renames, which is counted: then the
@@ -69,10 +69,17 @@ def renamed(folder, before, whole):
     return found
 
 
+def wait_for_writing(process, folder):
+    """Until the outputs are being written, or the run has ended."""
+    while process.poll() is None and not any(folder.glob(".patchlight-*.partial")):
+        time.sleep(0.001)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tool", type=os.path.abspath)
     parser.add_argument("--moments", type=int, default=200)
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="no further kill after so long")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
@@ -82,22 +89,32 @@ def main():
         folder = pathlib.Path(place)
         for name, text in (("room.obj", ROOM), ("room.mtl", MATERIALS), ("spots.pts", POINTS)):
             (folder / name).write_text(text)
-        whole = {}
+        whole, duration, writing = {}, 0, 0
         for lamp in (2, 1):
             begin = time.monotonic()
-            subprocess.run(words(options.tool, lamp), cwd=folder, check=True)
-            duration = time.monotonic() - begin
+            process = subprocess.Popen(words(options.tool, lamp), cwd=folder)
+            wait_for_writing(process, folder)
+            written_from = time.monotonic()
+            if process.wait() != 0:
+                raise SystemExit("the run to be killed fails by itself")
+            end = time.monotonic()
+            duration, writing = end - begin, end - written_from
             whole[lamp] = {name: fact(folder, name) for name in FILES}
-        now, killed = 1, 0
-        while killed < options.moments:
+        now, killed, ended = 1, 0, 0
+        start = time.monotonic()
+        while killed < options.moments and time.monotonic() - start < options.seconds:
             wanted = 3 - now
             before = state(folder)
-            moment = chance.uniform(0, duration)
             process = subprocess.Popen(words(options.tool, wanted), cwd=folder)
-            time.sleep(moment)
+            # Every second one while files are written.
+            if (killed + ended) % 2 == 0:
+                time.sleep(chance.uniform(0, duration))
+            else:
+                wait_for_writing(process, folder)
+                time.sleep(chance.uniform(0, 1.2 * writing))
             process.kill()
             if process.wait() != -signal.SIGKILL:
-                duration, now = moment, wanted  # faster than was thought
+                ended, now = ended + 1, wanted  # faster than was thought
                 continue
             killed += 1
             try:
@@ -115,8 +132,9 @@ def main():
         named = len(list(xml.etree.ElementTree.parse(folder / "out.pvd").getroot().iter("DataSet")))
         if left or named != len(list((folder / "out_series").iterdir())):
             faults.append(f"left behind: {left}, {named} files of the series named")
-    print(f"kill_moments: {killed} kills within {duration:.2f} s of a run: {counts['old']} times all files old, {counts['new']} "
-          f"times all new, {counts['between']} times between two renames; {len(faults)} faults")
+    print(f"kill_moments: {killed} kills, half of them within {duration:.2f} s of a run and half within the {writing:.2f} s in "
+          f"which it writes: {counts['old']} times all files old, {counts['new']} times all new, {counts['between']} times "
+          f"between two renames; {ended} runs ended before; {len(faults)} faults")
     for fault in faults:
         print(fault)
     return 1 if faults else 0
