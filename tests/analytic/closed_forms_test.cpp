@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::closed_forms_test {
 namespace {
 
 using namespace test;
@@ -136,4 +136,4 @@ TEST(Simulate, IrradianceBelowASmallLampFollowsTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::closed_forms_test

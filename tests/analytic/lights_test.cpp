@@ -16,7 +16,7 @@
 // Light of luminaires and of the sun against closed forms, among them those of CIE 171:2006, Test cases to assess the
 // accuracy of lighting computer programs. Its tables are rounded to four figures; the numbers here are the closed forms
 // themselves, which differ from the tables by up to 0.22 %.
-namespace patchlight {
+namespace patchlight::lights_test {
 namespace {
 
 using namespace test;
@@ -180,4 +180,4 @@ TEST(Simulate, FluxOfALuminaireInAClosedRoomIsAbsorbed) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::lights_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::validation_test {
 namespace {
 
 TEST(Validation, EveryCaseLiesWithinItsBar) {
@@ -17,4 +17,4 @@ TEST(Validation, EveryCaseLiesWithinItsBar) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::validation_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::drawn_pane_test {
 namespace {
 
 using namespace test;
@@ -139,4 +139,4 @@ TEST(DrawnPane, DoesNotOpenWhatLiesOverIt) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::drawn_pane_test

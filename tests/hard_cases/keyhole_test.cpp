@@ -6,7 +6,7 @@
 #include <utility>
 
 // A dim room that gets its light from a bright one through a keyhole: an accuracy of the dim one.
-namespace patchlight {
+namespace patchlight::keyhole_test {
 namespace {
 
 using namespace test;
@@ -69,4 +69,4 @@ TEST(Keyhole, ToleranceThatIsAskedForIsTaken) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::keyhole_test

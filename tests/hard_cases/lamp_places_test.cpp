@@ -11,7 +11,7 @@
 #include <numbers>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::lamp_places_test {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(LampAcrossSolids, ABallLightsWhatItReachesInto) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::lamp_places_test

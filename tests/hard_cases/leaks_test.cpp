@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::leaks_test {
 namespace {
 
 using namespace test;
@@ -206,4 +206,4 @@ TEST(SelfShadowing, OcclusionIsFlatInTheOffset) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::leaks_test

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::models_test {
 namespace {
 
 using namespace test;
@@ -153,4 +153,4 @@ TEST(TurnedFaces, OfOpenShellsTakePartWithBothSides) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::models_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::overlapping_test {
 namespace {
 
 using namespace test;
@@ -108,4 +108,4 @@ TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::overlapping_test

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::pairs_test {
 namespace {
 
 using namespace test;
@@ -128,4 +128,4 @@ TEST(HalfHiddenSquares, ExchangeHalf) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::pairs_test

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace patchlight {
+namespace patchlight::panes_test {
 namespace {
 
 using namespace test;
@@ -244,4 +244,4 @@ TEST(PanesOnTheWay, MultiplyForSegmentsAndPackets) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::panes_test

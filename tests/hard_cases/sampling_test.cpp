@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::sampling_test {
 namespace {
 
 using namespace test;
@@ -164,4 +164,4 @@ TEST(LostRays, UnderASolidThatStandsOnTheFloorAreCovered) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sampling_test

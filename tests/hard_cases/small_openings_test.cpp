@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::small_openings_test {
 namespace {
 
 using namespace test;
@@ -102,4 +102,4 @@ TEST(SlitsSeeds, ScatterAsStated) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::small_openings_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::solutions_test {
 namespace {
 
 using namespace test;
@@ -148,4 +148,4 @@ TEST(IsolatedPatches, KeepTheirExitanceBesideALitRoom) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solutions_test

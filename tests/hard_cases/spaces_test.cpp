@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 // Inside and outside of closed shells with openings.
-namespace patchlight {
+namespace patchlight::spaces_test {
 namespace {
 
 using namespace test;
@@ -73,4 +73,4 @@ TEST(Spaces, AreOneWhereNothingDividesThem) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::spaces_test

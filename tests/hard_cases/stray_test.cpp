@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::stray_test {
 namespace {
 
 using namespace test;
@@ -90,4 +90,4 @@ TEST(LargeGround, KeepsWhatStandsOnIt) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::stray_test

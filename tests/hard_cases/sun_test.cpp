@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <tuple>
 
-namespace patchlight {
+namespace patchlight::sun_test {
 namespace {
 
 using namespace test;
@@ -61,4 +61,4 @@ INSTANTIATE_TEST_SUITE_P(HardCases, SunThroughASmallHole,
                                           testing::Bool()));
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sun_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::thin_test {
 namespace {
 
 using namespace test;
@@ -180,4 +180,4 @@ TEST(Bounds, NoExchangeAreaExceedsTheSmallerPatch) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::thin_test

@@ -16,7 +16,7 @@
 #include <numbers>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::touching_test {
 namespace {
 
 using namespace test;
@@ -144,4 +144,4 @@ TEST(NearlyEqualPoints, OfAModelChangeNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::touching_test

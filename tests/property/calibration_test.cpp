@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::calibration_test {
 namespace {
 
 using namespace test;
@@ -153,4 +153,4 @@ TEST_F(Calibration, TheAuditFindsWhatRaysMiss) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::calibration_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::decisions_test {
 namespace {
 
 using namespace test;
@@ -60,4 +60,4 @@ TEST(Decisions, BlackRoomsHaveErrorBars) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::decisions_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::effects_test {
 namespace {
 
 using namespace test;
@@ -247,4 +247,4 @@ TEST(Closure, MattersWithInterreflection) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::effects_test

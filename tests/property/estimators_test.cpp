@@ -10,7 +10,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::estimators_test {
 namespace {
 
 using namespace test;
@@ -173,4 +173,4 @@ TEST_F(ShortCut, FarChangesNoMoreThanBothRulesErr) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::estimators_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::invariance_test {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(Invariance, RedundantFacesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::invariance_test

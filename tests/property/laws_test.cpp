@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::laws_test {
 namespace {
 
 using namespace test;
@@ -264,4 +264,4 @@ TEST(Simulate, PatchesInsideASolidTakeNoPart) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::laws_test

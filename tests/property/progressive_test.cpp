@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::progressive_test {
 namespace {
 
 // ||B_ref - B||_A / ||B_ref - E||_A, the worst band.
@@ -51,4 +51,4 @@ TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::progressive_test

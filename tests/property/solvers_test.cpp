@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::solvers_test {
 namespace {
 
 using namespace test;
@@ -231,4 +231,4 @@ TEST(Overshooting, SavesShotsInColour) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solvers_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::error_bars_test {
 namespace {
 
 Request with_bars(std::size_t patches) {
@@ -109,4 +109,4 @@ TEST(ErrorBars, ScaleWithTheLight) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::error_bars_test

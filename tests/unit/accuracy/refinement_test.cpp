@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::refinement_test {
 namespace {
 
 const Eigen::VectorXd effects = (Eigen::VectorXd(9) << 3, 0.5, 8, 1, 0, 2.5, 0.2, 4, 1).finished();
@@ -126,4 +126,4 @@ TEST(Importance, IsInterestWhereNothingReflects) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::refinement_test

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace patchlight {
+namespace patchlight::form_factor_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -326,4 +326,4 @@ TEST(GroupFactors, AreWrittenAsCsv) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::form_factor_files_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::npy_test {
 namespace {
 
 constexpr const char* start_of_version_1 = "\x93NUMPY\x01";
@@ -122,4 +122,4 @@ TEST(Npy, AShapeThatTheFileCannotHoldIsRefused) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::npy_test

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-namespace patchlight {
+namespace patchlight::scene_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST(SceneFile, ThatIsMissingIsExplained) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::scene_file_test

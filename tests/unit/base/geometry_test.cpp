@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::geometry_test {
 namespace {
 
 // An L of three unit squares in the plane z = 5, counter-clockwise from above.
@@ -68,4 +68,4 @@ TEST(SignedSolidAngle, OfAnOctantAndOfAClosedTetrahedron) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::geometry_test

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::large_array_test {
 namespace {
 
 std::uintptr_t place(const void* memory) { return reinterpret_cast<std::uintptr_t>(memory); }
@@ -34,4 +34,4 @@ TEST(LargeArray, KeepsItsValuesWhenItGrows) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::large_array_test

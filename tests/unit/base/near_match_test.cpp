@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::near_match_test {
 namespace {
 
 const std::vector<std::string> words = {"reflectance", "radiance", "unit", "up"};
@@ -27,4 +27,4 @@ TEST(Suggestion, IsASentenceOrNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::near_match_test

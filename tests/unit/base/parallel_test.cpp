@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::parallel_test {
 namespace {
 
 TEST(ParallelFor, CallsEveryIndexOnce) {
@@ -56,4 +56,4 @@ TEST(ParallelFor, StopsWhenTheObserverSaysSo) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::parallel_test

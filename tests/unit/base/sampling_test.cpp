@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-namespace patchlight {
+namespace patchlight::sampling_test {
 namespace {
 
 TEST(ScrambledSobol, EveryPowerOfTwoPrefixIsStratified) {
@@ -95,4 +95,4 @@ TEST(SquareToCosineHemisphere, HasItsDensity) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sampling_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::sha256_test {
 namespace {
 
 // The two messages and digests of NIST's example computations for FIPS 180-4, and that of the empty message.
@@ -19,4 +19,4 @@ TEST(Sha256, OfPartsIsThatOfTheirConcatenation) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sha256_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::contour_test {
 namespace {
 
 using Square = std::array<Point, 4>;
@@ -136,4 +136,4 @@ TEST(PointToPolygon, AveragesToTheContourIntegral) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::contour_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::pair_samples_test {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ INSTANTIATE_TEST_SUITE_P(All, PairSampling, testing::ValuesIn(pair_cases()),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::pair_samples_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::patch_cluster_test {
 namespace {
 
 using namespace test;
@@ -162,4 +162,4 @@ TEST(ClusterRow, AvertedClustersHaveNoFacingPair) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::patch_cluster_test

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::patch_shape_test {
 namespace {
 
 using namespace test;
@@ -91,4 +91,4 @@ TEST(Orientation, TellsFacingStraddlingAndAverted) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::patch_shape_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::solid_angle_test {
 namespace {
 
 using Square = std::array<Point, 4>;
@@ -80,4 +80,4 @@ TEST(SampleSolidAngle, FromBehindThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solid_angle_test

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::gather_test {
 namespace {
 
 using namespace test;
@@ -241,4 +241,4 @@ TEST(DoubtfulSensors, ManyAreCounted) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::gather_test

@@ -13,7 +13,7 @@
 // none: then the irradiance of a sensor before the wall is the form factor of the wall's openings, in closed form,
 // as every ray through one of them meets light.
 
-namespace patchlight {
+namespace patchlight::openings_test {
 namespace {
 
 using namespace test;
@@ -182,4 +182,4 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsErrsAsItStates) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::openings_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::sensor_places_test {
 namespace {
 
 using namespace test;
@@ -152,4 +152,4 @@ TEST(PlaceSensors, InALitRoomThatIsTurnedInsideOutAreFree) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sensor_places_test

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::formats_test {
 namespace {
 
 using Formats = ModelFiles;
@@ -364,4 +364,4 @@ TEST_F(Formats, AFaultIsFoundInItsOwnFile) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::formats_test

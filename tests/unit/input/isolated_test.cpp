@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::isolated_test {
 namespace {
 
 std::string refusal(const std::function<Scene()>& read) {
@@ -67,4 +67,4 @@ TEST(ReadIsolated, MemoryIsLimited) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::isolated_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::material_setting_test {
 namespace {
 
 using Quantity = MaterialSetting::Quantity;
@@ -47,4 +47,4 @@ TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::material_setting_test

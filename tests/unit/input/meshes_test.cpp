@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::meshes_test {
 namespace {
 
 // Coordinates in the files are exact to half a tenth of a millimetre and areas are sums of a few of their products:
@@ -118,4 +118,4 @@ TEST(Meshes, TheFurnitureOfTheTwoRoomsStandsFree) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::meshes_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace patchlight {
+namespace patchlight::read_epw_test {
 namespace {
 
 // The first line and two hours of a made-up weather file, in the fields of EnergyPlus: year, month, day, hour, minute,
@@ -61,4 +61,4 @@ TEST(ReadEpw, RefusesWithFileAndLine) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::read_epw_test

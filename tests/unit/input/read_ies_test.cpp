@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-namespace patchlight {
+namespace patchlight::read_ies_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -144,4 +144,4 @@ TEST(ReadIes, RefusesWithFileAndLine) {
 TEST(ReadIes, RefusesAFileThatIsNotThere) { EXPECT_THROW(read_ies("/nowhere/lamp.ies"), InputError); }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::read_ies_test

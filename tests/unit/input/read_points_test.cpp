@@ -2,7 +2,7 @@
 
 #include "model_files.h"
 
-namespace patchlight {
+namespace patchlight::read_points_test {
 namespace {
 
 class ReadPoints : public ModelFiles {};
@@ -36,4 +36,4 @@ TEST_F(ReadPoints, RefusesWithFileAndLine) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::read_points_test

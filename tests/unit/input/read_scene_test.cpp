@@ -10,7 +10,7 @@
 #include <map>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::read_scene_test {
 namespace {
 
 using ReadScene = ModelFiles;
@@ -401,4 +401,4 @@ TEST_F(ReadScene, RefusesBadMaterialsNamingFileAndLine) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::read_scene_test

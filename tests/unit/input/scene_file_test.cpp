@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patchlight {
+namespace patchlight::scene_file_test {
 namespace {
 
 constexpr const char* room_obj =
@@ -228,4 +228,4 @@ TEST_F(SceneFile, UnitOptionIsRefused) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::scene_file_test

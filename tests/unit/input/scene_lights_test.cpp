@@ -8,7 +8,7 @@
 #include <numbers>
 #include <variant>
 
-namespace patchlight {
+namespace patchlight::scene_lights_test {
 namespace {
 
 using std::numbers::pi;
@@ -182,4 +182,4 @@ TEST_F(SceneLights, WrongLightsAreRefusedWithLineAndKey) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::scene_lights_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::solar_position_test {
 namespace {
 
 TEST(SolarPosition, OfThePublishedExampleOfTheMostPreciseAlgorithm) {
@@ -53,4 +53,4 @@ TEST(DayOfYear, CountsLeapDays) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solar_position_test

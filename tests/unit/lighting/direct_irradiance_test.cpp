@@ -15,7 +15,7 @@
 #include <numeric>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::direct_irradiance_test {
 namespace {
 
 using namespace test;
@@ -447,4 +447,4 @@ TEST(DirectIrradiance, OfAPointInsideALampIsNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::direct_irradiance_test

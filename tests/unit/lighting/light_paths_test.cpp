@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::light_paths_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ TEST(LightPaths, KeepTheBandsApart) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::light_paths_test

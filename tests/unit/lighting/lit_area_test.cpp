@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::lit_area_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -111,4 +111,4 @@ TEST(LitArea, OfTooManyShadowsInOnePlaceIsNotSaid) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::lit_area_test

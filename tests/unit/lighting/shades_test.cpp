@@ -9,7 +9,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::shades_test {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(Shades, OfAPaneAreItsTransmittancePerBand) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::shades_test

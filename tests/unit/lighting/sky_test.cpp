@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::sky_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -125,4 +125,4 @@ TEST(SkyModel, IsNeverNegative) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sky_test

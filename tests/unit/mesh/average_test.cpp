@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::average_test {
 namespace {
 
 Field random_field(const PatchMesh& mesh) {
@@ -126,4 +126,4 @@ TEST(Average, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::average_test

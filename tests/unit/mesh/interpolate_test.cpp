@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::interpolate_test {
 namespace {
 
 // Two bands, each a linear function of position.
@@ -135,4 +135,4 @@ TEST(VertexMeans, WeighByArea) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::interpolate_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::max_edge_for_test {
 namespace {
 
 PatchIndex patches_for(const Scene& scene, PatchIndex wanted) {
@@ -43,4 +43,4 @@ TEST(MaxEdgeFor, CountsBothSides) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::max_edge_for_test

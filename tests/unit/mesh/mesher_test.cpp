@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::mesher_test {
 namespace {
 
 using tiny::Shape;
@@ -272,4 +272,4 @@ TEST(Mesher, RefusesMorePatchesThanIndices) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::mesher_test

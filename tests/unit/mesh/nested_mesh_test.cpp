@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::nested_mesh_test {
 namespace {
 
 // A large floor, and a small face above it.
@@ -144,4 +144,4 @@ TEST(NestedMesh, MeansAreByArea) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::nested_mesh_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::patch_lookup_test {
 namespace {
 
 // A point of a patch, not nearer to an edge than a twentieth of the patch's height there.
@@ -94,4 +94,4 @@ TEST(PatchLookup, HasNothingOnASideThatIsNotKept) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::patch_lookup_test

@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::refine_test {
 namespace {
 
 // Shapes are some units in size, so that a corner is known to some 1e-16, and areas to that times the perimeter.
@@ -217,4 +217,4 @@ TEST(Refine, HangingVerticesTakeTheMeanOfTheirEdge) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::refine_test

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::shared_vertices_test {
 namespace {
 
 using Coordinates = std::tuple<double, double, double>;
@@ -140,4 +140,4 @@ TEST(SharedVertices, AClosedPrismIsSmoothAroundButNotAtItsLids) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::shared_vertices_test

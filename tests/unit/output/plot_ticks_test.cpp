@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace patchlight {
+namespace patchlight::plot_ticks_test {
 namespace {
 
 std::string with_minus(std::string text) {
@@ -149,4 +149,4 @@ TEST(PlaceOnAxis, HalvesALogarithmicAxisAtTheGeometricMean) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::plot_ticks_test

@@ -11,7 +11,7 @@
 #include <sys/fsuid.h>
 #include <sys/stat.h>
 
-namespace patchlight {
+namespace patchlight::whole_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,4 +161,4 @@ TEST(CheckWritable, RefusesAFolderWithoutPermission) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::whole_file_test

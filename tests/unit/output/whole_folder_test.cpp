@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::whole_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ TEST(WholeFolder, RemovesLeftFoldersButNoneInUse) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::whole_folder_test

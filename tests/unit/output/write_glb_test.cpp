@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::write_glb_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -168,4 +168,4 @@ TEST(WriteGlb, BoundsAreExact) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_glb_test

@@ -10,7 +10,7 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
-namespace patchlight {
+namespace patchlight::write_image_test {
 namespace {
 
 // Every pixel different, and no symmetry.
@@ -85,4 +85,4 @@ TEST(WithLegend, IsSafeForTinyPictures) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_image_test

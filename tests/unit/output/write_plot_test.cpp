@@ -11,7 +11,7 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
-namespace patchlight {
+namespace patchlight::write_plot_test {
 namespace {
 
 constexpr int width = 900;
@@ -267,4 +267,4 @@ TEST(WritePlot, FullDiskIsAnError) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_plot_test

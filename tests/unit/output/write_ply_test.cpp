@@ -15,7 +15,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-namespace patchlight {
+namespace patchlight::write_ply_test {
 namespace {
 
 constexpr double exposure = 0.125;
@@ -87,4 +87,4 @@ TEST(WritePly, AnotherReaderFindsFacesAndColours) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_ply_test

@@ -12,7 +12,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
-namespace patchlight {
+namespace patchlight::write_points_test {
 namespace {
 
 SensorGroup points(const std::vector<std::string>& columns) {
@@ -99,4 +99,4 @@ TEST(WritePoints, FullDiskIsAnError) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_points_test

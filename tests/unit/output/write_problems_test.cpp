@@ -15,7 +15,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
-namespace patchlight {
+namespace patchlight::write_problems_test {
 namespace {
 
 using namespace test;
@@ -77,4 +77,4 @@ TEST(SurveyJson, HoldsTheReport) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_problems_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace patchlight {
+namespace patchlight::write_report_test {
 namespace {
 
 nlohmann::json report_of(const Scene& scene, const Simulation& simulation) {
@@ -146,4 +146,4 @@ TEST(WriteReport, IsValidJsonWhateverItHolds) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_report_test

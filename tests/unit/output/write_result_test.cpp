@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::write_result_test {
 namespace {
 
 TEST(WriteResult, WritesEveryExtensionItNames) {
@@ -53,4 +53,4 @@ TEST(WriteResult, FullDiskIsAnErrorAndKeepsTheOldFile) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_result_test

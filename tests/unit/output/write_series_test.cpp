@@ -18,7 +18,7 @@
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataReader.h>
 
-namespace patchlight {
+namespace patchlight::write_series_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ TEST(WriteSeries, IntoAFolderThatCannotBeOpenedIsRefused) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_series_test

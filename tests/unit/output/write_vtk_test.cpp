@@ -22,7 +22,7 @@
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataReader.h>
 
-namespace patchlight {
+namespace patchlight::write_vtk_test {
 namespace {
 
 constexpr double exposure = 0.125;
@@ -239,4 +239,4 @@ TEST(WriteVtk, FullDiskIsAnErrorAndKeepsTheOldFile) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::write_vtk_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::close_lamps_test {
 namespace {
 
 using namespace test;
@@ -31,4 +31,4 @@ TEST(CloseLamps, NoneWherePatchesAreSmallOrTheLampIsFar) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::close_lamps_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-namespace patchlight {
+namespace patchlight::decide_test {
 namespace {
 
 // A room as most are: something stands in it, it reflects, and so do its colours. One lamp.
@@ -170,4 +170,4 @@ TEST(Decide, ClosureFollowsItsOptions) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::decide_test

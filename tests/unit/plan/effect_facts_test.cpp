@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::effect_facts_test {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(SurveyEffects, CountsMaterialsThatAreNotSimulated) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::effect_facts_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::left_out_sides_test {
 namespace {
 
 using namespace test;
@@ -52,4 +52,4 @@ TEST(LeftOutSides, StayLeftOutInThePlan) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::left_out_sides_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::plan_test {
 namespace {
 
 using namespace test;
@@ -149,4 +149,4 @@ TEST(Simulate, RefusesErrorsOfFormFactorsThatAreNotKept) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::plan_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::survey_test {
 namespace {
 
 using namespace test;
@@ -97,4 +97,4 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::survey_test

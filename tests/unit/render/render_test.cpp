@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::render_test {
 namespace {
 
 // A square of edge 1 around `centre` in the plane y = centre.y, whose front looks to -y.
@@ -217,4 +217,4 @@ TEST(DefaultCamera, SeesALonelyFloor) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::render_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::smooth_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(Smooth, CoveredPatchesDoNotDarkenTheirSurroundings) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::smooth_test

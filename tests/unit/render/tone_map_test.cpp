@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace patchlight {
+namespace patchlight::tone_map_test {
 namespace {
 
 Field grey(const Eigen::ArrayXd& values) { return values.replicate(1, 3); }
@@ -124,4 +124,4 @@ TEST(FalseColor, ClampsWhatIsOutside) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::tone_map_test

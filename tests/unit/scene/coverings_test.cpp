@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::coverings_test {
 namespace {
 
 using namespace test;
@@ -88,4 +88,4 @@ TEST(Coverings, AFrameAroundAHoleIsNotCoveredByWhatFillsTheHole) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::coverings_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::daylight_test {
 namespace {
 
 Vector at_altitude(double degrees) {
@@ -56,4 +56,4 @@ TEST(MeasuredDaylight, AfterSunsetHasNoSun) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::daylight_test

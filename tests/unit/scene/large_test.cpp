@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::large_test {
 namespace {
 
 using namespace test;
@@ -134,4 +134,4 @@ TEST(Large, CoveringsAreThoseOfAllPairs) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::large_test

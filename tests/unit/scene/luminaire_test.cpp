@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::luminaire_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -122,4 +122,4 @@ TEST(SpotSolidAngle, OfANarrowGaussianBeam) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::luminaire_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::repair_test {
 namespace {
 
 using namespace test;
@@ -376,4 +376,4 @@ TEST(Repair, LeavesOutFacesThatAreNothingBesideTheRest) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::repair_test

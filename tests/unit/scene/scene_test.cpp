@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-namespace patchlight {
+namespace patchlight::scene_test {
 namespace {
 
 using test::empty_scene, test::grey, test::Quad, test::with_box, test::with_quad;
@@ -130,4 +130,4 @@ TEST(CheckScene, DoesNotDependOnTheSizeOfTheModel) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::scene_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::sensor_grid_test {
 namespace {
 
 using namespace test;
@@ -64,4 +64,4 @@ TEST(FloorGrid, LeavesHolesOut) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sensor_grid_test

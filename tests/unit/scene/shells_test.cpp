@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::shells_test {
 namespace {
 
 using namespace test;
@@ -84,4 +84,4 @@ TEST(ShellsOf, AMoebiusBandIsOneOpenShell) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::shells_test

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::sides_test {
 namespace {
 
 constexpr MaterialIndex wall = 0;
@@ -383,4 +383,4 @@ TEST(KeptSides, ALampInTheInnermostShellIsHeldByAll) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::sides_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::triangulate_test {
 namespace {
 
 using Outline = std::vector<Point>;
@@ -122,4 +122,4 @@ TEST(IsConvex, TellsConvexFromConcave) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::triangulate_test

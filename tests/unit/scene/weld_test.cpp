@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-namespace patchlight {
+namespace patchlight::weld_test {
 namespace {
 
 std::vector<Point> random_points(std::size_t count, std::mt19937& random) {
@@ -55,4 +55,4 @@ TEST(WeldDistance, IsAMillionthOfTheExtentUnlessTheOriginIsFar) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::weld_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::coarse_transport_test {
 namespace {
 
 // Patches of an integrating sphere with a hole: each sends the share `arrives` of its light evenly to all area,
@@ -118,4 +118,4 @@ TEST(CoarseTransport, LetsEachGroupShootOnceAndThenTheBrightest) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::coarse_transport_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::iterates_test {
 namespace {
 
 // Four patches of different areas in a closed room, with a symmetric S whose rows sum to the areas.
@@ -106,4 +106,4 @@ TEST(Jacobi, IterateKIsBounceK) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::iterates_test

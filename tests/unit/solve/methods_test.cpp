@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::methods_test {
 namespace {
 
 using namespace test;
@@ -86,4 +86,4 @@ TEST(ProgressiveRefinement, StopsAfterSoManyRows) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::methods_test

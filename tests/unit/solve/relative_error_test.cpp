@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::relative_error_test {
 namespace {
 
 // Two patches of 1 and 4 m^2, two bands; the first patch emits 10 W/m^2 in the first band.
@@ -42,4 +42,4 @@ TEST_F(RelativeError, OfWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::relative_error_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::solve_test {
 namespace {
 
 using namespace test;
@@ -239,4 +239,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver, testing::ValuesIn(all_solvers()),
 });
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solve_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::solved_bands_test {
 namespace {
 
 RadiosityProblem two_patches(const Field& reflectance, const Field& exitance) {
@@ -45,4 +45,4 @@ TEST(AllBands, TakesEachAsItIs) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::solved_bands_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-namespace patchlight {
+namespace patchlight::spectral_radius_test {
 namespace {
 
 constexpr PatchIndex size = 40;
@@ -83,4 +83,4 @@ TEST(SpectralRadius, OfAClosedRoomIsItsReflectance) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::spectral_radius_test

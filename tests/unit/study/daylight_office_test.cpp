@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 // A solution by daylight against paths, and what a verdict is worth.
-namespace patchlight {
+namespace patchlight::daylight_office_test {
 namespace {
 
 using namespace test;
@@ -122,4 +122,4 @@ TEST(Verdict, SeesACommonOffsetBelowTheNoiseOfPatches) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::daylight_office_test

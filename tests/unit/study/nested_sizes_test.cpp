@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::nested_sizes_test {
 namespace {
 
 using namespace test;
@@ -45,4 +45,4 @@ TEST(FinerThan, HasFourPatchesOrMoreInEachOfBothMeshes) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::nested_sizes_test

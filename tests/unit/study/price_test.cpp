@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace patchlight {
+namespace patchlight::price_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -145,4 +145,4 @@ TEST(Conclusion, SaysPricesAndWhatLimits) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::price_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::study_test {
 namespace {
 
 using namespace test;
@@ -110,4 +110,4 @@ TEST(Discrepancy, IsRelativeToTheReflectedLight) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::study_test

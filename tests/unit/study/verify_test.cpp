@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace patchlight {
+namespace patchlight::verify_test {
 namespace {
 
 using namespace test;
@@ -168,4 +168,4 @@ TEST(Verify, SameBitsWithAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::verify_test

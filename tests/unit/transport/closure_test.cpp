@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::closure_test {
 namespace {
 
 // An open scene whose raw entries are far off for one patch: patch 0 of 0.5 m^2 has exchange areas that add up to 2
@@ -43,4 +43,4 @@ TEST(KeepExchangeAreas, ChangesNothingAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::closure_test

@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::dense_test {
 namespace {
 
 double entry(PatchIndex i, PatchIndex j) { return i == j ? 0 : std::abs(std::sin(static_cast<double>(i * j + i + j))); }
@@ -179,4 +179,4 @@ TEST(DenseTransport, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::dense_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::entry_errors_test {
 namespace {
 
 // Half a step of a sixth of an octave, and rounding.
@@ -67,4 +67,4 @@ TEST(EntryErrors, FollowFromTheUnoccludedValueAndTheAudit) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::entry_errors_test

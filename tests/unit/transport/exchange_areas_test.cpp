@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::exchange_areas_test {
 namespace {
 
 constexpr PatchIndex edge = ExchangeAreas::edge;
@@ -68,4 +68,4 @@ TEST(NarrowTowardZero, NeverGrows) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::exchange_areas_test

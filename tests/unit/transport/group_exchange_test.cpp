@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::group_exchange_test {
 namespace {
 
 // More than one tile; entries are small whole numbers, so that all sums are exact.
@@ -41,4 +41,4 @@ TEST(GroupExchange, OneGroupIsAll) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::group_exchange_test

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::known_entries_test {
 namespace {
 
 const AssemblyOptions keep_errors{.keep_errors = true};
@@ -122,4 +122,4 @@ TEST(KnownEntries, OfTheSameMeshCostNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::known_entries_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::lost_share_test {
 namespace {
 
 using namespace test;
@@ -55,4 +55,4 @@ TEST(LostShare, OfKnownPatchesIsTakenOver) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::lost_share_test

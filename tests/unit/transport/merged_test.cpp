@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-namespace patchlight {
+namespace patchlight::merged_test {
 namespace {
 
 constexpr double single = std::numeric_limits<float>::epsilon();
@@ -123,4 +123,4 @@ TEST(EffectsOfParts, AreTheSquaredSumsOverTheParts) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::merged_test

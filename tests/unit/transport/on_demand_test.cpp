@@ -13,7 +13,7 @@
 #include <limits>
 #include <string>
 
-namespace patchlight {
+namespace patchlight::on_demand_test {
 namespace {
 
 using namespace test;
@@ -178,4 +178,4 @@ TEST(OnDemand, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::on_demand_test

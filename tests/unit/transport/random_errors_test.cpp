@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::random_errors_test {
 namespace {
 
 // A cube of 24 patches with invented kinds of entries.
@@ -139,4 +139,4 @@ TEST(RandomErrors, SameBitsWithAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::random_errors_test

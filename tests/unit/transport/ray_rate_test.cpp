@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::ray_rate_test {
 namespace {
 
 using namespace test;
@@ -24,4 +24,4 @@ TEST(BareRayRate, IsStatedForEnoughRaysOnly) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::ray_rate_test

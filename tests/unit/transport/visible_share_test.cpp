@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace patchlight {
+namespace patchlight::visible_share_test {
 namespace {
 
 using namespace test;
@@ -77,4 +77,4 @@ TEST(VisibleShare, HasTheRightExpectation) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::visible_share_test

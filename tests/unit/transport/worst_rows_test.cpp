@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::worst_rows_test {
 namespace {
 
 // Defects times area: 0.1, 0.3, 0.3, 0; a large defect of a small patch comes last but one.
@@ -31,4 +31,4 @@ TEST(WorstRows, OfEqualsTheFirstAndNoMoreThanThereAre) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::worst_rows_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-namespace patchlight {
+namespace patchlight::validate_test {
 namespace {
 
 ValidationCase one_case(double exact, const Measured& measured) {
@@ -56,4 +56,4 @@ TEST(Validation, CanBeStopped) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::validate_test

@@ -9,7 +9,7 @@
 
 // Paths that meet luminaires, sun and sky, against closed forms; as they stand, and turned in a model of 1/1000 of the
 // size.
-namespace patchlight {
+namespace patchlight::lights_test {
 namespace {
 
 using namespace test;
@@ -112,4 +112,4 @@ TEST(PathLights, OpenGroundHasTheHorizontalIrradianceOfItsSky) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::lights_test

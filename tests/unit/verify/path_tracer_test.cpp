@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace patchlight {
+namespace patchlight::path_tracer_test {
 namespace {
 
 using namespace test;
@@ -173,4 +173,4 @@ TEST(TraceIrradiance, EndsBetweenSurfacesThatAbsorbNothing) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::path_tracer_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::occluder_test {
 namespace {
 
 using namespace test;
@@ -153,4 +153,4 @@ TEST(FirstHits, NoRayLeavesAClosedRoom) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::occluder_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patchlight {
+namespace patchlight::shaft_test {
 namespace {
 
 using namespace test;
@@ -138,4 +138,4 @@ TEST(Occluder, PacketsAgreeWithSegments) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::shaft_test
