@@ -1,10 +1,10 @@
 #include "input/obj_libraries.h"
 
+#include "base/lower_case.h"
 #include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <set>
 
@@ -21,12 +21,6 @@ struct LibraryFile {
 bool is_file(const std::filesystem::path& file) {
   std::error_code error;
   return std::filesystem::is_regular_file(file, error);
-}
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
 }
 
 // Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
+#include "base/lower_case.h"
 #include "input/read_collada.h"
 #include "input/read_gltf.h"
 #include "input/read_ifc.h"
@@ -12,9 +13,8 @@
 #include "input/read_stl.h"
 #include "input/text.h"
 
-#include <algorithm>
-#include <cctype>
 #include <system_error>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -45,9 +45,7 @@ std::string format_of(const std::filesystem::path& file) {
   if (file == "-") return "obj";
   std::string text = file.extension().string();
   if (!text.empty()) text.erase(0, 1);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
+  return in_lower_case(std::move(text));
 }
 
 void require_file(const std::filesystem::path& file, const std::string& where) {

@@ -1,9 +1,10 @@
 #include "output/plot_ticks.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace patchlight {
 namespace {
@@ -56,9 +57,10 @@ std::string with_minus_sign(std::string number) {
 }
 
 std::string plain_number(double value, int decimals) {
-  char text[350];
-  std::snprintf(text, sizeof text, "%.*f", std::max(0, decimals), value);
-  return with_minus_sign(text);
+  std::array<char, 350> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, std::max(0, decimals));
+  return with_minus_sign({text.data(), end});
 }
 
 std::string exponent_text(int exponent) { return with_minus_sign(std::to_string(exponent)); }

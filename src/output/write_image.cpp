@@ -6,8 +6,9 @@
 #include "output/write_bytes.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <vtkAutoInit.h>
 #include <vtkFreeTypeTools.h>
@@ -76,9 +77,12 @@ DisplayImage text_image(const std::string& text, int font_size) {
 std::string short_number(double value) {
   // Three digits; thousands are written out.
   const double size = std::abs(value);
-  char text[32];
-  std::snprintf(text, sizeof text, size >= 999.5 && size < 1e6 ? "%.0f" : "%.3g", value);
-  return text;
+  const bool is_whole = size >= 999.5 && size < 1e6;
+  std::array<char, 32> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value,
+                    is_whole ? std::chars_format::fixed : std::chars_format::general, is_whole ? 0 : 3);
+  return {text.data(), end};
 }
 
 // A column of false colours, the upper value at the top.

@@ -3,11 +3,11 @@
 #include "patchlight/scene/coverings.h"
 #include "patchlight/scene/shells.h"
 
+#include "base/lower_case.h"
 #include "scene/extent.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -107,12 +107,6 @@ std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
   }
   std::erase_if(all, [](const MaterialFacts& facts) { return facts.faces == 0; });
   return all;
-}
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
 }
 
 // The reader's hints, else the materials with a name like a lamp's.
