@@ -10,12 +10,48 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#if defined(__SANITIZE_THREAD__)
+#include <exception>
+#include <thread>
+#include <vector>
+#endif
 
 namespace patchlight {
+namespace {
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t index) { body(index); });
+#if defined(__SANITIZE_THREAD__)
+// TBB is not compiled for the thread sanitizer, which sees none of the order that it keeps. Here plain threads take the
+// items one by one, and nothing else orders what they do.
+void for_each_item(std::size_t count, const auto& body, const auto&... /*partitioner*/) {
+  constexpr std::size_t most_threads = 4;
+  std::atomic<std::size_t> next{0};
+  std::mutex failing;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t index = next++; index < count; index = next++) {
+      try {
+        body(index);
+      } catch (...) {
+        const std::scoped_lock lock(failing);
+        failure = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  while (threads.size() < std::min(count, most_threads)) threads.emplace_back(work);
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
 }
+#else
+void for_each_item(std::size_t count, const auto& body, const auto&... partitioner) {
+  tbb::parallel_for(
+      std::size_t{0}, count, [&](std::size_t index) { body(index); }, partitioner...);
+}
+#endif
+
+}  // namespace
+
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) { for_each_item(count, body); }
 
 void parallel_for(std::size_t count, Stage stage, const Observer& observer,
                   const std::function<void(std::size_t)>& body) {
@@ -33,15 +69,13 @@ void parallel_for(std::size_t count, Stage stage, const Observer& observer,
     if (!observer({.stage = stage, .fraction = static_cast<double>(done) / static_cast<double>(count)})) stopped = true;
     next_report = wall_seconds() + interval;
   };
-  tbb::parallel_for(
-      std::size_t{0}, count,
-      [&](std::size_t index) {
-        if (stopped) return;
-        body(index);
-        ++done;
-        if (wall_seconds() >= next_report) report();
-      },
-      tbb::simple_partitioner());
+  const auto observed = [&](std::size_t index) {
+    if (stopped) return;
+    body(index);
+    ++done;
+    if (wall_seconds() >= next_report) report();
+  };
+  for_each_item(count, observed, tbb::simple_partitioner());
   if (stopped || !observer({.stage = stage, .fraction = 1})) throw Cancelled();
 }
 
