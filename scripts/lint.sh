@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks the format of every C++ file and the module layers; with --tidy also runs clang-tidy, when it is installed.
-# usage: scripts/lint.sh [--tidy]
+# Checks the format of every C++ file and the module layers; with --tidy also runs clang-tidy, when it is installed, on all
+# sources or on those that have changed since the commit BASE. All take about an hour of one processor.
+# usage: scripts/lint.sh [--tidy [BASE]]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,7 +13,11 @@ python3 scripts/check_layers.py
 if [ "${1:-}" = --tidy ]; then
   command -v clang-tidy >/dev/null || { echo "lint: clang-tidy is not installed; left out"; exit 0; }
   cmake --preset tidy >/dev/null
-  mapfile -t sources < <(git ls-files --cached --others --exclude-standard 'src/*.cpp')
-  printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build-tidy --quiet
-  echo "lint: clang-tidy is content"
+  if [ -n "${2:-}" ]; then
+    mapfile -t sources < <(git diff --name-only --diff-filter=d "$2" -- 'src/*.cpp')
+  else
+    mapfile -t sources < <(git ls-files --cached --others --exclude-standard 'src/*.cpp')
+  fi
+  [ ${#sources[@]} -eq 0 ] || printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build-tidy --quiet
+  echo "lint: clang-tidy is content with ${#sources[@]} files"
 fi

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds patchlight and runs every test. Safe to run again.
-# usage: scripts/test.sh
+# usage: scripts/test.sh [PRESET]    a preset of CMakePresets.json; default: release. checked has asserts.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 echo "test: packages, build, then every test; the first run takes some minutes"
 scripts/install_packages.sh
-cmake --preset release >/dev/null
-cmake --build build -j "$(nproc)"
-ctest --test-dir build --output-on-failure -j "$(nproc)"
+preset=${1:-release}
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset" -j "$(nproc)"
+ctest --preset "$preset" --output-on-failure -j "$(nproc)"
 echo "test: all passed"
