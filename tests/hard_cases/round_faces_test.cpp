@@ -10,7 +10,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace patchlight {
+namespace patchlight::round_faces_test {
 namespace {
 
 using namespace test;
@@ -126,4 +126,4 @@ TEST(RoundFace, IsTheLidOfAFurnace) {
 }
 
 }  // namespace
-}  // namespace patchlight
+}  // namespace patchlight::round_faces_test
