@@ -25,6 +25,7 @@ struct GroupFactors {
   Eigen::MatrixXd form_factor;     ///< rows: from, columns: to
 };
 
+/// The form factors between the groups of a scene, each the mean over the area of the group it is from.
 GroupFactors group_factors(const Scene& scene, const FormFactors& form_factors, GroupBy by);
 
 /// Writes a CSV: a header with the names of the groups, then per group its name, its area in m^2 and its form factors

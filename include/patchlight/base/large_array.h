@@ -22,6 +22,7 @@ struct PageAllocator {
   bool operator==(const PageAllocator&) const = default;
 };
 
+/// A vector whose memory is taken in whole pages.
 template <typename T>
 using LargeArray = std::vector<T, PageAllocator<T>>;
 

@@ -18,6 +18,7 @@ struct SampledPatch {
   bool is_triangle = false;
 };
 
+/// The patch of a shape, whose polygon is `polygon`, in the frame of an occluder.
 SampledPatch sampled_patch(const PatchShape& shape, PolygonIndex polygon, const TracingFrame& frame);
 
 /// The samples of up to sixteen shadow rays and what each contributes to its pair's mean geometry term.

@@ -36,6 +36,7 @@ enum class Orientation {
   straddling  ///< facing in part: one crosses the other's plane
 };
 
+/// How the two stand to each other; symmetric.
 Orientation orientation(const PatchShape& first, const PatchShape& second);
 
 /// Closer than two diameters of the larger patch: the geometry term varies too much for quadrature or area sampling.

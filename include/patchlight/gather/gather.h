@@ -19,6 +19,7 @@ struct RadiosityErrors {
   Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
 };
 
+/// How the light at sensors is sampled.
 struct GatherOptions {
   int least_rays = 4;          ///< shadow rays to a patch before the sensor
   int rays = 8192;             ///< more of them to all patches together, in proportion to what patches may give

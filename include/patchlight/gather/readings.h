@@ -39,6 +39,7 @@ std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors&
 /// True for a sensor inside a wall (place_sensors()): it has no part in statistics.
 bool is_inside_wall(const Readings& readings, std::size_t sensor);
 
+/// What one of the sensors reads.
 SensorValue sensor_value(const Readings& readings, std::size_t sensor);
 
 /// "lx" or "W/m^2".
@@ -61,6 +62,7 @@ struct GroupReadings {
   std::optional<double> mean_daylight_factor{};  ///< percent
 };
 
+/// The statistics of each group of sensors, in their order.
 std::vector<GroupReadings> by_group(std::span<const SensorGroup> groups, const Readings& readings);
 
 }  // namespace patchlight

@@ -23,6 +23,7 @@ struct MaterialSetting {
 /// \throws InputError naming the option --set.
 MaterialSetting parse_material_setting(const std::string& text);
 
+/// How a model file is to be taken.
 struct ReadOptions {
   double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
   std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene

@@ -7,6 +7,7 @@
 
 namespace patchlight {
 
+/// Place of a material in Scene::materials.
 using MaterialIndex = std::uint32_t;
 
 /// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.

@@ -13,8 +13,10 @@ struct Curve {
   std::vector<std::array<double, 2>> points;
 };
 
+/// How an axis is divided.
 enum class Scale { linear, logarithmic };
 
+/// One axis of a plot.
 struct Axis {
   std::string label;
   Scale scale = Scale::linear;

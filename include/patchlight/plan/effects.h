@@ -28,6 +28,7 @@ std::vector<Effect> simulated_effects();
 /// The effect's name as on the command line.
 const char* name_of(Effect effect);
 
+/// True when the effect is one of the list.
 bool contains(const std::vector<Effect>& effects, Effect effect);
 
 /// Whether an effect is simulated, and why.

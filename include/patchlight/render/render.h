@@ -10,6 +10,7 @@
 
 namespace patchlight {
 
+/// Size and fineness of a picture.
 struct RenderOptions {
   int width = 800;
   int height = 800;

@@ -34,6 +34,7 @@ enum class ProblemKind : std::uint8_t {
   welded_vertices      ///< different vertices at one place
 };
 
+/// An error keeps a scene from being solved; a warning may make the solution wrong; a remark only tells.
 enum class Severity : std::uint8_t { error, warning, remark };
 
 /// A face as it stands in the model.
@@ -55,6 +56,7 @@ struct Problem {
 /// "self_intersecting" and so on.
 const char* name_of(ProblemKind kind);
 
+/// How grave problems of a kind are.
 Severity severity_of(ProblemKind kind);
 
 /// "error", "warning" or "remark".

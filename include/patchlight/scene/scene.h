@@ -16,6 +16,7 @@
 
 namespace patchlight {
 
+/// Place of a polygon in Scene::polygons.
 using PolygonIndex = std::uint32_t;
 
 /// Stands for "no polygon".

@@ -21,6 +21,7 @@ struct RadiosityProblem {
 /// What patches send out before any of it has come from another patch: E + rho o H_direct, W/m^2.
 Field source_radiosity(const RadiosityProblem& problem);
 
+/// The light that a solver has found, and how good it is.
 struct Solution {
   Field radiosity;          ///< B, W/m^2; B = E + rho o H
   Field irradiance;         ///< H, W/m^2

@@ -34,6 +34,7 @@ const char* name_of(Solver solver);
 /// True for the two that shoot: they take single rows of the transport, never all at once.
 bool is_shooting(Solver solver);
 
+/// Which solver, and when it stops.
 struct SolverOptions {
   Solver solver = Solver::cg;
   double relative_error = 1e-6;  ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below

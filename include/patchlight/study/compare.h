@@ -20,6 +20,7 @@ std::string name_of(const Contestant& contestant);
 /// All solvers on the stored matrix, and progressive refinement on demand.
 std::vector<Contestant> all_contestants();
 
+/// Which solvers are compared, and how far they run.
 struct CompareOptions {
   std::vector<Contestant> contestants = all_contestants();
   double relative_error = 1e-6;  ///< true error that every solver is to reach

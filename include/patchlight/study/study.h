@@ -29,6 +29,7 @@ struct StudySetting {
 /// the reciprocal of the number of samples, and the tolerance.
 enum class Swept { patch_size, samples, tolerance };
 
+/// Settings that differ in one quantity.
 struct StudySweep {
   std::string name;
   Swept swept = Swept::patch_size;
@@ -65,6 +66,7 @@ struct Study {
   std::string trapped;  ///< why there is no solution, and nothing else here; else empty
 };
 
+/// How much a study tries.
 struct StudyOptions {
   int sizes = 4;           ///< of patches at most: longest edges are halved, so patches times four
   bool adaptive = true;    ///< solve to accuracies as well, with patches that are refined where it pays
@@ -80,6 +82,7 @@ struct StudyOptions {
 Study study(const Scene& scene, const Request& request, const StudyOptions& options = {},
             const Observer& observer = {});
 
+/// Wall-clock and processor seconds from the mesh to the solution.
 double seconds_of(const StudySetting& setting);
 double cpu_seconds_of(const StudySetting& setting);
 

@@ -16,11 +16,13 @@ inline constexpr double least_probability = 0.01;
 /// And says nothing where bars, or what the noise of the paths leaves of the mean, are a larger share of the light.
 inline constexpr double widest_bar = 0.1;
 
+/// What a comparison with path tracing says.
 enum class Verdict : std::uint8_t { agrees, disagrees, inconclusive };
 
 /// "agrees", "disagrees" or "inconclusive".
 const char* name_of(Verdict verdict);
 
+/// How much path tracing a verdict rests on.
 struct VerifyOptions {
   std::uint32_t paths = 4096;  ///< per patch; rounded up to path_batches times a power of two
   std::size_t checked = 64;    ///< patches, half of them inside closed shells with openings where these divide the

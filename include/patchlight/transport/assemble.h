@@ -33,6 +33,7 @@ struct ShortCuts {
   bool far = true;     ///< far pairs take the quadrature of the lowest order
 };
 
+/// How form factors are found.
 struct AssemblyOptions {
   int samples = 16;  ///< shadow rays of a pair that rays decide. The automatic estimator rounds them up to 2, 4, 8 or a
                      ///< multiple of 16, to fill packets, and takes sampling_effort() times as many. The others take
@@ -57,6 +58,7 @@ struct AssemblyCounts {
   AssemblyCounts& operator+=(const AssemblyCounts& other);
 };
 
+/// Exchange areas as computed, before closure, and what is known of their errors.
 struct Assembly {
   ExchangeAreas exchange_areas;
   AssemblyCounts counts;

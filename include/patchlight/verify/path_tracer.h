@@ -22,6 +22,7 @@ struct PathReceiver {
 /// Paths come in so many batches, each stratified on its own: their scatter is the standard error.
 inline constexpr std::uint32_t path_batches = 32;
 
+/// How many paths are traced.
 struct PathOptions {
   std::uint32_t paths = 4096;  ///< per receiver; rounded up to path_batches times a power of two
   std::uint64_t seed = 1;

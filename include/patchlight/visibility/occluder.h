@@ -38,12 +38,14 @@ struct TracingFrame {
   double scale = 1;  ///< 1 / extent of the scene, 1/m
 };
 
+/// A ray without end.
 struct Ray {
   Point origin;
   Vector direction;                        ///< unit
   PolygonIndex from_polygon = no_polygon;  ///< hits on this polygon are ignored
 };
 
+/// Where a ray ends.
 struct Hit {
   PolygonIndex polygon = no_polygon;
   Side side = Side::front;  ///< the side of the polygon that was hit
