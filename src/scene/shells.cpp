@@ -19,9 +19,27 @@ struct EdgeUse {
   bool same_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
+// Per vertex that a polygon uses the first of those with which it is welded.
+std::vector<std::uint32_t> welded_vertices(const Scene& scene) {
+  std::vector<std::uint32_t> place(scene.vertices.size(), 0);
+  for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t corner : polygon.corners) place[corner] = 1;
+  }
+  std::vector<std::uint32_t> used;
+  std::vector<Point> points;
+  for (std::uint32_t v = 0; v < place.size(); ++v) {
+    if (place[v] == 0) continue;
+    used.push_back(v);
+    points.push_back(scene.vertices[v]);
+  }
+  const std::vector<std::uint32_t> stands_for = welded(points, weld_distance(scene));
+  for (std::size_t k = 0; k < used.size(); ++k) place[used[k]] = used[stands_for[k]];
+  return place;
+}
+
 // All edge uses, those of the same edge side by side.
 std::vector<EdgeUse> edge_uses(const Scene& scene) {
-  const std::vector<std::uint32_t> place = welded(scene.vertices, weld_distance(scene));
+  const std::vector<std::uint32_t> place = welded_vertices(scene);
   std::vector<EdgeUse> uses;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const auto& corners = scene.polygons[p].corners;

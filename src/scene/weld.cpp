@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 #include <utility>
 
 namespace patchlight {
@@ -17,20 +17,52 @@ constexpr double cells_per_distance = 0.125;
 // Points farther away share the outermost cells.
 constexpr double last_cell = 1e15;
 
-struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
-    // FNV-1a (Fowler, Noll, Vo) by words
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const std::int64_t index : cell) hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x100000001b3U;
-    return static_cast<std::size_t>(hash ^ (hash >> 32U));
-  }
-};
+std::size_t hash_of(const Cell& cell) {
+  // FNV-1a (Fowler, Noll, Vo) by words
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const std::int64_t index : cell) hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x100000001b3U;
+  return static_cast<std::size_t>(hash ^ (hash >> 32U));
+}
 
 std::int64_t cell_at(double coordinate) {
   return static_cast<std::int64_t>(std::floor(std::clamp(coordinate, -last_cell, last_cell)));
 }
 
 Cell cell_at(const Vector& at) { return {cell_at(at.x()), cell_at(at.y()), cell_at(at.z())}; }
+
+constexpr std::uint32_t no_point = ~std::uint32_t{0};
+
+// The points that stand for themselves by their cells, those of one cell in a list. A table with open addresses (Knuth,
+// volume 3, section 6.4, algorithm L) of the lists' heads alone: a cell is that of its head.
+class PointsByCell {
+ public:
+  PointsByCell(std::span<const Point> points, double scale)
+      : points_(points),
+        scale_(scale),
+        heads_(std::bit_ceil(2 * points.size()), no_point),
+        previous_(points.size(), no_point) {}
+
+  Vector place(std::uint32_t point) const { return scale_ * (points_[point] - points_[0]); }
+  std::uint32_t last_in(const Cell& cell) const { return heads_[slot_of(cell)]; }
+  std::uint32_t before(std::uint32_t point) const { return previous_[point]; }
+  void add(std::uint32_t point) {
+    std::uint32_t& head = heads_[slot_of(cell_at(place(point)))];
+    previous_[point] = std::exchange(head, point);
+  }
+
+ private:
+  // Of the cell, or the free one where it belongs.
+  std::size_t slot_of(const Cell& cell) const {
+    std::size_t slot = hash_of(cell) & (heads_.size() - 1);
+    while (heads_[slot] != no_point && cell_at(place(heads_[slot])) != cell) slot = (slot + 1) & (heads_.size() - 1);
+    return slot;
+  }
+
+  std::span<const Point> points_;
+  double scale_;
+  std::vector<std::uint32_t> heads_;
+  std::vector<std::uint32_t> previous_;
+};
 
 }  // namespace
 
@@ -41,24 +73,20 @@ double weld_distance(const Box& bounds) {
 }
 
 std::vector<std::uint32_t> welded(std::span<const Point> points, double distance) {
-  constexpr std::uint32_t none = ~std::uint32_t{0};
   std::vector<std::uint32_t> stands_for(points.size());
   if (points.empty()) return stands_for;
   // Of a model whose size is near the smallest double the quotient would be infinite.
   const double scale = distance > 0 ? std::min(cells_per_distance / distance, std::numeric_limits<double>::max()) : 0;
   const Vector reach = Vector::Constant(cells_per_distance);
-
-  std::unordered_map<Cell, std::uint32_t, CellHash> last_in_cell;  // the head of a list, linked by `previous`
-  std::vector<std::uint32_t> previous(points.size(), none);
+  PointsByCell by_cell(points, scale);
   for (std::uint32_t v = 0; v < points.size(); ++v) {
     // The first of those in reach that stand for themselves.
-    const Vector at = scale * (points[v] - points[0]);
+    const Vector at = by_cell.place(v);
     const Cell low = cell_at(Vector(at - reach));
     const Cell high = cell_at(Vector(at + reach));
     std::uint32_t first = v;
     const auto look_into = [&](const Cell& cell) {
-      const auto found = last_in_cell.find(cell);
-      for (std::uint32_t k = found == last_in_cell.end() ? none : found->second; k != none; k = previous[k]) {
+      for (std::uint32_t k = by_cell.last_in(cell); k != no_point; k = by_cell.before(k)) {
         if (k < first && (points[k] - points[v]).norm() <= distance) first = k;
       }
     };
@@ -68,9 +96,7 @@ std::vector<std::uint32_t> welded(std::span<const Point> points, double distance
       }
     }
     stands_for[v] = first;
-    if (first != v) continue;
-    const auto [head, is_new] = last_in_cell.emplace(cell_at(at), v);
-    if (!is_new) previous[v] = std::exchange(head->second, v);
+    if (first == v) by_cell.add(v);
   }
   return stands_for;
 }
