@@ -5,8 +5,10 @@
 #include "input/text.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -23,11 +25,40 @@ bool is_file(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, error);
 }
 
+// The files of a folder by their names in lower case, of several names that differ in capitals alone the first. Listed
+// when it is asked for, once.
+class Folder {
+ public:
+  explicit Folder(std::filesystem::path place) : place_(std::move(place)) {}
+
+  const std::filesystem::path& place() const { return place_; }
+  std::optional<std::filesystem::path> similar(const std::filesystem::path& name) {
+    if (!listed_) list();
+    const auto found = names_.find(in_lower_case(name.string()));
+    return found == names_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  void list() {
+    listed_ = true;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(place_.empty() ? "." : place_, error)) {
+      const std::filesystem::path name = entry.path().filename();
+      const auto [found, is_new] = names_.emplace(in_lower_case(name.string()), name);
+      if (!is_new && name < found->second) found->second = name;
+    }
+  }
+
+  std::filesystem::path place_;
+  std::map<std::string, std::filesystem::path> names_;
+  bool listed_ = false;
+};
+
 // Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
 // written under Windows. What lies outside of `confine` is refused before anybody looks whether it is there.
-LibraryFile find_library(const std::filesystem::path& obj, const std::string& name, const std::string& where,
+LibraryFile find_library(Folder& beside, const std::string& name, const std::string& where,
                          const std::filesystem::path& confine) {
-  const std::filesystem::path folder = obj.parent_path();
+  const std::filesystem::path& folder = beside.place();
   std::string slashes = name;
   std::replace(slashes.begin(), slashes.end(), '\\', '/');
   for (const std::string& path : {name, slashes}) {
@@ -37,27 +68,20 @@ LibraryFile find_library(const std::filesystem::path& obj, const std::string& na
   const std::filesystem::path last = std::filesystem::path(slashes).filename();
   if (last.empty()) return {name, {}};
   if (is_file(folder / last)) return {name, folder / last, true};
-  std::vector<std::filesystem::path> similar;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
-    const std::filesystem::path& file = entry.path();
-    if (in_lower_case(file.filename().string()) == in_lower_case(last.string())) similar.push_back(file.filename());
-  }
-  std::sort(similar.begin(), similar.end());
-  if (similar.empty() || !is_file(folder / similar[0])) return {name, {}};
-  require_within(confine, folder / similar[0], where);
-  return {name, folder / similar[0], true};
+  const std::optional<std::filesystem::path> similar = beside.similar(last);
+  if (!similar || !is_file(folder / *similar)) return {name, {}};
+  require_within(confine, folder / *similar, where);
+  return {name, folder / *similar, true};
 }
 
 // The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
-std::vector<LibraryFile> library_files(const std::filesystem::path& obj, const ObjName& statement,
+std::vector<LibraryFile> library_files(Folder& beside, const ObjName& statement, const std::string& where,
                                        const std::filesystem::path& confine) {
-  const std::string where = at_line(obj, statement.line);
-  const LibraryFile whole = find_library(obj, statement.name, where, confine);
+  const LibraryFile whole = find_library(beside, statement.name, where, confine);
   if (!whole.place.empty() && !whole.moved) return {whole};
   std::vector<LibraryFile> files;
   for (const std::string_view name : words(statement.name)) {
-    files.push_back(find_library(obj, std::string(name), where, confine));
+    files.push_back(find_library(beside, std::string(name), where, confine));
   }
   const bool all_there = std::all_of(files.begin(), files.end(), [](const auto& file) { return !file.place.empty(); });
   return all_there || whole.place.empty() ? files : std::vector{whole};
@@ -95,11 +119,12 @@ std::optional<Problem> problem_with(const LibraryFile& file, const std::string& 
 Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements,
                          const std::filesystem::path& confine) {
   Libraries libraries;
+  Folder beside(obj.parent_path());
   std::set<std::string> names;
   std::set<std::filesystem::path> places;
   for (const ObjName& statement : statements) {
     const std::string where = at_line(obj, statement.line);
-    for (const LibraryFile& file : library_files(obj, statement, confine)) {
+    for (const LibraryFile& file : library_files(beside, statement, where, confine)) {
       if (!names.insert(file.name).second) continue;
       const std::optional<Problem> problem = problem_with(file, where);
       if (problem) libraries.problems.push_back(*problem);
