@@ -30,7 +30,7 @@ constexpr double share_of_solver = 0.02;
 constexpr double part_of_solver = 0.1;
 
 // Shadow rays of a pair, more than which are not worth their time.
-constexpr int most_samples = 512;
+constexpr int most_samples = 256;
 
 // So many meshes at most.
 constexpr int most_steps = 20;

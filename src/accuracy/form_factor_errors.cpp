@@ -15,10 +15,6 @@ namespace {
 constexpr int draws = 8;
 constexpr std::uint64_t seed = 1;
 
-// What they are multiplied with. Errors of different pairs are independent, as drawn; but those of pairs whose rays all
-// agree are pooled, and lie where openings are.
-constexpr double of_draws = 1.2;
-
 // A closed matrix has had its rows corrected by S_ij (lambda_i + lambda_j): the same for the draws. Solves
 // (S + diag(S 1) (1 + damping)) lambda = -D 1 for every draw, by conjugate gradients with the diagonal as
 // preconditioner. Damped, as the matrix is nearly singular where patches fall into two kinds that only see each other.
@@ -98,14 +94,14 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
     const Field e = followed(transport, {reflectance, irradiance, problem.area});
     squares.col(band) = e.square().rowwise().sum() / draws;
   }
-  return of_draws * squares.sqrt();
+  return squares.sqrt();
 }
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference) {
   // Of two independent values each is off by a root of one half of their difference.
   const Field error = followed(transport, {problem.reflectance, difference / std::sqrt(2.0), problem.area});
-  return form_factor_scale * means_around(mesh, problem.area, error);
+  return means_around(mesh, problem.area, error);
 }
 
 }  // namespace patchlight

@@ -8,21 +8,47 @@
 namespace patchlight {
 namespace {
 
-nlohmann::ordered_json json_of(const SamplingError::Unanimous& unanimous) {
-  return {{"sampled_again", unanimous.pairs},
+using Json = nlohmann::ordered_json;
+
+template <std::size_t n>
+Json pairs_of(const std::array<AuditedPairs, n>& kinds) {
+  Json pairs = Json::array();
+  for (const AuditedPairs& kind : kinds) pairs.push_back(kind.pairs);
+  return pairs;
+}
+
+template <std::size_t n>
+Json squares_of(const std::array<AuditedPairs, n>& kinds) {
+  Json squares = Json::array();
+  for (const AuditedPairs& kind : kinds) squares.push_back(kind.squares);
+  return squares;
+}
+
+template <std::size_t n>
+std::array<AuditedPairs, n> audited_of(const nlohmann::json& pairs, const nlohmann::json& squares) {
+  std::array<AuditedPairs, n> kinds{};
+  for (std::size_t k = 0; k < n; ++k) {
+    pairs.at(k).get_to(kinds[k].pairs);
+    squares.at(k).get_to(kinds[k].squares);
+    if (!(kinds[k].squares >= 0 && std::isfinite(kinds[k].squares)))
+      throw std::out_of_range("a squared error is not a number above 0");
+  }
+  return kinds;
+}
+
+Json json_of(const SamplingError::Unanimous& unanimous) {
+  return {{"sampled_again", pairs_of(unanimous.audited)},
+          {"squares", squares_of(unanimous.audited)},
           {"missed", unanimous.missed},
           {"bound", bound_on_miss(unanimous)},
-          {"by_share", unanimous.by_share},
-          {"squares", unanimous.squares}};
+          {"by_share", unanimous.by_share}};
 }
 
 SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
   SamplingError::Unanimous unanimous;
-  json.at("sampled_again").get_to(unanimous.pairs);
+  unanimous.audited = audited_of<sampling_efforts>(json.at("sampled_again"), json.at("squares"));
   json.at("missed").get_to(unanimous.missed);
   json.at("by_share").get_to(unanimous.by_share);
-  // Folders of earlier versions have none.
-  if (json.contains("squares")) json.at("squares").get_to(unanimous.squares);
   return unanimous;
 }
 
@@ -30,22 +56,28 @@ SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
 
 nlohmann::ordered_json json_of(const SamplingError& error) {
   if (!was_audited(error)) return nullptr;
-  return {{"sampled_again", error.partial_pairs},
-          {"squares", error.squares},
-          {"probes_all_free", json_of(error.visible)},
-          {"probes_all_blocked", json_of(error.occluded)}};
+  Json pairs = Json::array();
+  Json squares = Json::array();
+  for (const auto& of_effort : error.partial) {
+    pairs.push_back(pairs_of(of_effort));
+    squares.push_back(squares_of(of_effort));
+  }
+  return {{"sampled_again", pairs},
+          {"squares", squares},
+          {"rays_all_free", json_of(error.visible)},
+          {"rays_all_blocked", json_of(error.occluded)}};
 }
 
 SamplingError sampling_error_of(const nlohmann::json& json) {
   SamplingError error;
-  if (json.is_null()) return error;
-  json.at("sampled_again").get_to(error.partial_pairs);
-  json.at("squares").get_to(error.squares);
-  error.visible = unanimous_of(json.at("probes_all_free"));
-  error.occluded = unanimous_of(json.at("probes_all_blocked"));
-  for (const double square : error.squares) {
-    if (!(square >= 0 && std::isfinite(square))) throw std::out_of_range("a squared error is not a number above 0");
+  // Folders of earlier versions tell only what all numbers of samples have in common.
+  if (json.is_null() || !json.contains("rays_all_free")) return error;
+  for (std::size_t effort = 0; effort < sampling_efforts; ++effort) {
+    error.partial[effort] =
+        audited_of<SamplingError::bins>(json.at("sampled_again").at(effort), json.at("squares").at(effort));
   }
+  error.visible = unanimous_of(json.at("rays_all_free"));
+  error.occluded = unanimous_of(json.at("rays_all_blocked"));
   return error;
 }
 

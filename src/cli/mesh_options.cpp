@@ -43,7 +43,7 @@ void add_equation_options(CLI::App& command, Request& request) {
 
 void add_sampling_options(CLI::App& command, MeshOptions& options) {
   Request& request = options.request;
-  add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 16",
+  add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 8",
       [&request](const std::string& text) {
         request.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
       });

@@ -25,21 +25,23 @@ constexpr std::uint32_t replicates = 4;
 constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
-// Times the usual number of rays to the sun where its shadows are too many to be found by geometry.
+// Times the usual number of rays to sun and luminaires where their shadows are too many to be found by geometry.
 constexpr int sun_effort = 64;
+constexpr int lamp_effort = 4;
 
 // Of a share that n rays all find to be 0, or all to be 1, no more than this over n is missed in 95 of 100 cases.
 // Hanley and Lippman-Hand 1983, the rule of three.
 constexpr double rule_of_three = 3;
 
-// Something that gives light: an estimate of the mean irradiance of a receiver. It takes as many of a scramble's points
-// as it is told for rays.
+// Something that gives light: an estimate of the mean irradiance of a receiver, with or without shadows. It takes as
+// many of a scramble's points as it is told for rays.
 struct Source {
-  std::function<Spectrum(const Receiver&, SamplePoints, std::size_t)> mean;
+  std::function<Spectrum(const Receiver&, SamplePoints, std::size_t, bool)> mean;
   std::uint32_t samples = 0;
   bool has_extent = false;
-  std::function<std::optional<Spectrum>(const Receiver&)> exact = {};  // that of a patch, where it is known
-  std::function<Spectrum(const Receiver&)> unshadowed = {};            // where all rays bring the same
+  int effort = 1;  // times the samples where rays have to find the shadows of a light without extent
+  std::function<std::optional<LeftByShadows>(const Receiver&)> left = {};  // on a patch, without extent
+  std::function<Spectrum(const Receiver&)> unshadowed = {};                // in the middle, without extent
 };
 
 using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
@@ -73,39 +75,48 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
   };
   const bool has_extent = std::holds_alternative<SphericalLamp>(luminaire.light);
   const auto mean = [&lighting, &luminaire, arrival_at, has_extent](const Receiver& receiver, SamplePoints points,
-                                                                    std::size_t rays) {
+                                                                    std::size_t rays, bool in_shadow) {
     if (has_extent || receiver.is_point()) return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
-    return luminaire_irradiance(lighting, luminaire, receiver, {points.first(rays), points});
+    return luminaire_irradiance(lighting, luminaire, receiver, {points.first(rays), points}, in_shadow);
   };
-  return {mean, samples, has_extent};
+  if (has_extent) return {mean, samples, true};
+  const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
+  const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
+    const Arrival arrival = arrival_at(receiver.place(0.5, 0.5), {0.5, 0.5});
+    if (!(arrival.irradiance > 0)) return Spectrum(Spectrum::Zero(lighting.bands));
+    return Spectrum(arrival.irradiance * *arrival.colour);
+  };
+  return {mean, samples, false, lamp_effort, left, unshadowed};
 }
 
 Source sun_of(const Lighting& lighting, std::uint32_t samples) {
-  const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t rays) {
-    const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
-    return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
-  };
   const auto unshadowed = [&lighting](const Receiver& receiver) {
     const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
     return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
   };
-  const auto exact = [&lighting, unshadowed](const Receiver& receiver) -> std::optional<Spectrum> {
-    const auto share = lighting.shades->transmittance(receiver, lighting.sun->direction);
-    if (!share) return std::nullopt;
-    return Spectrum(unshadowed(receiver) * *share);
+  const auto mean = [&lighting, unshadowed](const Receiver& receiver, SamplePoints points, std::size_t rays,
+                                            bool in_shadow) {
+    if (!in_shadow) return unshadowed(receiver);
+    const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
+    return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
   };
-  return {mean, samples, false, exact, unshadowed};
+  const auto left = [&lighting](const Receiver& receiver) -> std::optional<LeftByShadows> {
+    const auto share = lighting.shades->transmittance(receiver, {lighting.sun->direction, 0});
+    if (!share) return std::nullopt;
+    return LeftByShadows{*share, Spectrum::Zero(lighting.bands)};
+  };
+  return {mean, samples, false, sun_effort, left, unshadowed};
 }
 
 std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
   std::vector<Source> sources;
   for (const Luminaire& luminaire : lighting.luminaires)
     sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
-  if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(sun_effort * options.sun_samples)));
+  if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
   if (lighting.sky) {
     // With openings a sample takes two rays.
     const int rays = lighting.openings.empty() ? 1 : 2;
-    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t count) {
+    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t count, bool) {
       return sky_irradiance(lighting, receiver, points.first(count));
     };
     sources.push_back({mean, static_cast<std::uint32_t>(options.sky_samples / rays), true});
@@ -130,7 +141,8 @@ struct Estimator {
 
 Estimator estimator_for(const Lighting& lighting, const LightingOptions& options) {
   const int to_sun = lighting.sun ? sun_effort * options.sun_samples : 0;
-  const int most = std::max({options.lamp_samples, to_sun, options.sky_samples});
+  const int to_lamps = lighting.luminaires.empty() ? 0 : lamp_effort * options.lamp_samples;
+  const int most = std::max({to_lamps, to_sun, options.sky_samples});
   const auto count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(most) / replicates);
   Estimator estimator{lighting.bands, sources_of(lighting, options), {}};
   for (std::uint32_t k = 0; k < scrambles; ++k)
@@ -138,31 +150,35 @@ Estimator estimator_for(const Lighting& lighting, const LightingOptions& options
   return estimator;
 }
 
-// What rays that all find the same may have missed, squared.
-Spectrum missed_variance(const Source& source, const Receiver& receiver, const Spectrum& mean) {
+// What n rays that all find the same may have missed, squared.
+Spectrum missed_variance(const Source& source, const Receiver& receiver, const Spectrum& mean, std::size_t n) {
   if (!source.unshadowed) return Spectrum::Zero(mean.size());
   const Spectrum most = source.unshadowed(receiver);
   const bool agree = (mean == 0).all() || ((mean - most).abs() <= 1e-12 * most).all();
-  return agree ? Spectrum((rule_of_three / source.samples * most).square()) : Spectrum(Spectrum::Zero(mean.size()));
+  return agree ? Spectrum((rule_of_three / static_cast<double>(n) * most).square())
+               : Spectrum(Spectrum::Zero(mean.size()));
 }
 
 Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
   const auto set = [&](std::uint32_t k) { return SamplePoints(points[(key + k * step) % scrambles]); };
-  if (receiver.is_point() && !source.has_extent) return {source.mean(receiver, set(0), 1), Spectrum::Zero(bands)};
-  if (source.exact && !receiver.is_point()) {
-    if (const auto known = source.exact(receiver)) return {*known, Spectrum::Zero(bands)};
-  }
-  const std::size_t each = std::max<std::size_t>(1, source.samples / replicates);
-  Spectrum sum = Spectrum::Zero(bands);
-  Spectrum squares = sum;
+  const Spectrum none = Spectrum::Zero(bands);
+  if (receiver.is_point() && !source.has_extent) return {source.mean(receiver, set(0), 1, true), none};
+  const auto left = source.left && !receiver.is_point() ? source.left(receiver) : std::nullopt;
+  if (left && (left->share == 0).all()) return {none, none};
+
+  const auto effort = static_cast<std::uint32_t>(left ? 1 : source.effort);
+  const std::size_t each = std::max<std::size_t>(1, effort * source.samples / replicates);
+  Spectrum sum = none;
+  Spectrum squares = none;
   for (std::uint32_t k = 0; k < replicates; ++k) {
-    const Spectrum one = source.mean(receiver, set(k), each);
+    const Spectrum one = source.mean(receiver, set(k), each, !left);
     sum += one;
     squares += one.square();
   }
   const Spectrum mean = sum / replicates;
-  const Spectrum spread = (squares / replicates - mean.square()).max(0.0);
-  return {mean, (spread / (replicates - 1)).max(missed_variance(source, receiver, mean))};
+  const Spectrum spread = (squares / replicates - mean.square()).max(0.0) / (replicates - 1);
+  if (!left) return {mean, spread.max(missed_variance(source, receiver, mean, replicates * each))};
+  return {mean * left->share, spread * left->share.square() + (mean * left->standard_error).square()};
 }
 
 Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const {

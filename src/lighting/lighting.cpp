@@ -91,10 +91,8 @@ Lighting lighting_of(const Scene& scene, const Coverings& coverings) {
                     .bands = scene.materials.front().reflectance.size(),
                     .paths = LightPaths(scene, coverings),
                     .shades = {}};
-  if (scene.sun && scene.sun->direction.dot(scene.up) > 0) {
-    lighting.sun = scene.sun;
-    lighting.shades = std::make_shared<const Shades>(scene, coverings);
-  }
+  if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
+  if (lighting.sun || !scene.luminaires.empty()) lighting.shades = std::make_shared<const Shades>(scene, coverings);
   if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));

@@ -1,9 +1,13 @@
 #include "lighting/luminaire_irradiance.h"
 
+#include "patchlight/base/sampling.h"
 #include "patchlight/form_factor/solid_angle.h"
+
+#include "lighting/shades.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -64,22 +68,76 @@ SeenPatch seen_patch(const Lighting& lighting, const Luminaire& luminaire, const
   return seen;
 }
 
+// The irradiance without shadows on a part of a patch, for a colour of 1.
+struct Kernel {
+  double mean = 0;     // by its middle and its corners, right up to the third order
+  double error = 0;    // of the mean: what the corners have changed
+  double scatter = 0;  // in the part, as of what is evenly distributed between the extremes
+};
+
+Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std::array<Point, 4>& corners,
+                 const Vector& normal) {
+  const auto at = [&](const Point& point) {
+    return from_luminaire(luminaire, lighting.up, {point, normal, no_polygon}, {0.5, 0.5}).irradiance;
+  };
+  const double middle = at(square_to_quad(corners, 0.5, 0.5));
+  double lowest = middle, highest = middle, sum = 0;
+  for (const Point& corner : corners) {
+    const double E = at(corner);
+    lowest = std::min(lowest, E);
+    highest = std::max(highest, E);
+    sum += E;
+  }
+  const double mean = (2 * middle + sum / 4) / 3;
+  return {mean, std::abs(mean - middle), (highest - lowest) / std::sqrt(12.0)};
+}
+
 }  // namespace
 
 Spectrum luminaire_irradiance(const Lighting& lighting, const Luminaire& luminaire, const Receiver& receiver,
-                              const LuminaireSamples& samples) {
+                              const LuminaireSamples& samples, bool in_shadow) {
   const Spectrum none = Spectrum::Zero(lighting.bands);
   const SeenPatch seen = seen_patch(lighting, luminaire, receiver, samples.rays);
   if (seen.segments.empty()) return none;
   const double share = exposed_share(lighting, receiver, samples.places);
   if (!(share > 0)) return none;
+  Spectrum sum = none;
+  if (in_shadow) {
+    const Field transmittance = lighting.paths.transmittance(seen.segments);
+    for (std::size_t k = 0; k < seen.intensities.size(); ++k)
+      sum += seen.intensities[k] * transmittance.row(static_cast<Eigen::Index>(k)) * *seen.colour;
+  } else {
+    for (const double intensity : seen.intensities) sum += intensity * *seen.colour;
+  }
   // E = 1 / A times the integral of I tau over the solid angle; the weights' mean, which is 1, is divided by because
   // what both vary by cancels.
-  const Field transmittance = lighting.paths.transmittance(seen.segments);
-  Spectrum sum = none;
-  for (std::size_t k = 0; k < seen.intensities.size(); ++k)
-    sum += seen.intensities[k] * transmittance.row(static_cast<Eigen::Index>(k)) * *seen.colour;
   return sum * (seen.solid_angle / (seen.weights * share * area_vector(receiver.corners).norm()));
+}
+
+std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Luminaire& luminaire,
+                                             const Receiver& receiver) {
+  const LightPlace light{luminaire.position, 1};
+  const Spectrum none = Spectrum::Zero(lighting.bands);
+  const auto whole = lighting.shades->transmittance(receiver, light);
+  if (!whole) return std::nullopt;
+  if ((*whole == 0).all() || (*whole == 1).all()) return LeftByShadows{*whole, none};
+
+  // Each part by its mean irradiance without shadows.
+  const auto parts = lighting.shades->lit_parts(receiver, light);
+  if (!parts) return std::nullopt;
+  const Vector normal = receiver.place(0.5, 0.5).normal;
+  Spectrum lit = none;
+  Spectrum error = none;
+  double all = 0;
+  for (const LitPart& part : *parts) {
+    if (!(part.exposed > 0)) continue;
+    const Kernel kernel = kernel_of(lighting, luminaire, part.corners, normal);
+    all += part.exposed * kernel.mean;
+    lit += part.lit * kernel.mean;
+    error += part.lit.min(part.exposed - part.lit).max(0.0) * kernel.scatter + part.lit * kernel.error;
+  }
+  if (!(all > 0)) return LeftByShadows{*whole, none};
+  return LeftByShadows{lit / all, error / all};
 }
 
 }  // namespace patchlight

@@ -18,6 +18,9 @@ constexpr double shade_in_plane = 1e-9;
 // Triangles towards the light that are looked at for one patch.
 constexpr std::size_t most_triangles = 1500;
 
+// What is nearer to a point of light than this share of its height throws no shadow but at grazing angles.
+constexpr double beside_light = 1 - 1e-9;
+
 // Light that comes flatter than this is none.
 constexpr double least_cosine = 1e-9;
 
@@ -43,30 +46,55 @@ Outline outline_of(std::span<const Point> corners, const Frame& frame) {
   return outline;
 }
 
-// The part of a triangle over a frame's plane; nothing of one that does not rise higher than `least`.
-std::vector<Point> part_above(const std::array<Point, 3>& triangle, const Frame& frame, double least) {
-  std::vector<Point> above;
+// True when all of a region lies within an outline.
+bool holds(const Outline& outline, const Outline& region) {
+  if (outline.size() < 3) return false;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Eigen::Vector2d& a = outline[k];
+    const Eigen::Vector2d along = outline[(k + 1) % outline.size()] - a;
+    const auto is_right = [&](const Eigen::Vector2d& p) {
+      return along.x() * (p.y() - a.y()) - along.y() * (p.x() - a.x()) < 0;
+    };
+    if (std::any_of(region.begin(), region.end(), is_right)) return false;
+  }
+  return true;
+}
+
+// The part of an outline where `signed_distance` is positive.
+template <typename Distance>
+std::vector<Point> part_before(const std::vector<Point>& outline, Distance signed_distance) {
+  std::vector<Point> before;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point& a = outline[k];
+    const Point& b = outline[(k + 1) % outline.size()];
+    const double at_a = signed_distance(a);
+    const double at_b = signed_distance(b);
+    if (at_a > 0) before.push_back(a);
+    if ((at_a > 0) != (at_b > 0)) before.emplace_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  return before;
+}
+
+// The part of a triangle between a frame's plane and the light; nothing of one that does not rise higher than `least`.
+std::vector<Point> part_above(const std::array<Point, 3>& triangle, const Frame& frame, double least,
+                              const LightPlace& light) {
   const auto height = [&](const Point& point) { return frame.normal.dot(point - frame.origin); };
   if (std::none_of(triangle.begin(), triangle.end(), [&](const Point& point) { return height(point) > least; }))
-    return above;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Point& a = triangle[k];
-    const Point& b = triangle[(k + 1) % 3];
-    const double at_a = height(a);
-    const double at_b = height(b);
-    if (at_a > 0) above.push_back(a);
-    if ((at_a > 0) != (at_b > 0)) above.emplace_back(a + at_a / (at_a - at_b) * (b - a));
-  }
-  return above;
+    return {};
+  const auto above = part_before({triangle.begin(), triangle.end()}, height);
+  if (light.weight == 0) return above;
+  const double highest = beside_light * height(light.at);
+  return part_before(above, [&](const Point& point) { return highest - height(point); });
 }
 
 // What lies outside one of these half spaces cannot stand between the patch and the light.
-std::vector<HalfSpace> shaft_of(const Receiver& patch, const Frame& frame, const Vector& toward_light) {
+std::vector<HalfSpace> shaft_of(const Receiver& patch, const Frame& frame, const LightPlace& light) {
   std::vector<HalfSpace> outside{{frame.normal, frame.normal.dot(frame.origin)}};
+  if (light.weight > 0) outside.push_back({-frame.normal, -frame.normal.dot(light.at)});
   std::vector<Point> corners = patch.corners;
   if (area_vector(corners).dot(frame.normal) < 0) std::reverse(corners.begin(), corners.end());
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Vector inward = toward_light.cross(corners[(k + 1) % corners.size()] - corners[k]);
+    const Vector inward = light.way_from(corners[k]).cross(corners[(k + 1) % corners.size()] - corners[k]);
     outside.push_back({inward, inward.dot(corners[k])});
   }
   return outside;
@@ -148,43 +176,88 @@ bool Shades::lies_under(PolygonIndex polygon, PolygonIndex other) const {
   return false;
 }
 
-const Spectrum* Shades::transmittance_of(const Triangle& triangle, const Vector& toward_light) const {
-  const bool from_front = triangle.normal.dot(toward_light) < 0;
+const Spectrum* Shades::transmittance_of(const Triangle& triangle, const LightPlace& light) const {
+  const bool from_front = triangle.normal.dot(light.way_from(triangle.corners[0])) < 0;
   const Spectrum& share = transmittances_[triangle.polygon][from_front ? 0 : 1];
   return share.size() > 0 ? &share : nullptr;
 }
 
-std::optional<Spectrum> Shades::transmittance(const Receiver& patch, const Vector& toward_light) const {
-  const Frame frame = frame_of(patch);
+// What darkens a patch, in its plane.
+struct Shades::Shadows {
+  Frame frame;
+  std::vector<Shade> covers;  // what lies on the patch
+  std::vector<Shade> all;     // with the shadows of what stands before it
+};
+
+// No more than the first shadow that holds all of the patch. Nothing where there are too many.
+std::optional<Shades::Shadows> Shades::shadows_on(const Receiver& patch, const LightPlace& light) const {
+  Shadows shadows{frame_of(patch), {}, {}};
+  const Frame& frame = shadows.frame;
   const PolygonIndex own = patch.place(0.5, 0.5).polygon;
   const Outline region = outline_of(patch.corners, frame);
-  const double cosine = frame.normal.dot(toward_light);
-  if (!(cosine > least_cosine)) return Spectrum(Spectrum::Zero(bands_));
 
   // 1. What lies on the patch takes its place.
-  std::vector<Shade> shades;
   for (const PolygonIndex p : coverings_.over_side(own, patch.side)) {
     for (std::size_t t = first_triangle_[p]; t < first_triangle_[p + 1]; ++t)
-      shades.push_back({outline_of(triangles_[t].corners, frame), nullptr});
+      shadows.covers.push_back({outline_of(triangles_[t].corners, frame), nullptr});
   }
-  const auto exposed = lit_area(region, shades, 1);
-  if (!exposed) return std::nullopt;
-  if (!((*exposed)[0] > 0)) return Spectrum(Spectrum::Zero(bands_));
+  shadows.all = shadows.covers;
 
   // 2. Shadows along the rays, in the patch's plane.
-  const Indices before = triangles_over(shaft_of(patch, frame, toward_light));
-  if (before.size() > most_triangles) return std::nullopt;
-  for (const std::uint32_t t : before) {
+  for (const std::uint32_t t : triangles_over(shaft_of(patch, frame, light))) {
     const Triangle& triangle = triangles_[t];
     if (triangle.polygon == own || lies_under(triangle.polygon, own)) continue;
-    std::vector<Point> shadow = part_above(triangle.corners, frame, tolerance_);
+    std::vector<Point> shadow = part_above(triangle.corners, frame, tolerance_, light);
     if (shadow.size() < 3) continue;
-    for (Point& point : shadow) point -= frame.normal.dot(point - frame.origin) / cosine * toward_light;
-    shades.push_back({outline_of(shadow, frame), transmittance_of(triangle, toward_light)});
+    for (Point& point : shadow) {
+      const Vector along = light.way_from(point);
+      point -= frame.normal.dot(point - frame.origin) / frame.normal.dot(along) * along;
+    }
+    shadows.all.push_back({outline_of(shadow, frame), transmittance_of(triangle, light)});
+    if (shadows.all.back().transmittance == nullptr && holds(shadows.all.back().outline, region)) {
+      shadows.all = {shadows.all.back()};
+      return shadows;
+    }
+    if (shadows.all.size() > shadows.covers.size() + most_triangles) return std::nullopt;
   }
-  const auto lit = lit_area(region, shades, bands_);
-  if (!lit) return std::nullopt;
+  return shadows;
+}
+
+std::optional<Spectrum> Shades::transmittance(const Receiver& patch, const LightPlace& light) const {
+  const Frame frame = frame_of(patch);
+  const Vector way = light.way_from(frame.origin);
+  if (!(frame.normal.dot(way) > least_cosine * way.norm())) return Spectrum(Spectrum::Zero(bands_));
+  const auto shadows = shadows_on(patch, light);
+  if (!shadows) return std::nullopt;
+  const Outline region = outline_of(patch.corners, frame);
+  const auto exposed = lit_area(region, shadows->covers, 1);
+  const auto lit = lit_area(region, shadows->all, bands_);
+  if (!exposed || !lit) return std::nullopt;
+  if (!((*exposed)[0] > 0)) return Spectrum(Spectrum::Zero(bands_));
   return Spectrum(*lit / (*exposed)[0]);
+}
+
+std::optional<std::vector<LitPart>> Shades::lit_parts(const Receiver& patch, const LightPlace& light) const {
+  const auto shadows = shadows_on(patch, light);
+  if (!shadows) return std::nullopt;
+  constexpr int cuts = 4;
+  std::array<Point, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k) corners[k] = patch.corners[std::min(k, patch.corners.size() - 1)];
+  const auto at = [&](int u, int v) -> Point {
+    const double s = static_cast<double>(u) / cuts, t = static_cast<double>(v) / cuts;
+    return (1 - s) * ((1 - t) * corners[0] + t * corners[3]) + s * ((1 - t) * corners[1] + t * corners[2]);
+  };
+  std::vector<LitPart> parts;
+  for (int k = 0; k < cuts * cuts; ++k) {
+    const int u = k % cuts, v = k / cuts;
+    const std::array<Point, 4> part{at(u, v), at(u + 1, v), at(u + 1, v + 1), at(u, v + 1)};
+    const Outline region = outline_of(part, shadows->frame);
+    const auto exposed = lit_area(region, shadows->covers, 1);
+    const auto lit = lit_area(region, shadows->all, bands_);
+    if (!exposed || !lit) return std::nullopt;
+    parts.push_back({part, (*exposed)[0], *lit});
+  }
+  return parts;
 }
 
 }  // namespace patchlight

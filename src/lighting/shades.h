@@ -15,16 +15,34 @@
 
 namespace patchlight {
 
+/// Where a light without extent is: a point, or a direction.
+struct LightPlace {
+  Vector at;          ///< a point, m, or a unit vector towards the light
+  double weight = 0;  ///< 1 for a point, 0 for a direction
+
+  /// Towards the light, of any length.
+  Vector way_from(const Point& point) const { return at - weight * point; }
+};
+
+/// A part of a patch, convex.
+struct LitPart {
+  std::array<Point, 4> corners;
+  double exposed = 0;  ///< area that no other polygon covers, m^2
+  Spectrum lit;        ///< integral over it of what is let through, m^2 per band
+};
+
 /// What stands between patches and a light that has no extent, by geometry alone: however small a hole is, the light
 /// that gets through it is found. Immutable and safe to use from several threads.
 class Shades {
  public:
   explicit Shades(const Scene& scene, const Coverings& coverings = {});
 
-  /// Mean over the exposed part of a patch of what is let through of parallel light from a unit direction before the
-  /// patch, per band: exact up to rounding. Nothing where the shadows of too many polygons meet to say so in reasonable
-  /// time.
-  std::optional<Spectrum> transmittance(const Receiver& patch, const Vector& toward_light) const;
+  /// Mean over the exposed part of a patch of what is let through from a light before it, per band: exact up to
+  /// rounding. Nothing where the shadows of too many polygons meet to say so in reasonable time.
+  std::optional<Spectrum> transmittance(const Receiver& patch, const LightPlace& light) const;
+
+  /// The same by parts, sixteen of a patch.
+  std::optional<std::vector<LitPart>> lit_parts(const Receiver& patch, const LightPlace& light) const;
 
  private:
   struct Triangle {
@@ -39,11 +57,13 @@ class Shades {
     bool is_leaf = false;
   };
   using Indices = std::vector<std::uint32_t>;
+  struct Shadows;
 
   void add_nodes(std::span<std::uint32_t> triangles);
   Indices triangles_over(std::span<const HalfSpace> below) const;
+  std::optional<Shadows> shadows_on(const Receiver& patch, const LightPlace& light) const;
   bool lies_under(PolygonIndex polygon, PolygonIndex other) const;
-  const Spectrum* transmittance_of(const Triangle& triangle, const Vector& toward_light) const;
+  const Spectrum* transmittance_of(const Triangle& triangle, const LightPlace& light) const;
 
   double tolerance_ = 0;  // of heights, m
   Eigen::Index bands_ = 0;

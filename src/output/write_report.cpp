@@ -66,7 +66,7 @@ Json request_part(const Request& request) {
 }
 
 Json unanimous_part(const SamplingError::Unanimous& unanimous) {
-  return {{"sampled_again", unanimous.pairs}, {"missed", unanimous.missed}, {"bound", bound_on_miss(unanimous)}};
+  return {{"sampled_again", unanimous.pairs()}, {"missed", unanimous.missed}, {"bound", bound_on_miss(unanimous)}};
 }
 
 // As shares of the unoccluded exchange area; null where no pair was sampled again, as when rays decide none.
@@ -77,11 +77,11 @@ Json sampling_error_part(const SamplingError& error) {
   for (std::size_t bin = 0; bin < SamplingError::bins; ++bin) {
     const double share = (static_cast<double>(bin) + 0.5) / SamplingError::bins;
     part["by_visible_share"].push_back({{"visible_share", share},
-                                        {"sampled_again", error.partial_pairs[bin]},
+                                        {"sampled_again", with_visible_share(error, bin).pairs},
                                         {"standard_error", standard_error(error, share)}});
   }
-  part["probes_all_free"] = unanimous_part(error.visible);
-  part["probes_all_blocked"] = unanimous_part(error.occluded);
+  part["rays_all_free"] = unanimous_part(error.visible);
+  part["rays_all_blocked"] = unanimous_part(error.occluded);
   return part;
 }
 

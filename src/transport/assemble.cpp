@@ -93,18 +93,17 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   const double share = exchange_area / again.unoccluded;
   const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
   const double smaller = std::min(mesh.area[pair.first], mesh.area[pair.second]);
-  const double variance = sampling_effort(again.unoccluded / smaller) * difference * difference / 2;
+  const std::size_t effort = effort_index(sampling_effort(again.unoccluded / smaller));
+  const AuditedPairs audited{1, difference * difference / 2};
   if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
-    ++facts.error.partial_pairs[bin];
-    facts.error.squares[bin] += variance;
+    facts.error.partial[effort][bin] += audited;
     return;
   }
   const bool visible = kind_of(pair) == EntryKind::all_visible;
   SamplingError::Unanimous& unanimous = visible ? facts.error.visible : facts.error.occluded;
-  ++unanimous.pairs;
+  unanimous.audited[effort] += audited;
   unanimous.missed += kind_of(again) != kind_of(pair) ? 1 : 0;
-  unanimous.squares += variance;
   constexpr std::size_t steps = SamplingError::Unanimous::steps;
   ++unanimous.by_share[static_cast<std::size_t>(std::min(std::abs(difference) * steps, steps - 1.0))];
 }

@@ -70,8 +70,8 @@ class EntryWeights {
   explicit EntryWeights(const ExchangeAreas& S) : S_(S) {}
   EntryWeights(const ExchangeAreas& S, const KnownErrors& known, const Eigen::VectorXd& area)
       : S_(S), known_(&known), area_(&area) {
-    const auto& audited = known.sampling.partial_pairs;
-    estimates_audited_ = std::any_of(audited.begin(), audited.end(), [](std::uint64_t pairs) { return pairs > 0; });
+    for (std::size_t bin = 0; bin < SamplingError::bins; ++bin)
+      estimates_audited_ = estimates_audited_ || with_visible_share(known.sampling, bin).pairs > 0;
   }
 
   double at(PatchIndex i, PatchIndex j, double entry) const {

@@ -3,6 +3,7 @@
 #include "patchlight/base/sampling.h"
 #include "patchlight/form_factor/patch_keys.h"
 #include "patchlight/form_factor/solid_angle.h"
+#include "patchlight/transport/sampling_error.h"
 
 #include "transport/narrow.h"
 
@@ -15,15 +16,10 @@
 namespace patchlight {
 namespace {
 
-constexpr std::uint32_t most_effort = 16;
-
 constexpr std::size_t packet = ShadowPacket::size;
 
-// Numbers of samples that fill packets: 2, 4, 8 or a multiple of 16.
-std::uint32_t in_packets(int count) {
-  const auto wanted = static_cast<std::uint32_t>(count);
-  return wanted <= 2 ? 2 : wanted <= 4 ? 4 : wanted <= 8 ? 8 : (wanted + 15) / 16 * 16;
-}
+// A packet is filled by pairs that take 2, 4, 8 or 16 of its rays each.
+std::uint32_t even(int count) { return (static_cast<std::uint32_t>(std::max(count, 1)) + 1) / 2 * 2; }
 
 // `let_through` is the share of the light along the ray that arrives.
 void add(Pair& pair, float weight, float let_through) {
@@ -73,7 +69,7 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       shapes_(shapes),
       occluder_(occluder),
       far_rule_(options.short_cuts.far ? FarRule::coarse : FarRule::fine),
-      samples_(in_packets(options.samples)),
+      samples_(even(options.samples)),
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),

@@ -51,7 +51,6 @@ double Drawer::standard_error(PatchIndex i, PatchIndex j) const {
 }
 
 double Drawer::of_unanimous(const SamplingError::Unanimous& unanimous, PatchIndex i, PatchIndex j) const {
-  if (unanimous.squares == 0) return 0;
   const double U = unoccluded(mesh, area, i, j);
   return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(area[i], area[j])));
 }

@@ -1,20 +1,51 @@
 #include "patchlight/transport/sampling_error.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
 
 namespace patchlight {
 
+namespace {
+
+// So many pairs tell a variance to a quarter.
+constexpr std::uint64_t enough = 30;
+
+template <std::size_t n>
+AuditedPairs total(const std::array<AuditedPairs, n>& kinds) {
+  AuditedPairs sum;
+  for (const AuditedPairs& kind : kinds) sum += kind;
+  return sum;
+}
+
+// With the usual number of samples, if variances fall as one over the samples.
+AuditedPairs usual(AuditedPairs pairs, std::size_t effort_index) {
+  pairs.squares *= static_cast<double>(std::uint64_t{1} << effort_index);
+  return pairs;
+}
+
+double root_mean(const AuditedPairs& audited) {
+  return std::sqrt(audited.squares / static_cast<double>(audited.pairs));
+}
+
+}  // namespace
+
+AuditedPairs& AuditedPairs::operator+=(const AuditedPairs& other) {
+  pairs += other.pairs;
+  squares += other.squares;
+  return *this;
+}
+
+std::uint64_t SamplingError::Unanimous::pairs() const { return total(audited).pairs; }
+
 SamplingError& SamplingError::operator+=(const SamplingError& other) {
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    partial_pairs[bin] += other.partial_pairs[bin];
-    squares[bin] += other.squares[bin];
+  for (std::size_t effort = 0; effort < sampling_efforts; ++effort) {
+    for (std::size_t bin = 0; bin < bins; ++bin) partial[effort][bin] += other.partial[effort][bin];
   }
   for (const auto kind : {&SamplingError::visible, &SamplingError::occluded}) {
-    (this->*kind).pairs += (other.*kind).pairs;
     (this->*kind).missed += (other.*kind).missed;
-    (this->*kind).squares += (other.*kind).squares;
+    for (std::size_t effort = 0; effort < sampling_efforts; ++effort)
+      (this->*kind).audited[effort] += (other.*kind).audited[effort];
     for (std::size_t step = 0; step < Unanimous::steps; ++step) {
       (this->*kind).by_share[step] += (other.*kind).by_share[step];
     }
@@ -22,42 +53,55 @@ SamplingError& SamplingError::operator+=(const SamplingError& other) {
   return *this;
 }
 
-bool was_audited(const SamplingError& error) {
-  return std::accumulate(error.partial_pairs.begin(), error.partial_pairs.end(),
-                         error.visible.pairs + error.occluded.pairs) > 0;
+AuditedPairs with_visible_share(const SamplingError& error, std::size_t bin) {
+  AuditedPairs sum;
+  for (const auto& of_effort : error.partial) sum += of_effort[bin];
+  return sum;
 }
 
+bool was_audited(const SamplingError& error) {
+  std::uint64_t pairs = error.visible.pairs() + error.occluded.pairs();
+  for (const auto& of_effort : error.partial) pairs += total(of_effort).pairs;
+  return pairs > 0;
+}
+
+std::size_t effort_index(std::uint32_t effort) { return static_cast<std::size_t>(std::countr_zero(effort)); }
+
 std::uint32_t sampling_effort(double form_factor) {
-  constexpr double large = 1.0 / 256;
-  return form_factor > 4 * large ? 16 : form_factor > large ? 4 : 1;
+  constexpr double usual = 1.0 / 4096;
+  std::uint32_t effort = 1;
+  for (double largest = usual; effort < most_effort && form_factor > largest; largest *= 2) effort *= 2;
+  return effort;
 }
 
 double standard_error(const SamplingError& error, double visible_share, std::uint32_t effort) {
-  constexpr std::uint64_t enough = 30;
   const auto bin = static_cast<std::size_t>(
       std::clamp(visible_share * SamplingError::bins, 0.0, static_cast<double>(SamplingError::bins - 1)));
-  double square = error.squares[bin];
-  std::uint64_t pairs = error.partial_pairs[bin];
-  if (pairs < enough) {
-    square = std::accumulate(error.squares.begin(), error.squares.end(), 0.0);
-    pairs = std::accumulate(error.partial_pairs.begin(), error.partial_pairs.end(), std::uint64_t{0});
-  }
-  return pairs > 0 ? std::sqrt(square / static_cast<double>(pairs) / effort) : 1;
+  const std::size_t index = effort_index(effort);
+  if (error.partial[index][bin].pairs >= enough) return root_mean(error.partial[index][bin]);
+  const AuditedPairs with_effort = total(error.partial[index]);
+  if (with_effort.pairs >= enough) return root_mean(with_effort);
+  AuditedPairs all;
+  for (std::size_t k = 0; k < sampling_efforts; ++k) all += usual(total(error.partial[k]), k);
+  return all.pairs > 0 ? root_mean(all) / std::sqrt(effort) : 1;
 }
 
 double standard_error(const SamplingError::Unanimous& unanimous, std::uint32_t effort) {
-  if (unanimous.pairs == 0) return 0;
-  return std::sqrt(unanimous.squares / static_cast<double>(unanimous.pairs) / effort);
+  const AuditedPairs& with_effort = unanimous.audited[effort_index(effort)];
+  if (with_effort.pairs >= enough) return root_mean(with_effort);
+  AuditedPairs all;
+  for (std::size_t k = 0; k < sampling_efforts; ++k) all += usual(unanimous.audited[k], k);
+  return all.pairs > 0 ? root_mean(all) / std::sqrt(effort) : 0;
 }
 
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {
-  constexpr std::uint64_t enough = 100;
+  constexpr std::uint64_t enough_for_bound = 100;
   constexpr double sure = 0.97;
-  if (unanimous.pairs < enough) return 1;
+  const std::uint64_t pairs = unanimous.pairs();
+  if (pairs < enough_for_bound) return 1;
   std::uint64_t below = 0;
   std::size_t step = 0;
-  while (step < SamplingError::Unanimous::steps &&
-         static_cast<double>(below) < sure * static_cast<double>(unanimous.pairs)) {
+  while (step < SamplingError::Unanimous::steps && static_cast<double>(below) < sure * static_cast<double>(pairs)) {
     below += unanimous.by_share[step++];
   }
   return static_cast<double>(step) / SamplingError::Unanimous::steps;

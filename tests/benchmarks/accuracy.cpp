@@ -38,7 +38,7 @@ Simulation finest(const Scene& scene, std::size_t patches) {
   const double most = 3 * static_cast<double>(patches);
   Request request;
   request.sides = Sides::front;
-  request.samples = 64;
+  request.samples = 32;
   request.seed = 77;
   request.patches = patches;
   request.seconds = 1e9;

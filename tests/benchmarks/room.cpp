@@ -46,7 +46,7 @@ RowSumError row_sum_error(const Room& room, const ExchangeAreas& S) {
   return error;
 }
 
-std::vector<int> settings() { return {2, 4, 8, 16, 32, 48, 64}; }
+std::vector<int> settings() { return {2, 4, 8, 16, 18, 32, 64}; }
 
 double peak_memory() {
   rusage usage{};

@@ -73,7 +73,7 @@ class FormFactorsTest(ToolTest):
         self.assertEqual([int(word) for word in lines[2].split()], [size, size, sum(x > 0 for x in error)])
         i, j, value = lines[3].split()
         self.assertAlmostEqual(float(value), error[(int(i) - 1) * size + int(j) - 1], delta=1e-8)
-        for kind in ("probes_all_free", "probes_all_blocked"):
+        for kind in ("rays_all_free", "rays_all_blocked"):
             self.assertTrue(0 <= info["sampling_error"][kind]["bound"] <= 1)
 
     def test_short_cuts_can_be_left_out(self):

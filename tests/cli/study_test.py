@@ -28,7 +28,7 @@ class StudyTest(ToolTest):
         self.assertEqual(sorted(path.name for path in (self.folder / "out").iterdir()), FILES)
         self.assertEqual(list(rows[0]), COLUMNS)
         sweeps = {row["sweep"] for row in rows}
-        self.assertEqual(sweeps, {"patch size at 16 samples", "patch size at 64 samples", "samples", "tolerance"} |
+        self.assertEqual(sweeps, {"patch size at 8 samples", "patch size at 32 samples", "samples", "tolerance"} |
                          {f"estimator {name}" for name in ("auto", "area", "point-polygon", "hemisphere", "contour")})
         self.assertEqual(len(rows), len(facts["settings"]))
         for row, setting in zip(rows, facts["settings"]):
@@ -42,7 +42,7 @@ class StudyTest(ToolTest):
 
     def test_errors_fall_with_the_patches(self):
         _, rows, facts = self.study("--no-adaptive", "--no-estimators")
-        fine = [row for row in rows if row["sweep"] == "patch size at 64 samples"]
+        fine = [row for row in rows if row["sweep"] == "patch size at 32 samples"]
         self.assertGreater(len(fine), 1)
         for before, after in zip(fine, fine[1:]):
             self.assertGreater(float(before["display_error"]), float(after["display_error"]))

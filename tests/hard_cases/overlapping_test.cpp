@@ -55,8 +55,8 @@ TEST(Overlapping, ARugOnAFloorIsTheSameAsARugInIt) {
 }
 
 // Before closure: with both layers in sight, the ceiling's rows would add up to 1 plus its form factor to the rug, some
-// 0.2. Some 20 of the floor's 100 patches are covered in
-// part, each with a form factor of 1 % or less that 16 samples know to a fifth: 0.05 is five standard errors.
+// 0.2. Some 20 of the floor's 100 patches are covered in part, each with a form factor of 1 % or less that its samples
+// know to a fifth or better: 0.05 is five standard errors.
 TEST(Overlapping, NothingIsSeenTwice) {
   const Scene scene =
       with_quad(cube_room(0.5, 0), {Point(0.2, 0.1, 0), Point(0.9, 0.1, 0), Point(0.9, 0.8, 0), Point(0.2, 0.8, 0)});

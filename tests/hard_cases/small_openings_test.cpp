@@ -1,4 +1,5 @@
 // What shines through small openings arrives: patches behind walls with slits, slats, bars and holes, against paths.
+#include "patchlight/gather/gather.h"
 #include "patchlight/simulate.h"
 #include "patchlight/verify/path_tracer.h"
 
@@ -72,6 +73,35 @@ TEST_P(SmallOpenings, LetThroughWhatPathsFind) {
     const Mean patches = by_patches(simulated(moved(scene, motion), size));
     EXPECT_NEAR(patches.value, paths.value, 3 * std::hypot(paths.error, patches.error)) << "size " << size;
     EXPECT_NEAR(patches.value, paths.value, 0.05 * paths.value) << "size " << size;
+  }
+}
+
+// The same for sensors on the far wall: what they gather has the errors of the patches' light, and of their own rays.
+TEST_P(SmallOpenings, LightSensorsAsPathsFind) {
+  const Scene scene = divided(GetParam().partition);
+  const std::vector<Point> spots{Point(2, 0.7, 0.35), Point(2, 1.1, 1.0), Point(2, 1.6, 1.8)};
+  constexpr double half = 5e-4;
+  std::vector<PathReceiver> around;
+  std::vector<Sensor> sensors;
+  for (const Point& spot : spots) {
+    const Vector y = half * Vector::UnitY(), z = half * Vector::UnitZ();
+    around.push_back({{spot - y - z, spot - y + z, spot + y + z, spot + y - z}, far_wall, {}});
+    sensors.push_back({spot - 1e-4 * Vector::UnitX(), -Vector::UnitX()});
+  }
+  const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), around, {.paths = 1 << 17});
+  const Simulation simulation = simulated(scene, 1);
+  const ErrorBars& bars = *simulation.error_bars;
+  constexpr double reflectance = 0.5;
+  const GatherOptions options{.seed = 3,
+                              .errors = {.sampling = reflectance * bars.form_factor, .mesh = reflectance * bars.mesh}};
+  const GatheredIrradiance found = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
+                                                     Occluder(scene, Occluder::Blockers::all), sensors, options);
+  for (std::size_t k = 0; k < spots.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const double error = std::hypot(paths.standard_error(row, 0), found.errors.total()(row, 0));
+    EXPECT_LT(paths.standard_error(row, 0), 0.02 * paths.irradiance(row, 0)) << "too wide to tell anything";
+    EXPECT_NEAR(found.irradiance(row, 0), paths.irradiance(row, 0), 3 * error) << k;
+    EXPECT_NEAR(found.irradiance(row, 0), paths.irradiance(row, 0), 0.05 * paths.irradiance(row, 0)) << k;
   }
 }
 

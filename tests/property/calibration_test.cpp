@@ -99,7 +99,7 @@ TEST_F(Calibration, StandardErrorsAreThoseOfTheAudit) {
 TEST_F(Calibration, BoundsOfUnanimousPairsHold) {
   for (const bool visible : {true, false}) {
     const SamplingError::Unanimous& kind = visible ? assembly->error.visible : assembly->error.occluded;
-    EXPECT_GT(kind.pairs, 100U);
+    EXPECT_GT(kind.pairs(), 100U);
     EXPECT_LT(bound_on_miss(kind), 0.5) << "a bound that is always large is none";
     double pairs = 0;
     double within = 0;
@@ -145,8 +145,8 @@ TEST_F(Calibration, TheAuditFindsWhatRaysMiss) {
   });
   const SamplingError::Unanimous& kind = assembly->error.visible;
   const double rate = missed / pairs;
-  const double found = static_cast<double>(kind.missed) / static_cast<double>(kind.pairs);
-  const double spread = 3 * std::sqrt(rate * (1 - rate) / static_cast<double>(kind.pairs));
+  const double found = static_cast<double>(kind.missed) / static_cast<double>(kind.pairs());
+  const double spread = 3 * std::sqrt(rate * (1 - rate) / static_cast<double>(kind.pairs()));
   EXPECT_GT(missed, 0);
   EXPECT_GT(found, 0.5 * rate - spread);
   EXPECT_LT(found, rate + spread);

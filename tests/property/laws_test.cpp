@@ -141,7 +141,7 @@ TEST(Simulate, ASeedChangesTheSamplesAndLittleElse) {
   const Field second = simulate(scene, other).solution.irradiance;
   const double rms = std::sqrt((first - second).square().mean()) / first.mean();
   EXPECT_GT(rms, 1e-6);
-  // 16 samples know a partly hidden entry to some 10 %, and such entries carry about a fifth of the light.
+  // The usual samples know a partly hidden entry to some 10 %, and such entries carry about a fifth of the light.
   EXPECT_LT(rms, 0.05);
 }
 

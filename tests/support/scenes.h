@@ -73,6 +73,7 @@ inline Scene furnished_room(double reflectance, double lamp_exitance = 10) {
 
 inline Scene moved(Scene scene, const Eigen::Affine3d& motion) {
   for (Point& vertex : scene.vertices) vertex = motion * vertex;
+  for (Luminaire& luminaire : scene.luminaires) luminaire.position = motion * luminaire.position;
   return scene;
 }
 

@@ -49,7 +49,7 @@ struct FormFactorInfo {
   std::string closure;  ///< the method that closed them; empty if none did
   double max_edge = 0;  ///< metres
   Sides sides = Sides::automatic;
-  int samples = 16;
+  int samples = 8;
   std::uint64_t seed = 1;
   int lost_share_rays = 256;
   Estimator estimator = Estimator::automatic;

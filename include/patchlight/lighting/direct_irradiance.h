@@ -21,14 +21,14 @@ struct LightingOptions {
 struct DirectIrradiance {
   Field irradiance;
   Field standard_error;  ///< from four independent scrambles of the samples; 0 where nothing is sampled. Where n rays
-                         ///< to the sun all find the same: 3 / n of what it gives without shadows
+                         ///< to a light without extent all find the same: 3 / n of what it gives without shadows
 };
 
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
 /// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
-/// the patch. That by the sun is exact up to rounding, from the outlines of all shadows, unless some 1,500 triangles
-/// stand between it and the patch. O(patches x (luminaires x lamp_samples + sun_samples + sky_samples)).
-/// \throws Cancelled.
+/// the patch. The share of a patch that these or the sun reach is exact up to rounding, from the outlines of all
+/// shadows, unless some 1,500 triangles stand between: however small a hole is, it is found. O(patches x (luminaires x
+/// lamp_samples + sun_samples + sky_samples)). \throws Cancelled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});
 

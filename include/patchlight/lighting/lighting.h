@@ -32,7 +32,7 @@ struct Lighting {
   Vector up;
   Eigen::Index bands = 0;
   LightPaths paths;
-  std::shared_ptr<const Shades> shades;  ///< of the sun; null without one
+  std::shared_ptr<const Shades> shades;  ///< of sun and luminaires; null without them
 };
 
 /// Of a scene that check() has passed. With `coverings` places over which another polygon lies get no light.

@@ -26,7 +26,7 @@ struct Request {
   int max_iterations = 1000;              ///< after which the solver gives up
   std::optional<double> max_rows = {};    ///< or, of progressive refinement, after so many rows, as a share of all
   std::optional<double> relaxation = {};  ///< of SOR; without it estimated
-  int samples = 16;                       ///< shadow rays of a pair of patches that rays decide
+  int samples = 8;                        ///< shadow rays of a pair of patches that rays decide
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};  ///< of the automatic estimator
@@ -52,7 +52,7 @@ struct Request {
 struct Plan {
   KeptSides sides;
   double max_edge = 0;        ///< metres
-  int samples = 16;           ///< shadow rays of a pair that rays decide, more where its form factor is large
+  int samples = 8;            ///< shadow rays of a pair that rays decide, more where its form factor is large
   int lost_share_rays = 256;  ///< hemisphere rays per patch
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;

@@ -35,9 +35,9 @@ struct ShortCuts {
 
 /// How form factors are found.
 struct AssemblyOptions {
-  int samples = 16;  ///< shadow rays of a pair that rays decide. The automatic estimator rounds them up to 2, 4, 8 or a
-                     ///< multiple of 16, to fill packets, and takes sampling_effort() times as many. The others take
-                     ///< just this many for every pair, Estimator::hemisphere for every patch
+  int samples = 8;  ///< shadow rays of a pair that rays decide. The automatic estimator rounds them up to an even
+                    ///< number and takes sampling_effort() times as many; powers of two fill packets of rays best. The
+                    ///< others take just this many for every pair, Estimator::hemisphere for every patch
   std::uint64_t seed = 1;
   bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
   Estimator estimator = Estimator::automatic;

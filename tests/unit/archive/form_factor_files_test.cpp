@@ -68,8 +68,7 @@ TEST_P(StoredFormFactors, GiveTheSameSolution) {
     EXPECT_EQ(stored.transport.lost.escaped, fresh.transport.lost.escaped);
     EXPECT_EQ(stored.transport.counts.shadow_rays, fresh.transport.counts.shadow_rays);
     EXPECT_TRUE(was_audited(stored.transport.error));
-    EXPECT_EQ(stored.transport.error.partial_pairs, fresh.transport.error.partial_pairs);
-    EXPECT_EQ(stored.transport.error.squares, fresh.transport.error.squares);
+    EXPECT_EQ(stored.transport.error.partial, fresh.transport.error.partial);
     EXPECT_EQ(stored.transport.error.visible.missed, fresh.transport.error.visible.missed);
     EXPECT_EQ(stored.transport.error.visible.by_share, fresh.transport.error.visible.by_share);
     EXPECT_EQ(bound_on_miss(stored.transport.error.occluded), bound_on_miss(fresh.transport.error.occluded));

@@ -87,6 +87,47 @@ TEST(Shades, OfRaysThatAllFindNothingAreKnownByTheRuleOfThree) {
   EXPECT_NEAR(direct.standard_error(0, 0), 3.0 / 4096 * unshadowed, 1e-12);
 }
 
+// Of the rectangle between the foot of a point at this height and (x, y).
+double solid_angle(double x, double y, double height) {
+  return std::atan(x * y / (height * std::sqrt(x * x + y * y + height * height)));
+}
+
+// A floor of 2 x 2 m under a roof with a square hole, and a point of 3 W/sr above it: what falls through the hole is
+// 3 W/sr times the hole's solid angle. Rays alone found nothing of a hole of 2 cm, and said that this was certain.
+TEST(Shades, OfALuminaireLeaveWhatFallsThroughASmallHole) {
+  for (const double edge : {0.002, 0.02, 0.2}) {
+    for (const double size : {1.0, 1e-3}) {
+      const double x = 0.7, y = 0.65;
+      Scene scene =
+          with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
+      const auto piece = [&](double x0, double y0, double x1, double y1) {
+        scene = with_quad(std::move(scene), {Point(x0, y0, 1), Point(x1, y0, 1), Point(x1, y1, 1), Point(x0, y1, 1)});
+      };
+      piece(-9, -9, 9, y);
+      piece(-9, y + edge, 9, 9);
+      piece(-9, y, x, y + edge);
+      piece(x + edge, y, 9, y + edge);
+      const Point lamp(0.9, 0.9, 1.4);
+      Luminaire luminaire;
+      luminaire.position = lamp;
+      luminaire.light = PointLight{Spectrum::Constant(1, 3)};
+      scene.luminaires.push_back(luminaire);
+      const Eigen::AngleAxisd turn(size == 1 ? 0.0 : 0.7, Vector(1, 2, 3).normalized());
+      const DirectIrradiance direct =
+          of_floor(moved(scene, Eigen::Affine3d(turn) * Eigen::Scaling(size)), 0.1001 * size);
+      const double height = 0.4, near_x = lamp.x() - x - edge, near_y = lamp.y() - y - edge;
+      const double hole = solid_angle(near_x + edge, near_y + edge, height) -
+                          solid_angle(near_x, near_y + edge, height) - solid_angle(near_x + edge, near_y, height) +
+                          solid_angle(near_x, near_y, height);
+      const double area = 0.01 * size * size;
+      const double flux = area * direct.irradiance.sum();
+      const double error = area * std::sqrt(direct.standard_error.square().sum());
+      EXPECT_NEAR(flux, 3 * hole, 3 * error) << edge;
+      EXPECT_NEAR(flux, 3 * hole, 0.05 * 3 * hole) << edge;
+    }
+  }
+}
+
 TEST(Shades, OfAPaneAreItsTransmittancePerBand) {
   Scene scene = empty_scene({{"wall", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {"glass", rgb(0, 0, 0), rgb(0, 0, 0)}});
   scene.materials[1].transmittance = rgb(0.2, 0.5, 1);

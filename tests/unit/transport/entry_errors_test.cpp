@@ -46,8 +46,8 @@ TEST(EntryErrors, AreZeroWhereNothingIsEstimated) {
   EXPECT_EQ(EntryErrors().size(), 0U);
 }
 
-// U times the error at the visible share S / U with the samples of the form factor U / A = 1/4, which are 16 times the
-// usual ones, rounded twice.
+// U times the error at the visible share S / U with the samples of the form factor U / A = 1/4, which are the most,
+// rounded twice.
 TEST(EntryErrors, FollowFromTheUnoccludedValueAndTheAudit) {
   ExchangeAreas S(3);
   S.set(0, 1, 0.05F);
@@ -57,12 +57,12 @@ TEST(EntryErrors, FollowFromTheUnoccludedValueAndTheAudit) {
   unoccluded.set(1, 2, EntryKind::estimated, 0.5);
   unoccluded.set(0, 2, EntryKind::all_visible);
   SamplingError error;
-  error.partial_pairs.fill(100);
-  error.squares = {1, 2, 3, 4, 5, 6, 7, 8};
+  for (std::size_t bin = 0; bin < SamplingError::bins; ++bin)
+    error.partial[sampling_efforts - 1][bin] = {100, static_cast<double>(bin + 1)};
   const EntryErrors errors = with_sampling_error(unoccluded, S, error, std::vector<double>(3, 2.0));
   const double twice = (1 + resolution) * (1 + resolution) - 1;
-  EXPECT_NEAR(errors.standard_error(0, 1), 0.5 * 0.1 / 4, twice * 0.5 * 0.1 / 4);
-  EXPECT_NEAR(errors.standard_error(1, 2), 0.5 * std::sqrt(0.07) / 4, twice * 0.5 * std::sqrt(0.07) / 4);
+  EXPECT_NEAR(errors.standard_error(0, 1), 0.5 * 0.1, twice * 0.5 * 0.1);
+  EXPECT_NEAR(errors.standard_error(1, 2), 0.5 * std::sqrt(0.07), twice * 0.5 * std::sqrt(0.07));
   EXPECT_EQ(errors.kind(0, 2), EntryKind::all_visible);
 }
 

@@ -104,7 +104,7 @@ TEST(KnownEntries, GiveTheSameBitsForAnyNumberOfThreads) {
   const Assembly two = assembled(2);
   EXPECT_EQ(between(one, two, finer.mesh.patches).largest, 0);
   EXPECT_EQ(one.counts.shadow_rays, two.counts.shadow_rays);
-  EXPECT_EQ(one.error.squares, two.error.squares);
+  EXPECT_EQ(one.error.partial, two.error.partial);
 }
 
 // When all is known there is nothing to do.
@@ -118,7 +118,7 @@ TEST(KnownEntries, OfTheSameMeshCostNothing) {
   const Assembly again = assemble_exchange_areas(mesh, occluder, keep_errors, {known, place});
   EXPECT_EQ(between(again, known, mesh).largest, 0);
   EXPECT_EQ(again.counts.shadow_rays, 0U);
-  EXPECT_EQ(again.error.squares, known.error.squares);
+  EXPECT_EQ(again.error.partial, known.error.partial);
 }
 
 }  // namespace

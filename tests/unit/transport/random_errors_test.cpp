@@ -32,9 +32,11 @@ Entries cube(EntryKind kind) {
       entries.errors.set(i, j, kind, 0.01 + 0.001 * ((i + j) % 7));
     }
   }
-  // Of a hundred pairs that were sampled again one was off.
-  entries.sampling.visible = {100, 1, {}, 0.03};
-  entries.sampling.occluded = {100, 1, {}, 0.28};
+  for (std::size_t effort = 0; effort < sampling_efforts; ++effort) {
+    const double falling = 1.0 / static_cast<double>(1 + effort);
+    entries.sampling.visible.audited[effort] = {100, 0.03 * falling};
+    entries.sampling.occluded.audited[effort] = {100, 0.28 * falling};
+  }
   return entries;
 }
 
@@ -117,8 +119,9 @@ TEST(RandomErrors, OfRaysThatAgreedFollowFromTheAudit) {
     entries.errors = EntryErrors(std::vector<double>{1, 1});
     entries.errors.set(0, 1, kind);
     const SamplingError& sampling = entries.sampling;
-    // A form factor of 0.035 takes 16 times the usual samples.
-    const double share = standard_error(kind == EntryKind::all_visible ? sampling.visible : sampling.occluded, 16);
+    // A form factor of 0.035 takes the most samples.
+    const auto& unanimous = kind == EntryKind::all_visible ? sampling.visible : sampling.occluded;
+    const double share = standard_error(unanimous, most_effort);
     ASSERT_GT(share, 0);
     const Field D = random_errors(view(entries), Eigen::Array2d(2, 5), 32, 1);
     EXPECT_LT((D.row(0).abs() / (5 * share * U) - 1).abs().maxCoeff(), 1e-14);

@@ -1,0 +1,33 @@
+#include "patchlight/radiosity_errors.h"
+
+#include "patchlight/transport/lost_share.h"
+
+#include "effects.h"
+
+namespace patchlight {
+
+RadiosityErrors radiosity_errors(const Simulation& simulation) {
+  if (!simulates(simulation.plan, Effect::interreflection)) return {};
+  const RadiosityProblem& problem = simulation.problem;
+  const Solution& solution = simulation.solution;
+  RadiosityErrors errors;
+  errors.reflected = solution.radiosity - problem.exitance;
+  errors.solver = solution.error;
+  if (simulation.error_bars) {
+    errors.sampling = problem.reflectance * simulation.error_bars->form_factor;
+    errors.mesh = problem.reflectance * simulation.error_bars->mesh;
+    return errors;
+  }
+  Field squares = Field::Zero(problem.reflectance.rows(), problem.reflectance.cols());
+  if (simulation.direct_standard_error.size() > 0) squares += simulation.direct_standard_error.square();
+  if (simulation.transport.raw_row_sum.size() > 0) {
+    const Eigen::ArrayXd expected = expected_row_sum(simulation.transport.lost).array();
+    const Eigen::ArrayXd defect = simulation.transport.raw_row_sum.array() - expected;
+    const Eigen::ArrayXd relative = (expected > 0).select(defect / expected, 0.0);
+    squares += (solution.irradiance.colwise() * relative).square();
+  }
+  errors.sampling = problem.reflectance * squares.sqrt();
+  return errors;
+}
+
+}  // namespace patchlight
