@@ -101,7 +101,7 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
                           const FieldView& difference) {
   // Of two independent values each is off by a root of one half of their difference.
   const Field error = followed(transport, {problem.reflectance, difference / std::sqrt(2.0), problem.area});
-  return means_around(mesh, problem.area, error);
+  return form_factor_scale * means_around(mesh, problem.area, error);
 }
 
 }  // namespace patchlight

@@ -13,14 +13,14 @@ using Json = nlohmann::ordered_json;
 template <std::size_t n>
 Json pairs_of(const std::array<AuditedPairs, n>& kinds) {
   Json pairs = Json::array();
-  for (const AuditedPairs& kind : kinds) pairs.push_back(kind.pairs);
+  for (const AuditedPairs& audited : kinds) pairs.push_back(audited.pairs);
   return pairs;
 }
 
 template <std::size_t n>
 Json squares_of(const std::array<AuditedPairs, n>& kinds) {
   Json squares = Json::array();
-  for (const AuditedPairs& kind : kinds) squares.push_back(kind.squares);
+  for (const AuditedPairs& audited : kinds) squares.push_back(audited.squares);
   return squares;
 }
 

@@ -72,7 +72,7 @@ UnanimousPairs unanimous_pairs(const std::vector<SampledEntry>& sampled, const A
   const SamplingError::Unanimous& audit = visible ? assembly.error.visible : assembly.error.occluded;
   UnanimousPairs result;
   result.bound = bound_on_miss(audit);
-  result.audited_rate = static_cast<double>(audit.missed) / std::max(1.0, static_cast<double>(audit.pairs));
+  result.audited_rate = static_cast<double>(audit.missed) / std::max(1.0, static_cast<double>(audit.pairs()));
   for (const SampledEntry& entry : sampled) {
     const double found = assembly.exchange_areas.at(entry.first, entry.second);
     if (entry.is_partial || (found > 0) != visible) continue;

@@ -92,8 +92,9 @@ TEST_P(SmallOpenings, LightSensorsAsPathsFind) {
   const Simulation simulation = simulated(scene, 1);
   const ErrorBars& bars = *simulation.error_bars;
   constexpr double reflectance = 0.5;
-  const GatherOptions options{.seed = 3,
-                              .errors = {.sampling = reflectance * bars.form_factor, .mesh = reflectance * bars.mesh}};
+  GatherOptions options{.seed = 3};
+  options.errors.sampling = reflectance * bars.form_factor;
+  options.errors.mesh = reflectance * bars.mesh;
   const GatheredIrradiance found = gather_irradiance(simulation.mesh, simulation.solution.radiosity,
                                                      Occluder(scene, Occluder::Blockers::all), sensors, options);
   for (std::size_t k = 0; k < spots.size(); ++k) {

@@ -25,7 +25,7 @@ Scene cluttered_room() {
   return scene;
 }
 
-// Every sampled pair against a reference of a hundred times the samples, whose own error is a tenth or less.
+// Every sampled pair against a reference of fifty times the samples, whose own error is a seventh or less.
 class Calibration : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -33,8 +33,8 @@ class Calibration : public testing::Test {
     const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
     const Occluder occluder(scene);
     shapes = patch_shapes(mesh);
-    assembly = new Assembly(assemble_exchange_areas(mesh, occluder, {16, 1, true}));
-    reference = new Assembly(assemble_exchange_areas(mesh, occluder, {1600, 7}));
+    assembly = new Assembly(assemble_exchange_areas(mesh, occluder, {8, 1, true}));
+    reference = new Assembly(assemble_exchange_areas(mesh, occluder, {400, 7}));
   }
   static void TearDownTestSuite() {
     delete assembly;
@@ -134,7 +134,7 @@ TEST_F(Calibration, ErrorsOfAllSampledPairsCancelAsStated) {
 }
 
 // Rays that agree do miss something, and the audit sees how often: a reference with many more finds the same rate,
-// within three standard errors of the audit's count. Its own sixteen samples miss what is smaller than a sixteenth, so
+// within three standard errors of the audit's count. Its own eight samples or more miss what is smaller than an eighth, so
 // that it may only find fewer.
 TEST_F(Calibration, TheAuditFindsWhatRaysMiss) {
   double pairs = 0;

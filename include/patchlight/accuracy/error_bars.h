@@ -62,6 +62,10 @@ Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const S
 /// where there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
 inline constexpr double mesh_order = 1.2;
 
+/// What the errors of light straight from the lamps, known from a single difference, are multiplied with, so that bars
+/// cover what they should.
+inline constexpr double form_factor_scale = 1.5;
+
 /// How far the radiosity of the lit part of a patch that reaches into a solid is above its mean: B_i d_i / (1 - d_i),
 /// d_i the dark share, not above 1/2. As long as the patch is wider than what is dark of it, the light that this takes
 /// away does not depend on the patch's size: comparison with larger patches does not show it.

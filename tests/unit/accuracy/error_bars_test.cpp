@@ -69,7 +69,7 @@ TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
       dense_transport(keep_exchange_areas(ExchangeAreas(simulation.mesh.size()), ""), simulation.problem.area);
   const Field difference = Field::Constant(n, simulation.problem.exitance.cols(), -0.3);
   const Field bars = direct_light_errors(simulation.mesh, *transport, simulation.problem, difference);
-  EXPECT_LT((bars - 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
+  EXPECT_LT((bars - form_factor_scale * 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
 }
 
 // Theorem: sources' shares of the noise sum up to what all receivers expect of it. With independent errors sigma_ij,
