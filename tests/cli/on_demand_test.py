@@ -6,7 +6,7 @@ import unittest
 from support import ToolTest
 
 USAGE, NOT_CONVERGED, MEMORY = 1, 3, 4
-TOLERANCE = 1e-6
+TOLERANCE = 1e-7
 
 
 class OnDemandTest(ToolTest):
