@@ -84,7 +84,8 @@ TEST(NearPairs, HaveTheVarianceOfAllTheirSamples) {
         return static_cast<double>(assemble_exchange_areas(mesh, occluder, {samples, seed}).exchange_areas.at(0, 1));
       });
       const Moments reference = moments([&](std::uint64_t seed) {
-        return reference_estimate(mesh, occluder, exact, most_effort * static_cast<std::uint32_t>(samples), hash({seed, 77}));
+        return reference_estimate(mesh, occluder, exact, most_effort * static_cast<std::uint32_t>(samples),
+                                  hash({seed, 77}));
       });
       EXPECT_GT(assembled.variance, 0);
       EXPECT_LT(assembled.variance, 1.5 * reference.variance) << "pair " << k << ", " << samples << " samples";
