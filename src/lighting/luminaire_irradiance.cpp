@@ -136,7 +136,8 @@ std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Lum
     lit += part.lit * kernel.mean;
     error += part.lit.min(part.exposed - part.lit).max(0.0) * kernel.scatter + part.lit * kernel.error;
   }
-  if (!(all > 0)) return LeftByShadows{*whole, none};
+  // A beam narrower than the parts falls between their points: it may be in the light or in the shadow.
+  if (!(all > 0)) return LeftByShadows{*whole, whole->min(1 - *whole).max(0.0)};
   return LeftByShadows{lit / all, error / all};
 }
 
