@@ -47,6 +47,27 @@ Field sampling_errors(const Setting& setting, const Simulation& simulation, cons
   return (direct.square() + other.square()).sqrt();
 }
 
+// What it does to the irradiance that the exposed shares of patches may be off. Where closure brings the entries of a
+// row to the sum that follows from that share, it changes them in proportion to their variances: light of other patches
+// takes the same part of the error as the row, and off is only by how much the light of those that change differs from
+// the mean.
+Field errors_of_exposure(const Simulation& simulation, const ErrorsOfEntries& errors, const SolvedProblem& solved) {
+  const Field& irradiance = solved.solution.irradiance;
+  const Eigen::ArrayXd relative = exposure_errors(simulation.transport.lost);
+  if (!solved.closed || relative.isZero(0)) return irradiance.colwise() * relative;
+  const Field& B = solved.solution.radiosity;
+  Field x(B.rows(), B.cols() + 1);
+  x << B, Field::Ones(B.rows(), 1);
+  const Field changed = by_variances(errors, x);
+  const Eigen::ArrayXd sum = changed.rightCols(1).col(0);
+  const Field& direct = solved.problem.direct_irradiance;
+  const Field by_patches = direct.size() > 0 ? Field(irradiance - direct) : irradiance;
+  const Field mean = (sum > 0).replicate(1, B.cols()).select(changed.leftCols(B.cols()).colwise() / sum, 0.0);
+  Field off = (by_patches - mean).abs();
+  if (direct.size() > 0) off += direct;
+  return off.colwise() * relative;
+}
+
 // What the size of the patches errs, and where from.
 struct MeshBars {
   Field from_larger;    // of sources that are not even
@@ -96,7 +117,8 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
   // 1. What patches, samples and solver err.
   const MeshBars of_mesh = mesh_bars(result, transport, solved, std::move(of_parents));
   const Field sampled = sampling_errors(setting, simulation, *result.raw, transport, solved);
-  const Field exposure = solved.solution.irradiance.colwise() * exposure_errors(lost);
+  const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
+  const Field exposure = errors_of_exposure(simulation, errors, solved);
   Field squares = sampled.square() + exposure.square();
   if (has_point_or_daylight(setting.scene)) squares += simulation.direct_standard_error.square();
   simulation.error_bars = {
@@ -117,7 +139,6 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
     result.effects += squares_of_parents(result.mesh, solved, of_lights, weight);
     result.light_bar = relative_bar(of_lights, simulation.problem, simulation.solution, result.interest);
   }
-  const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   result.noise_bar = relative_bar(sampled, simulation.problem, simulation.solution, result.interest);
   result.noise = noise_of_parents(errors, result.mesh, solved, weight);
   return result;

@@ -93,8 +93,10 @@ void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) c
   const double share = exchange_area / again.unoccluded;
   const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
   const double smaller = std::min(mesh.area[pair.first], mesh.area[pair.second]);
-  const std::size_t effort = effort_index(sampling_effort(again.unoccluded / smaller));
-  const AuditedPairs audited{1, difference * difference / 2};
+  const double form_factor = again.unoccluded / smaller;
+  const std::size_t effort = effort_index(sampling_effort(form_factor));
+  const double square = form_factor * form_factor;
+  const AuditedPairs audited{1, square * difference * difference / 2, square};
   if (estimated) {
     const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
     facts.error.partial[effort][bin] += audited;

@@ -25,7 +25,7 @@ AuditedPairs usual(AuditedPairs pairs, std::size_t effort_index) {
 }
 
 double root_mean(const AuditedPairs& audited) {
-  return std::sqrt(audited.squares / static_cast<double>(audited.pairs));
+  return audited.weight > 0 ? std::sqrt(audited.squares / audited.weight) : 0;
 }
 
 }  // namespace
@@ -33,6 +33,7 @@ double root_mean(const AuditedPairs& audited) {
 AuditedPairs& AuditedPairs::operator+=(const AuditedPairs& other) {
   pairs += other.pairs;
   squares += other.squares;
+  weight += other.weight;
   return *this;
 }
 

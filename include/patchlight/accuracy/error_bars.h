@@ -47,8 +47,9 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference);
 
-/// What the share of a patch that is exposed, when it is not all of it, may be off, as a relative error of its
-/// irradiance; stratified points find a straight edge with a variance of their number to the power of -3/2.
+/// What the share of a patch that is exposed, when it is not all of it, may be off, as a share of it; stratified points
+/// find a straight edge with a variance of their number to the power of -3/2 times the length of the edge, which grows
+/// as the root of covered (1 - covered).
 Eigen::ArrayXd exposure_errors(const LostShare& lost);
 
 /// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from sources twice as

@@ -9,7 +9,8 @@ namespace patchlight {
 /// Pairs that were sampled a second time, independently.
 struct AuditedPairs {
   std::uint64_t pairs = 0;
-  double squares = 0;  ///< half the squared differences of both estimates, over U^2: summed variances of one
+  double squares = 0;  ///< half the squared differences of both form factors: summed variances of one
+  double weight = 0;   ///< summed squares of the form factors without occluders
 
   AuditedPairs& operator+=(const AuditedPairs& other);
   bool operator==(const AuditedPairs&) const = default;
@@ -21,7 +22,9 @@ inline constexpr std::size_t sampling_efforts = 6;
 
 /// How far the sampled entries of a matrix of exchange areas are off, found from a random share of the pairs that are
 /// sampled a second time. Variances are relative to the square of the unoccluded exchange area U, and pooled over pairs
-/// with as many samples and about the same visible share, as the spread of one pair's samples alone tells too little.
+/// with as many samples and about the same visible share, as the spread of one pair's samples alone tells too little. In
+/// a pool a pair counts by the square of its form factor, so that the summed variances of entries, which make that of a
+/// row, are right.
 struct SamplingError {
   static constexpr std::size_t bins = 8;  ///< of the visible share, from 0 to 1
 
