@@ -96,12 +96,11 @@ Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std
 
 Spectrum luminaire_irradiance(const Lighting& lighting, const Luminaire& luminaire, const Receiver& receiver,
                               const LuminaireSamples& samples, bool in_shadow) {
-  const Spectrum none = Spectrum::Zero(lighting.bands);
+  Spectrum sum = Spectrum::Zero(lighting.bands);
   const SeenPatch seen = seen_patch(lighting, luminaire, receiver, samples.rays);
-  if (seen.segments.empty()) return none;
+  if (seen.segments.empty()) return sum;
   const double share = exposed_share(lighting, receiver, samples.places);
-  if (!(share > 0)) return none;
-  Spectrum sum = none;
+  if (!(share > 0)) return sum;
   if (in_shadow) {
     const Field transmittance = lighting.paths.transmittance(seen.segments);
     for (std::size_t k = 0; k < seen.intensities.size(); ++k)

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,12 @@ constexpr double grazing_slope = 1e-3;
 
 enum class Sight { patch, nothing, back, contact };
 
+// What a ray meets, and where.
+struct Seen {
+  Sight sight = Sight::nothing;
+  std::optional<Hit> hit;
+};
+
 struct Shares {
   double escaped = 0;
   double at_backs = 0;
@@ -41,7 +48,9 @@ struct Observatory {
   const Occluder& occluder;
   double extent;
 
-  std::vector<Sight> look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
+  std::vector<Seen> look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
+  std::vector<Seen> look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
+  bool is_in_contact(const Hit& hit) const;
   Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
@@ -72,24 +81,24 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-std::vector<Sight> Observatory::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
-  const auto sight_of = [&](const Hit& hit) {
+std::vector<Seen> Observatory::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
+  const auto seen_at = [&](const Hit& hit) -> Seen {
     const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
-    return range.begin == range.end ? Sight::back : Sight::patch;
+    return {range.begin == range.end ? Sight::back : Sight::patch, hit};
   };
-  std::vector<Sight> sights(rays.size(), Sight::nothing);
+  std::vector<Seen> seen(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (!occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) continue;
-    sights[k] = Sight::contact;
+    seen[k].sight = Sight::contact;
     rays[k].direction.setZero();  // need not be traced
   }
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
   const auto hits = occluder.first_held_hits(rays, seed);
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (sights[k] == Sight::contact) continue;
+    if (seen[k].sight == Sight::contact) continue;
     if (hits[k]) {
-      sights[k] = sight_of(*hits[k]);
+      seen[k] = seen_at(*hits[k]);
       continue;
     }
     Ray moved = rays[k];
@@ -101,21 +110,45 @@ std::vector<Sight> Observatory::look(PatchIndex patch, std::vector<Ray> rays, st
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (!second_hits[k]) continue;
     const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh.normal[patch]);
-    sights[tried_again[k]] = height < 2 * behind * extent ? Sight::contact : sight_of(*second_hits[k]);
+    seen[tried_again[k]] = seen_at(*second_hits[k]);
+    if (height < 2 * behind * extent) seen[tried_again[k]].sight = Sight::contact;
   }
-  return sights;
+  return seen;
 }
 
-int count(std::span<const Sight> among, Sight sight) {
-  return static_cast<int>(std::count(among.begin(), among.end(), sight));
+// Does another face lie against the one that was hit, where it was?
+bool Observatory::is_in_contact(const Hit& hit) const {
+  const Vector& normal = mesh.normal[mesh.patches_on(hit.polygon, hit.side).begin];
+  const Ray through{hit.point - behind * extent * normal, normal, hit.polygon};
+  const auto next = occluder.first_hits({&through, 1})[0];
+  return next && next->distance < 2 * behind * extent;
 }
 
-int unseen(std::span<const Sight> sights) { return count(sights, Sight::back) + count(sights, Sight::contact); }
+int count(std::span<const Seen> among, Sight sight) {
+  return static_cast<int>(
+      std::count_if(among.begin(), among.end(), [&](const Seen& one) { return one.sight == sight; }));
+}
+
+int unseen(std::span<const Seen> seen) { return count(seen, Sight::back) + count(seen, Sight::contact); }
+
+// Rays that start together. Where some meet backs, and so may be inside a solid, a face is a back too where another
+// lies against it: of two faces in one place a ray meets either.
+std::vector<Seen> Observatory::look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+  std::vector<Seen> seen = look(patch, rays, seed);
+  for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
+    const auto group = std::span(seen).subspan(first, rays_per_point);
+    if (unseen(group) == 0) continue;
+    for (Seen& one : group) {
+      if (one.sight == Sight::patch && is_in_contact(*one.hit)) one.sight = Sight::back;
+    }
+  }
+  return seen;
+}
 
 // What groups of rays from one point each tell. A point is covered when every ray from it meets a back or a face that
 // lies against the patch.
 Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
-  const std::vector<Sight> sights = look(patch, rays, seed);
+  const std::vector<Seen> sights = look_together(patch, rays, seed);
   int covered = 0;
   int exposed = 0;
   int escaped = 0;
@@ -125,7 +158,8 @@ Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& ray
     const auto group = std::span(sights).subspan(first, rays_per_point);
     if (unseen(group) == rays_per_point) {
       const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
-      if (unseen(look(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}), seed)) == rays_per_point) {
+      if (unseen(look_together(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}), seed)) ==
+          rays_per_point) {
         ++covered;
         continue;
       }
@@ -142,7 +176,7 @@ Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& ray
 
 Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Sight> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
+  const std::vector<Seen> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
   if (unseen(sights) == 0) return {static_cast<double>(count(sights, Sight::nothing)) / rays, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed), seed);
