@@ -38,7 +38,7 @@ curve() {
     --benchmark_enable_random_interleaving=true
 }
 
-# errors ROOM PATCHES SAMPLES: against a reference with so many samples per pair.
+# errors ROOM PATCHES SAMPLES: against a reference with so many samples for a small form factor, docs/theory.md section 5.
 errors() {
   measure form_factor_errors errors "$1" "$2" "$out/$1_$2_$3.reference" "$3"
 }
@@ -53,9 +53,9 @@ measure form_factors large closed_room_40 0 \
 measure form_factors rays closed_room_20 0 --benchmark_filter=shadow_rays
 measure form_factors rays two_rooms 2000 --benchmark_filter=shadow_rays
 measure form_factors threads closed_room_20 0 --benchmark_filter=second_thread
-errors closed_room_10 0 6400
-errors closed_room_20 0 1600
-errors two_rooms 2000 1600
+errors closed_room_10 0 1600
+errors closed_room_20 0 400
+errors two_rooms 2000 400
 
 grep -m1 'model name' /proc/cpuinfo | sed 's/.*: /machine: /'
 python3 scripts/form_factor_tables.py "$out"

@@ -22,9 +22,9 @@ inline constexpr std::size_t sampling_efforts = 6;
 
 /// How far the sampled entries of a matrix of exchange areas are off, found from a random share of the pairs that are
 /// sampled a second time. Variances are relative to the square of the unoccluded exchange area U, and pooled over pairs
-/// with as many samples and about the same visible share, as the spread of one pair's samples alone tells too little. In
-/// a pool a pair counts by the square of its form factor, so that the summed variances of entries, which make that of a
-/// row, are right.
+/// with as many samples and about the same visible share, as the spread of one pair's samples alone tells too little.
+/// In a pool a pair counts by the square of its form factor, so that the summed variances of entries, which make that
+/// of a row, are right.
 struct SamplingError {
   static constexpr std::size_t bins = 8;  ///< of the visible share, from 0 to 1
 
