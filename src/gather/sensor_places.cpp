@@ -2,7 +2,7 @@
 
 #include "patchlight/base/parallel.h"
 
-#include "gather/outlines.h"
+#include "gather/facets.h"
 #include "gather/walls.h"
 #include "scene/extent.h"
 
@@ -32,21 +32,21 @@ struct PlaceAndPoint {
   Point before;
 };
 
-PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Outline> outlines, double extent) {
+PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Facet> facets, double extent) {
   SensorPlace place{sensor};
   Point before = sensor.point;
-  for (const Outline& outline : outlines) {
-    const double distance = std::max(share_of_polygon * outline.size, share_of_scene * extent);
-    if (!lies_on(place.sensor.point, outline, distance)) continue;
-    const double cosine = outline.normal.dot(sensor.normal);
+  for (const Facet& facet : facets) {
+    const double distance = std::max(share_of_polygon * facet.size, share_of_scene * extent);
+    if (!lies_on(place.sensor.point, facet, distance)) continue;
+    const double cosine = facet.normal.dot(sensor.normal);
     if (std::abs(cosine) < facing) {
       place.standing = Standing::undecided;
     } else {
       const double height = std::abs(cosine) > along_normal ? next_to_it * extent : distance;
-      const Vector facing_normal = std::copysign(1.0, cosine) * outline.normal;
-      const double lies_at = facing_normal.dot(place.sensor.point - outline.corners[0]);
+      const Vector facing_normal = std::copysign(1.0, cosine) * facet.normal;
+      const double lies_at = facing_normal.dot(place.sensor.point - facet.corners[0]);
       place.sensor.point += (height - lies_at) * facing_normal;
-      before += (distance - facing_normal.dot(before - outline.corners[0])) * facing_normal;
+      before += (distance - facing_normal.dot(before - facet.corners[0])) * facing_normal;
     }
   }
   return {place, before};
@@ -55,17 +55,17 @@ PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Outline> out
 }  // namespace
 
 std::vector<SensorPlace> place_sensors(const Scene& scene, const KeptSides& sides, const Occluder& occluder) {
-  const std::vector<Outline> outlines = outlines_of(scene);
+  const std::vector<Facet> facets = facets_of(scene);
   const std::vector<Sensor> sensors = all_sensors(scene.sensors);
   const double extent = extent_of(scene);
   std::vector<SensorPlace> places(sensors.size());
   std::vector<Point> points(sensors.size());
   parallel_for(sensors.size(), [&](std::size_t k) {
-    const PlaceAndPoint found = place_of_sensor(sensors[k], outlines, extent);
+    const PlaceAndPoint found = place_of_sensor(sensors[k], facets, extent);
     places[k] = found.place;
     points[k] = found.before;
   });
-  const std::vector<std::uint8_t> inside = inside_walls(scene, sides, occluder, outlines, points);
+  const std::vector<std::uint8_t> inside = inside_walls(scene, sides, occluder, facets, points);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (inside[k]) places[k].standing = Standing::inside_wall;
   }

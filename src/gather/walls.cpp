@@ -72,7 +72,7 @@ struct StandingWall {
 struct Walls {
   const Scene& scene;
   const Occluder& occluder;
-  std::span<const Outline> outlines;
+  std::span<const Facet> facets;
   TakingPart takes_part;
   Shells shells;
   std::vector<std::uint32_t> place;  // per vertex: the first one that is welded with it
@@ -119,8 +119,8 @@ StandingWall Walls::standing_wall(PolygonIndex shell) const {
     const Point& b = scene.vertices[edge.second];
     for (const Point& point : {a, Point((a + b) / 2), b}) {
       bool covered = false;
-      for (PolygonIndex p = 0; p < outlines.size(); ++p) {
-        if (shells.shell[p] == shell || !lies_on(point, outlines[p], tolerance)) continue;
+      for (PolygonIndex p = 0; p < facets.size(); ++p) {
+        if (shells.shell[p] == shell || !lies_on(point, facets[p], tolerance)) continue;
         covered = true;
         wall.bases.insert(p);
       }
@@ -152,10 +152,10 @@ bool Walls::is_inside(const Point& point, const Hits& hits, PolygonIndex shell, 
          !sees_lamp(point, hits);
 }
 
-std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Outline> outlines) {
+std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Facet> facets) {
   std::vector<Point> lamps;
-  for (PolygonIndex p = 0; p < outlines.size(); ++p) {
-    if (is_lamp(scene, p)) lamps.push_back(area_centroid(outlines[p].corners));
+  for (PolygonIndex p = 0; p < facets.size(); ++p) {
+    if (is_lamp(scene, p)) lamps.push_back(area_centroid(facets[p].corners));
   }
   for (const Luminaire& luminaire : scene.luminaires) lamps.push_back(luminaire.position);
   return lamps;
@@ -164,15 +164,15 @@ std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Outline> 
 }  // namespace
 
 std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& sides, const Occluder& occluder,
-                                       std::span<const Outline> outlines, std::span<const Point> points) {
+                                       std::span<const Facet> facets, std::span<const Point> points) {
   const Walls walls{scene,
                     occluder,
-                    outlines,
+                    facets,
                     {sides, kept_sides(scene, Sides::automatic)},
                     shells_of(scene),
                     welded(scene.vertices, weld_distance(scene)),
                     rim_tolerance * extent_of(scene),
-                    points_on_lamps(scene, outlines)};
+                    points_on_lamps(scene, facets)};
 
   // 1. What each point has around it: sides that take no part, or a shell that may be a wall
   std::vector<std::uint8_t> inside(points.size(), 0);

@@ -3,7 +3,7 @@
 #include "patchlight/scene/sides.h"
 #include "patchlight/visibility/occluder.h"
 
-#include "gather/outlines.h"
+#include "gather/facets.h"
 
 #include <cstdint>
 #include <span>
@@ -13,6 +13,6 @@ namespace patchlight {
 
 /// Per point 1 when it is inside a wall, as place_sensors() has it.
 std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& sides, const Occluder& occluder,
-                                       std::span<const Outline> outlines, std::span<const Point> points);
+                                       std::span<const Facet> facets, std::span<const Point> points);
 
 }  // namespace patchlight

@@ -7,7 +7,7 @@
 namespace patchlight {
 
 /// A polygon as points are held against it.
-struct Outline {
+struct Facet {
   std::vector<Point> corners;
   Vector normal;    ///< unit, of its front
   double size = 0;  ///< metres, the diagonal of its bounds
@@ -16,9 +16,9 @@ struct Outline {
   double height(const Point& point) const { return normal.dot(point - corners[0]); }
 };
 
-std::vector<Outline> outlines_of(const Scene& scene);
+std::vector<Facet> facets_of(const Scene& scene);
 
 /// True when the point is no farther than `tolerance`, in metres, from the polygon.
-bool lies_on(const Point& point, const Outline& outline, double tolerance);
+bool lies_on(const Point& point, const Facet& facet, double tolerance);
 
 }  // namespace patchlight
