@@ -1,8 +1,9 @@
 #include "effects.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 #include "patchlight/light/photometry.h"
+
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <type_traits>

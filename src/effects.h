@@ -2,13 +2,13 @@
 
 #include "patchlight/base/field.h"
 #include "patchlight/base/progress.h"
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/transport_operator.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "lighting/direct_irradiance.h"
 #include "solve_mesh.h"
 
 namespace patchlight {

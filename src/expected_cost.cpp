@@ -1,9 +1,8 @@
 #include "patchlight/expected_cost.h"
 
-#include "patchlight/transport/assembly_time.h"
-
 #include "effects.h"
 #include "memory.h"
+#include "transport/assembly_time.h"
 
 #include <algorithm>
 #include <thread>

@@ -1,8 +1,8 @@
 #include "patchlight/form_factors.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/parallel.h"
 #include "memory.h"
 
 #include <utility>

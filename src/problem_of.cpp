@@ -1,6 +1,6 @@
 #include "problem_of.h"
 
-#include "patchlight/scene/transmittance.h"
+#include "scene/transmittance.h"
 
 namespace patchlight {
 

@@ -1,13 +1,13 @@
 #include "patchlight/simulate.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/plan/close_lamps.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "base/parallel.h"
 #include "check_request.h"
 #include "effects.h"
 #include "memory.h"
+#include "plan/close_lamps.h"
 #include "problem_of.h"
 #include "relative_errors.h"
 #include "solve_mesh.h"

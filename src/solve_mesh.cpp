@@ -1,18 +1,18 @@
 #include "solve_mesh.h"
 
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/solve/energy.h"
-#include "patchlight/transport/dense.h"
-#include "patchlight/transport/merged.h"
-#include "patchlight/transport/on_demand.h"
-#include "patchlight/transport/ray_rate.h"
 
 #include "effects.h"
+#include "lighting/direct_irradiance.h"
 #include "memory.h"
 #include "problem_of.h"
 #include "relative_errors.h"
+#include "solve/energy.h"
 #include "solve_for_interest.h"
+#include "transport/dense.h"
+#include "transport/merged.h"
+#include "transport/on_demand.h"
+#include "transport/ray_rate.h"
 #include "with_error_bars.h"
 
 #include <limits>

@@ -1,8 +1,7 @@
 #include "spaces.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/scene/shells.h"
-
+#include "base/parallel.h"
+#include "scene/shells.h"
 #include "scene/solids.h"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/simulate.h"
+
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,11 +1,11 @@
 #include "to_accuracy.h"
 
-#include "patchlight/accuracy/refinement.h"
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/mesh/refine.h"
 
+#include "accuracy/refinement.h"
+#include "base/parallel.h"
 #include "memory.h"
+#include "mesh/refine.h"
 #include "with_error_bars.h"
 
 #include <algorithm>

@@ -1,13 +1,12 @@
 #include "with_error_bars.h"
 
-#include "patchlight/accuracy/refinement.h"
-#include "patchlight/base/sampling.h"
-#include "patchlight/transport/dense.h"
-#include "patchlight/transport/merged.h"
-#include "patchlight/transport/on_demand.h"
-
+#include "accuracy/refinement.h"
+#include "base/sampling.h"
 #include "effects.h"
 #include "interest.h"
+#include "transport/dense.h"
+#include "transport/merged.h"
+#include "transport/on_demand.h"
 
 #include <utility>
 

@@ -1,8 +1,8 @@
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/random_errors.h"
 
 #include "accuracy/means_around.h"
+#include "transport/random_errors.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "patchlight/accuracy/error_bars.h"
-#include "patchlight/base/parallel.h"
+
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
-#include "patchlight/accuracy/refinement.h"
+#include "accuracy/refinement.h"
 
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/merged.h"
+
+#include "transport/merged.h"
 
 #include <algorithm>
 #include <cmath>

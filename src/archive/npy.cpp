@@ -1,9 +1,9 @@
 #include "archive/npy.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/whole_file.h"
 
 #include "base/regular_file.h"
+#include "output/whole_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 #include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/row_sums.h"
 #include "archive/sampling_error_json.h"
+#include "base/parallel.h"
 #include "base/regular_file.h"
 #include "transport/narrow.h"
 

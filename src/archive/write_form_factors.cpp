@@ -1,16 +1,16 @@
 #include "patchlight/archive/form_factor_files.h"
-#include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
-#include "patchlight/output/whole_file.h"
-#include "patchlight/output/whole_folder.h"
-#include "patchlight/output/write_mesh.h"
 
 #include "archive/file_names.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/sampling_error_json.h"
+#include "archive/scene_file.h"
+#include "output/whole_file.h"
+#include "output/whole_folder.h"
 #include "output/write_bytes.h"
+#include "output/write_mesh.h"
 
 #include <algorithm>
 #include <array>

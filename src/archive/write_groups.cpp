@@ -1,8 +1,8 @@
 #include "patchlight/archive/group_factors.h"
-#include "patchlight/transport/group_exchange.h"
 
 #include "output/csv_cell.h"
 #include "output/write_bytes.h"
+#include "transport/group_exchange.h"
 
 #include <cstdint>
 #include <iomanip>

@@ -1,4 +1,4 @@
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <boost/random/sobol.hpp>
 #include <cmath>

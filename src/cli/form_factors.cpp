@@ -1,12 +1,12 @@
 #include "cli/form_factors.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/output/whole_file.h"
 
+#include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "output/whole_file.h"
 
 #include <algorithm>
 #include <iomanip>

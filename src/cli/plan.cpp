@@ -1,16 +1,16 @@
 #include "cli/plan.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/expected_cost.h"
-#include "patchlight/output/whole_file.h"
-#include "patchlight/output/write_plan.h"
 
+#include "base/parallel.h"
 #include "check_request.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
 #include "memory.h"
+#include "output/whole_file.h"
+#include "output/write_plan.h"
 #include "solve_mesh.h"
 
 #include <iomanip>

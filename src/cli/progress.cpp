@@ -1,6 +1,6 @@
 #include "cli/progress.h"
 
-#include "patchlight/base/parallel.h"
+#include "base/parallel.h"
 
 #include <cmath>
 #include <iostream>

@@ -3,11 +3,11 @@
 #include "patchlight/base/error.h"
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_points.h"
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/radiosity_errors.h"
 
 #include "cli/text_table.h"
 #include "effects.h"
+#include "lighting/direct_irradiance.h"
 
 #include <limits>
 #include <numbers>

@@ -1,9 +1,10 @@
 #include "cli/solve_input.h"
 
 #include "patchlight/archive/form_factor_files.h"
-#include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
-#include "patchlight/scene/transmittance.h"
+
+#include "archive/scene_file.h"
+#include "scene/transmittance.h"
 
 #include <cmath>
 #include <sstream>

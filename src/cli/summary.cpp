@@ -1,9 +1,8 @@
 #include "cli/summary.h"
 
-#include "patchlight/transport/worst_rows.h"
-
 #include "cli/messages.h"
 #include "cli/text_table.h"
+#include "transport/worst_rows.h"
 
 #include <algorithm>
 #include <cmath>

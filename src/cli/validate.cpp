@@ -1,12 +1,11 @@
 #include "cli/validate.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/output/whole_file.h"
-#include "patchlight/output/write_validation.h"
-
+#include "base/parallel.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/text_table.h"
+#include "output/whole_file.h"
+#include "output/write_validation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,15 @@
 #include "cli/verify.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/output/whole_file.h"
-#include "patchlight/output/write_verification.h"
 
+#include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "cli/text_table.h"
+#include "output/whole_file.h"
+#include "output/write_verification.h"
 
 #include <algorithm>
 #include <cmath>

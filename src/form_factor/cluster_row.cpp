@@ -1,6 +1,5 @@
-#include "patchlight/form_factor/patch_cluster.h"
-
 #include "base/target_clones.h"
+#include "form_factor/patch_cluster.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "patchlight/form_factor/contour.h"
+#include "form_factor/contour.h"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>

@@ -1,6 +1,6 @@
-#include "patchlight/form_factor/monte_carlo.h"
+#include "form_factor/monte_carlo.h"
 
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/form_factor/patch_cluster.h"
+#include "form_factor/patch_cluster.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,6 @@
-#include "patchlight/form_factor/patch_keys.h"
+#include "form_factor/patch_keys.h"
 
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "patchlight/form_factor/patch_shape.h"
+#include "form_factor/patch_shape.h"
 
-#include "patchlight/form_factor/contour.h"
+#include "form_factor/contour.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/form_factor/point_polygon.h"
+#include "form_factor/point_polygon.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/form_factor/solid_angle.h"
+#include "form_factor/solid_angle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/gather/doubtful_sensors.h"
+#include "gather/doubtful_sensors.h"
 
 #include <cassert>
 #include <sstream>

@@ -1,7 +1,6 @@
 #include "patchlight/gather/gather.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "gather/gradients.h"
 #include "gather/sources.h"
 

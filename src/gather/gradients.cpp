@@ -1,7 +1,6 @@
 #include "gather/gradients.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "mesh/patches_at_vertices.h"
 
 #include <Eigen/Dense>

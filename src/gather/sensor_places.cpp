@@ -1,7 +1,6 @@
 #include "patchlight/gather/sensor_places.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "gather/facets.h"
 #include "gather/walls.h"
 #include "scene/extent.h"

@@ -1,8 +1,8 @@
 #include "gather/sources.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/monte_carlo.h"
-#include "patchlight/form_factor/point_polygon.h"
+#include "base/sampling.h"
+#include "form_factor/monte_carlo.h"
+#include "form_factor/point_polygon.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,9 @@
 #include "gather/walls.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/scene/shells.h"
-#include "patchlight/scene/weld.h"
-
+#include "base/parallel.h"
 #include "scene/extent.h"
+#include "scene/shells.h"
+#include "scene/weld.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/scene/photometric_web.h"
+#include "scene/photometric_web.h"
 
 #include <filesystem>
 #include <string>

@@ -1,9 +1,9 @@
 #include "patchlight/base/error.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/scene/photometric_web.h"
 
 #include "input/read_ies.h"
 #include "input/toml_lights.h"
+#include "scene/photometric_web.h"
 
 #include <algorithm>
 #include <memory>

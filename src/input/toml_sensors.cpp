@@ -2,11 +2,11 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_points.h"
-#include "patchlight/scene/sensor_grid.h"
 
 #include "base/near_match.h"
 #include "input/material_settings.h"
 #include "input/text.h"
+#include "scene/sensor_grid.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,8 +1,7 @@
-#include "patchlight/lighting/direct_irradiance.h"
+#include "lighting/direct_irradiance.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
 #include "lighting/luminaire_irradiance.h"
 #include "lighting/receiver.h"
 #include "lighting/shades.h"

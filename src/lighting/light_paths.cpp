@@ -1,4 +1,4 @@
-#include "patchlight/lighting/light_paths.h"
+#include "lighting/light_paths.h"
 
 #include <algorithm>
 

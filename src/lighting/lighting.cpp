@@ -1,10 +1,9 @@
-#include "patchlight/lighting/lighting.h"
+#include "lighting/lighting.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/scene/photometric_web.h"
-#include "patchlight/scene/triangulate.h"
-
+#include "base/sampling.h"
 #include "lighting/shades.h"
+#include "scene/photometric_web.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

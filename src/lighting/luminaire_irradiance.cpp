@@ -1,8 +1,7 @@
 #include "lighting/luminaire_irradiance.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/solid_angle.h"
-
+#include "base/sampling.h"
+#include "form_factor/solid_angle.h"
 #include "lighting/shades.h"
 
 #include <algorithm>

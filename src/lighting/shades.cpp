@@ -1,9 +1,8 @@
 #include "lighting/shades.h"
 
-#include "patchlight/scene/triangulate.h"
-
 #include "lighting/lit_area.h"
 #include "scene/extent.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 #include "lighting/sky_irradiance.h"
 
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <algorithm>
 #include <cmath>

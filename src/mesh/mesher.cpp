@@ -1,12 +1,12 @@
 #include "patchlight/mesh/mesher.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/scene/triangulate.h"
 
+#include "base/parallel.h"
 #include "mesh/boundary_vertices.h"
 #include "mesh/outline.h"
 #include "mesh/refine_polygon.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cassert>

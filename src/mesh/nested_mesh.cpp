@@ -1,6 +1,6 @@
 #include "patchlight/mesh/nested_mesh.h"
 
-#include "patchlight/mesh/refine.h"
+#include "mesh/refine.h"
 
 #include <algorithm>
 #include <cassert>

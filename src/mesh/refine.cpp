@@ -1,4 +1,4 @@
-#include "patchlight/mesh/refine.h"
+#include "mesh/refine.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,8 +1,7 @@
 #include "mesh/refine_polygon.h"
 
-#include "patchlight/scene/triangulate.h"
-
 #include "mesh/lattice.h"
+#include "scene/triangulate.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/output/write_plot.h"
+#include "output/write_plot.h"
 
 #include <string>
 #include <vector>

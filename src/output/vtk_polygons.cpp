@@ -1,7 +1,8 @@
 #include "output/vtk_polygons.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/whole_file.h"
+
+#include "output/whole_file.h"
 
 #include <algorithm>
 #include <vtkCallbackCommand.h>

@@ -1,4 +1,4 @@
-#include "patchlight/output/whole_file.h"
+#include "output/whole_file.h"
 
 #include "patchlight/base/error.h"
 

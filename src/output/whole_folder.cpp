@@ -1,4 +1,4 @@
-#include "patchlight/output/whole_folder.h"
+#include "output/whole_folder.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,7 +1,8 @@
 #include "output/write_bytes.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/whole_file.h"
+
+#include "output/whole_file.h"
 
 #include <cerrno>
 #include <cstring>

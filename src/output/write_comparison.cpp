@@ -1,11 +1,11 @@
-#include "patchlight/output/write_comparison.h"
+#include "output/write_comparison.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/whole_folder.h"
-#include "patchlight/output/write_plot.h"
-#include "patchlight/output/write_series.h"
 
+#include "output/whole_folder.h"
 #include "output/write_bytes.h"
+#include "output/write_plot.h"
+#include "output/write_series.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_glb.h"
+#include "output/write_glb.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_mesh.h"
+#include "output/write_mesh.h"
 
 #include "output/vtk_polygons.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_plan.h"
+#include "output/write_plan.h"
 
 #include "patchlight/output/provenance.h"
 

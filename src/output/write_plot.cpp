@@ -1,4 +1,4 @@
-#include "patchlight/output/write_plot.h"
+#include "output/write_plot.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_ply.h"
+#include "output/write_ply.h"
 
 #include "output/append_bytes.h"
 #include "output/vertex_colours.h"

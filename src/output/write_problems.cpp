@@ -1,4 +1,4 @@
-#include "patchlight/output/write_problems.h"
+#include "output/write_problems.h"
 
 #include "output/vtk_polygons.h"
 

@@ -1,12 +1,11 @@
 #include "patchlight/output/write_report.h"
 
-#include "patchlight/transport/worst_rows.h"
-
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"
 #include "output/json_array.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
+#include "transport/worst_rows.h"
 
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,10 @@
 #include "patchlight/output/write_result.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/write_glb.h"
-#include "patchlight/output/write_ply.h"
-#include "patchlight/output/write_vtk.h"
+
+#include "output/write_glb.h"
+#include "output/write_ply.h"
+#include "output/write_vtk.h"
 
 namespace patchlight {
 

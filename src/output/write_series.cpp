@@ -1,10 +1,10 @@
-#include "patchlight/output/write_series.h"
+#include "output/write_series.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/whole_file.h"
 #include "patchlight/render/tone_map.h"
 
 #include "output/vtk_polygons.h"
+#include "output/whole_file.h"
 #include "output/write_bytes.h"
 
 #include <cassert>

@@ -1,10 +1,9 @@
-#include "patchlight/output/write_study.h"
+#include "output/write_study.h"
 
-#include "patchlight/output/whole_folder.h"
-#include "patchlight/output/write_plot.h"
-#include "patchlight/study/price.h"
-
+#include "output/whole_folder.h"
 #include "output/write_bytes.h"
+#include "output/write_plot.h"
+#include "study/price.h"
 
 #include <algorithm>
 #include <cmath>

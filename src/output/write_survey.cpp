@@ -1,4 +1,4 @@
-#include "patchlight/output/write_survey.h"
+#include "output/write_survey.h"
 
 #include "patchlight/light/photometry.h"
 #include "patchlight/output/provenance.h"

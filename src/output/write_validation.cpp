@@ -1,4 +1,4 @@
-#include "patchlight/output/write_validation.h"
+#include "output/write_validation.h"
 
 #include "patchlight/output/provenance.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_verification.h"
+#include "output/write_verification.h"
 
 #include "output/accuracy_json.h"
 #include "output/write_bytes.h"

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_vtk.h"
+#include "output/write_vtk.h"
 
 #include "patchlight/light/photometry.h"
 #include "patchlight/render/smooth.h"

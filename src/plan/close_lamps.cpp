@@ -1,4 +1,4 @@
-#include "patchlight/plan/close_lamps.h"
+#include "plan/close_lamps.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,8 +1,7 @@
-#include "patchlight/plan/effect_facts.h"
-
-#include "patchlight/visibility/convex_hull.h"
+#include "plan/effect_facts.h"
 
 #include "scene/solids.h"
+#include "visibility/convex_hull.h"
 
 #include <algorithm>
 #include <cmath>

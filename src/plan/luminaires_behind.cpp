@@ -1,8 +1,7 @@
 #include "plan/luminaires_behind.h"
 
-#include "patchlight/scene/triangulate.h"
-
 #include "scene/extent.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/plan/decide.h"
-#include "patchlight/plan/effect_facts.h"
-#include "patchlight/plan/left_out_sides.h"
 #include "patchlight/plan/survey.h"
 
+#include "plan/decide.h"
+#include "plan/effect_facts.h"
+#include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
 #include "scene/problem_face.h"
 

@@ -1,10 +1,10 @@
 #include "patchlight/plan/survey.h"
 
 #include "patchlight/scene/coverings.h"
-#include "patchlight/scene/shells.h"
 
 #include "base/lower_case.h"
 #include "scene/extent.h"
+#include "scene/shells.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,9 @@
 #include "patchlight/render/render.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/mesh/patch_lookup.h"
+
+#include "base/parallel.h"
+#include "mesh/patch_lookup.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,10 @@
 #include "patchlight/scene/coverings.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/scene/triangulate.h"
-
+#include "base/parallel.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/problem_face.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <array>

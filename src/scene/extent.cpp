@@ -1,9 +1,8 @@
 #include "scene/extent.h"
 
-#include "patchlight/scene/weld.h"
-
 #include "scene/limits.h"
 #include "scene/simple_polygon.h"
+#include "scene/weld.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "scene/lamp_places.h"
 
-#include "patchlight/scene/triangulate.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 #include "scene/openings.h"
 
 #include "patchlight/scene/coverings.h"
-#include "patchlight/scene/triangulate.h"
 
 #include "scene/extent.h"
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
 #include "scene/simple_polygon.h"
+#include "scene/triangulate.h"
 #include "scene/turn.h"
 
 #include <algorithm>

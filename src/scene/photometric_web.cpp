@@ -1,4 +1,4 @@
-#include "patchlight/scene/photometric_web.h"
+#include "scene/photometric_web.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,12 @@
 #include "patchlight/scene/repair.h"
 
-#include "patchlight/scene/shells.h"
-#include "patchlight/scene/weld.h"
-
 #include "scene/coincident.h"
 #include "scene/extent.h"
 #include "scene/openings.h"
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
+#include "scene/shells.h"
+#include "scene/weld.h"
 
 #include <algorithm>
 #include <sstream>

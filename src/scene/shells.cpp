@@ -1,8 +1,7 @@
-#include "patchlight/scene/shells.h"
-
-#include "patchlight/scene/weld.h"
+#include "scene/shells.h"
 
 #include "scene/extent.h"
+#include "scene/weld.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,10 +1,9 @@
 #include "patchlight/scene/sides.h"
 
-#include "patchlight/scene/shells.h"
-
 #include "scene/extent.h"
 #include "scene/half_spaces.h"
 #include "scene/lamp_places.h"
+#include "scene/shells.h"
 #include "scene/solids.h"
 
 #include <algorithm>

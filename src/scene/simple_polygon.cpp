@@ -1,8 +1,7 @@
 #include "scene/simple_polygon.h"
 
-#include "patchlight/scene/triangulate.h"
-
 #include "scene/box_row.h"
+#include "scene/triangulate.h"
 #include "scene/turn.h"
 
 #include <Eigen/Eigenvalues>

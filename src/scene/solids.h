@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/scene/scene.h"
-#include "patchlight/scene/shells.h"
+
+#include "scene/shells.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "patchlight/scene/transmittance.h"
+#include "scene/transmittance.h"
 
 #include "patchlight/light/photometry.h"
 

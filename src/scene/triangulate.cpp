@@ -1,4 +1,4 @@
-#include "patchlight/scene/triangulate.h"
+#include "scene/triangulate.h"
 
 #include "scene/box_row.h"
 #include "scene/turn.h"

@@ -1,4 +1,4 @@
-#include "patchlight/scene/weld.h"
+#include "scene/weld.h"
 
 #include <algorithm>
 #include <array>

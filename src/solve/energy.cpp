@@ -1,4 +1,4 @@
-#include "patchlight/solve/energy.h"
+#include "solve/energy.h"
 
 namespace patchlight {
 

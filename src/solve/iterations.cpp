@@ -1,8 +1,9 @@
 #include "solve/iterations.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
-#include "patchlight/solve/spectral_radius.h"
+
+#include "base/parallel.h"
+#include "solve/spectral_radius.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/solve/spectral_radius.h"
+#include "solve/spectral_radius.h"
 
 namespace patchlight {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "patchlight/study/reference.h"
 #include "patchlight/study/study.h"
 
 #include "study/nested_sizes.h"
+#include "study/reference.h"
 
 namespace patchlight {
 

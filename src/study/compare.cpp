@@ -1,7 +1,7 @@
 #include "patchlight/study/compare.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/solve/spectral_radius.h"
+#include "base/parallel.h"
+#include "solve/spectral_radius.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/study/reference.h"
 #include "patchlight/study/study.h"
+
+#include "study/reference.h"
 
 namespace patchlight {
 

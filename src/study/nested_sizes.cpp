@@ -2,10 +2,10 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/mesh/patch_lookup.h"
-#include "patchlight/mesh/refine.h"
 
 #include "memory.h"
+#include "mesh/patch_lookup.h"
+#include "mesh/refine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/study/price.h"
+#include "study/price.h"
 
 #include <algorithm>
 #include <cmath>

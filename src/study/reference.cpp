@@ -1,6 +1,6 @@
-#include "patchlight/study/reference.h"
+#include "study/reference.h"
 
-#include "patchlight/mesh/average.h"
+#include "mesh/average.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
 #include "patchlight/study/study.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/study/price.h"
-#include "patchlight/study/reference.h"
-
+#include "base/parallel.h"
 #include "memory.h"
 #include "study/bench.h"
 #include "study/error_parts.h"
+#include "study/price.h"
+#include "study/reference.h"
 #include "study/sweeps.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "study/sweeps.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 
+#include "base/parallel.h"
 #include "memory.h"
 
 #include <algorithm>

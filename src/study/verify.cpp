@@ -1,8 +1,7 @@
 #include "patchlight/study/verify.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
 #include "effects.h"
 #include "spaces.h"
 #include "study/left_out.h"

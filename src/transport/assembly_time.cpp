@@ -1,8 +1,7 @@
-#include "patchlight/transport/assembly_time.h"
+#include "transport/assembly_time.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
 #include "transport/cluster_pairs.h"
 
 #include <algorithm>

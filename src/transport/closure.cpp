@@ -1,8 +1,8 @@
 #include "patchlight/transport/closure.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 
+#include "base/parallel.h"
 #include "transport/narrow.h"
 #include "transport/tile_edge.h"
 

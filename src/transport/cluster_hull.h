@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/form_factor/patch_cluster.h"
 #include "patchlight/visibility/shaft.h"
+
+#include "form_factor/patch_cluster.h"
 
 #include <optional>
 #include <vector>

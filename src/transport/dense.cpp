@@ -1,7 +1,6 @@
-#include "patchlight/transport/dense.h"
+#include "transport/dense.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "transport/tile_edge.h"
 #include "transport/tile_kernel.h"
 

@@ -1,6 +1,6 @@
 #include "patchlight/transport/entry_errors.h"
 
-#include "patchlight/base/parallel.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <cassert>

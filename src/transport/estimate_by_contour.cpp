@@ -1,5 +1,4 @@
-#include "patchlight/form_factor/contour.h"
-
+#include "form_factor/contour.h"
 #include "transport/estimators.h"
 #include "transport/pair_by_pair.h"
 

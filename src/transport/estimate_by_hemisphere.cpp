@@ -1,8 +1,7 @@
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/patch_keys.h"
-#include "patchlight/mesh/patch_lookup.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "form_factor/patch_keys.h"
+#include "mesh/patch_lookup.h"
 #include "transport/estimators.h"
 #include "transport/narrow.h"
 #include "transport/patch_frame.h"

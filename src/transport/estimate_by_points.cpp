@@ -1,7 +1,6 @@
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/point_polygon.h"
-#include "patchlight/form_factor/solid_angle.h"
-
+#include "base/sampling.h"
+#include "form_factor/point_polygon.h"
+#include "form_factor/solid_angle.h"
 #include "transport/estimators.h"
 #include "transport/pair_by_pair.h"
 

@@ -1,9 +1,8 @@
 #include "patchlight/transport/lost_share.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/patch_keys.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "form_factor/patch_keys.h"
 #include "transport/patch_frame.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
-#include "patchlight/transport/merged.h"
+#include "transport/merged.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "transport/narrow.h"
 
 #include <algorithm>

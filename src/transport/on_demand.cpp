@@ -1,7 +1,6 @@
-#include "patchlight/transport/on_demand.h"
+#include "transport/on_demand.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "transport/cluster_pairs.h"
 #include "transport/narrow.h"
 

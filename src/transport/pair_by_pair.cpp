@@ -1,10 +1,9 @@
 #include "transport/pair_by_pair.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/monte_carlo.h"
-#include "patchlight/form_factor/patch_keys.h"
-
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "form_factor/monte_carlo.h"
+#include "form_factor/patch_keys.h"
 #include "transport/narrow.h"
 
 #include <utility>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/transport/assemble.h"
+
+#include "form_factor/patch_shape.h"
 
 #include <array>
 #include <functional>

@@ -1,10 +1,10 @@
 #include "transport/pair_sampler.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/patch_keys.h"
-#include "patchlight/form_factor/solid_angle.h"
 #include "patchlight/transport/sampling_error.h"
 
+#include "base/sampling.h"
+#include "form_factor/patch_keys.h"
+#include "form_factor/solid_angle.h"
 #include "transport/narrow.h"
 
 #include <algorithm>

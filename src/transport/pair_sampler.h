@@ -1,10 +1,11 @@
 #pragma once
 
-#include "patchlight/form_factor/pair_samples.h"
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/visibility/occluder.h"
+
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_shape.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
-#include "patchlight/transport/random_errors.h"
+#include "transport/random_errors.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
+#include "base/parallel.h"
+#include "base/sampling.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,9 +1,9 @@
-#include "patchlight/transport/ray_rate.h"
+#include "transport/ray_rate.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/pair_samples.h"
-#include "patchlight/form_factor/patch_shape.h"
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_shape.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "patchlight/transport/worst_rows.h"
+#include "transport/worst_rows.h"
 
 #include <algorithm>
 #include <cassert>

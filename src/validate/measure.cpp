@@ -1,10 +1,11 @@
 #include "validate/measure.h"
 
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/repair.h"
-#include "patchlight/transport/group_exchange.h"
 #include "patchlight/visibility/occluder.h"
+
+#include "form_factor/patch_shape.h"
+#include "transport/group_exchange.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "verify/exposed.h"
 
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <algorithm>
 #include <cmath>

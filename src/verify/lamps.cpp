@@ -1,7 +1,7 @@
 #include "verify/lamps.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/scene/triangulate.h"
+#include "base/sampling.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cassert>

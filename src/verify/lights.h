@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/lighting/lighting.h"
+#include "lighting/lighting.h"
 
 #include <array>
 #include <span>

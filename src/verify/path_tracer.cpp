@@ -1,10 +1,10 @@
 #include "patchlight/verify/path_tracer.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
 #include "patchlight/scene/coverings.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "base/parallel.h"
+#include "base/sampling.h"
 #include "verify/exposed.h"
 #include "verify/lamps.h"
 #include "verify/lights.h"

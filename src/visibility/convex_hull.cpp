@@ -1,4 +1,4 @@
-#include "patchlight/visibility/convex_hull.h"
+#include "visibility/convex_hull.h"
 
 #include "scene/half_spaces.h"
 

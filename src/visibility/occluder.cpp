@@ -1,11 +1,10 @@
 #include "patchlight/visibility/occluder.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/scene/transmittance.h"
-#include "patchlight/scene/triangulate.h"
-#include "patchlight/visibility/convex_hull.h"
-
+#include "base/sampling.h"
 #include "scene/extent.h"
+#include "scene/transmittance.h"
+#include "scene/triangulate.h"
+#include "visibility/convex_hull.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"

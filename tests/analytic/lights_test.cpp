@@ -1,9 +1,9 @@
 #include "patchlight/gather/gather.h"
 #include "patchlight/light/photometry.h"
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/simulate.h"
 
 #include "input/read_ies.h"
+#include "lighting/direct_irradiance.h"
 #include "support/scenes.h"
 
 #include <array>

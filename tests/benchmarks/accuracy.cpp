@@ -3,10 +3,10 @@
 // usage: benchmark_accuracy [--no-sweep] REFERENCE_PATCHES ACCURACIES MODEL...
 // ACCURACIES are percentages, as 3,1,0.3. Without the sweep the last columns stay empty.
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
+#include "base/parallel.h"
 #include "support/finer_reference.h"
 
 #include <cstdio>

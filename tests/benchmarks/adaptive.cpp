@@ -1,10 +1,10 @@
 // How many patches an accuracy takes when they are refined where it pays, and when they are all of one size.
 // usage: benchmark_adaptive REFERENCE_ACCURACY ACCURACY UNIFORM MODEL
 // Accuracies in percent, the first far lower than the second; UNIFORM: numbers of patches, as 8000,16000.
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
+#include "base/parallel.h"
 #include "support/finer_reference.h"
 
 #include <cstdio>

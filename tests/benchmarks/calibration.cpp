@@ -1,8 +1,8 @@
 #include "benchmarks/calibration.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/contour.h"
-#include "patchlight/form_factor/patch_shape.h"
+#include "base/sampling.h"
+#include "form_factor/contour.h"
+#include "form_factor/patch_shape.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,13 +2,14 @@
 // usage: benchmark_cornell_reference FOLDER PATCHES...
 // FOLDER holds cornell.obj (millimetres) and cornell_reference.csv:
 // sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
-#include "patchlight/base/parallel.h"
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/patch_lookup.h"
 #include "patchlight/render/smooth.h"
 #include "patchlight/simulate.h"
 #include "patchlight/visibility/occluder.h"
+
+#include "base/parallel.h"
+#include "mesh/patch_lookup.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 // usage: benchmark_form_factor_errors ROOM.obj PATCHES REFERENCE SAMPLES [--benchmark_...]
 // with 0 PATCHES every polygon is one patch; the reference is read from the file REFERENCE, or made with so many
 // SAMPLES per pair and written there
-#include "patchlight/base/parallel.h"
 #include "patchlight/transport/assemble.h"
 
+#include "base/parallel.h"
 #include "benchmarks/calibration.h"
 #include "benchmarks/entry_errors.h"
 #include "benchmarks/reference.h"

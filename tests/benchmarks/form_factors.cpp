@@ -1,9 +1,9 @@
 // What form factors cost: the error of raw row sums against CPU seconds of the assembly alone, what a second thread
 // gains, memory, and how much of the time rays take.
 // usage: benchmark_form_factors ROOM.obj PATCHES [--benchmark_...]    with 0 PATCHES every polygon is one patch
-#include "patchlight/base/parallel.h"
 #include "patchlight/transport/assemble.h"
 
+#include "base/parallel.h"
 #include "benchmarks/room.h"
 #include "benchmarks/shadow_packets.h"
 

@@ -2,8 +2,7 @@
 // triangles. usage: benchmark_mesher
 #include "patchlight/mesh/mesher.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "support/scenes.h"
 
 #include <cstdio>

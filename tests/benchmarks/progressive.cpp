@@ -1,18 +1,18 @@
 // The error of what progressive refinement shows, rows of form factors on demand, against the share of rows computed.
 // usage: benchmark_progressive OUT PATCHES MODEL...
 // Prints a table per model; OUT takes progressive.png, and MODEL.csv with all that was measured.
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/output/write_plot.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/dense.h"
 #include "patchlight/transport/exchange.h"
-#include "patchlight/transport/on_demand.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "base/parallel.h"
+#include "output/write_plot.h"
 #include "problem_of.h"
+#include "transport/dense.h"
+#include "transport/on_demand.h"
 
 #include <algorithm>
 #include <cstdio>

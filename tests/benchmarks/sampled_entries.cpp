@@ -1,7 +1,7 @@
 #include "benchmarks/sampled_entries.h"
 
-#include "patchlight/form_factor/patch_cluster.h"
-#include "patchlight/form_factor/patch_shape.h"
+#include "form_factor/patch_cluster.h"
+#include "form_factor/patch_shape.h"
 
 namespace patchlight::benchmarks {
 

@@ -1,7 +1,7 @@
 #include "benchmarks/shadow_packets.h"
 
-#include "patchlight/form_factor/pair_samples.h"
-#include "patchlight/form_factor/patch_keys.h"
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_keys.h"
 
 #include <algorithm>
 

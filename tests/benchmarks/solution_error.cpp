@@ -2,8 +2,9 @@
 
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/closure.h"
-#include "patchlight/transport/dense.h"
 #include "patchlight/transport/lost_share.h"
+
+#include "transport/dense.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 // What every solver needs in the test room and in two rooms: the tables of docs/solvers.md, in Markdown.
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/solve/solve.h"
-#include "patchlight/solve/spectral_radius.h"
 
+#include "base/parallel.h"
 #include "solve/relaxation.h"
+#include "solve/spectral_radius.h"
 #include "support/assembled.h"
 #include "support/test_room.h"
 

@@ -1,8 +1,7 @@
 // One application of the stored matrix, and one sweep over it, against a plain pass over the same bytes.
-#include "patchlight/base/parallel.h"
-#include "patchlight/transport/dense.h"
-
+#include "base/parallel.h"
 #include "base/target_clones.h"
+#include "transport/dense.h"
 
 #include <array>
 #include <benchmark/benchmark.h>

@@ -1,10 +1,10 @@
 #include "benchmarks/unoccluded.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/contour.h"
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/transport/assemble.h"
 
+#include "base/sampling.h"
+#include "form_factor/contour.h"
+#include "form_factor/patch_shape.h"
 #include "support/scenes.h"
 #include "validate/closed_forms.h"
 

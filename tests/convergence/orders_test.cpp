@@ -1,13 +1,13 @@
-#include "patchlight/mesh/average.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/mesh/refine.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/dense.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "mesh/average.h"
+#include "mesh/refine.h"
 #include "problem_of.h"
 #include "support/scenes.h"
+#include "transport/dense.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT (a scene file, a photometric file, a weather file, an array
 // of numpy) are understood, or refused by an InputError of one line.
 #include "patchlight/base/error.h"
-#include "patchlight/scene/photometric_web.h"
 
 #include "archive/npy.h"
 #include "input/read_epw.h"
 #include "input/read_ies.h"
 #include "input/scene_file.h"
+#include "scene/photometric_web.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,10 +1,10 @@
 // Walls that must be tight: without thickness, standing on a floor, pieced together with T-junctions. And surfaces that
 // must not shade themselves.
-#include "patchlight/base/sampling.h"
 #include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "base/sampling.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Pairs of patches: coplanar, straddling each other's plane, half hidden.
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "form_factor/patch_shape.h"
 #include "support/scenes.h"
 
 #include <algorithm>

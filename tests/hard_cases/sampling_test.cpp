@@ -1,8 +1,7 @@
 // What sampling promises: how many rays a near pair gets, how the noise of a measured lost share is weighed, and that a
 // crack is no window.
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
-#include "patchlight/form_factor/solid_angle.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/closure.h"
@@ -10,6 +9,7 @@
 #include "patchlight/transport/sampling_error.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "form_factor/solid_angle.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "lighting/direct_irradiance.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,12 +1,12 @@
 // Patches that touch: form factors next to a shared edge or vertex, and lengths that are no more than rounding.
-#include "patchlight/form_factor/contour.h"
-#include "patchlight/form_factor/monte_carlo.h"
-#include "patchlight/form_factor/point_polygon.h"
-#include "patchlight/form_factor/solid_angle.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "form_factor/contour.h"
+#include "form_factor/monte_carlo.h"
+#include "form_factor/point_polygon.h"
+#include "form_factor/solid_angle.h"
 #include "support/scenes.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 // The errors that are stated for sampled exchange areas are those that they have.
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 
+#include "form_factor/patch_shape.h"
 #include "support/scenes.h"
 
 #include <algorithm>

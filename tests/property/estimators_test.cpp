@@ -1,10 +1,10 @@
 // The estimators agree, and the short cuts of the automatic one change no more than they may.
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/group_exchange.h"
 
+#include "form_factor/patch_shape.h"
 #include "support/scenes.h"
+#include "transport/group_exchange.h"
 
 #include <algorithm>
 #include <cmath>

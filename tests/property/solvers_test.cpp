@@ -1,8 +1,8 @@
 // Laws of the solvers, on real rooms.
 #include "patchlight/input/read_scene.h"
 #include "patchlight/solve/solve.h"
-#include "patchlight/solve/spectral_radius.h"
 
+#include "solve/spectral_radius.h"
 #include "support/assembled.h"
 #include "support/direct_solution.h"
 #include "support/meshes.h"

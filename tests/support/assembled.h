@@ -2,11 +2,11 @@
 
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/coverings.h"
-#include "patchlight/transport/dense.h"
 #include "patchlight/transport/exchange.h"
 #include "patchlight/visibility/occluder.h"
 
 #include "problem_of.h"
+#include "transport/dense.h"
 
 #include <memory>
 #include <utility>

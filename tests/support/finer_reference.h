@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/mesh/average.h"
 #include "patchlight/simulate.h"
+
+#include "mesh/average.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/solve/problem.h"
-#include "patchlight/transport/dense.h"
+
+#include "transport/dense.h"
 
 #include <cmath>
 #include <memory>

@@ -1,11 +1,11 @@
 #include "patchlight/accuracy/error_bars.h"
 
-#include "patchlight/accuracy/refinement.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/closure.h"
-#include "patchlight/transport/dense.h"
 
+#include "accuracy/refinement.h"
 #include "support/scenes.h"
+#include "transport/dense.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "patchlight/accuracy/refinement.h"
+#include "accuracy/refinement.h"
 
 #include "support/direct_solution.h"
 #include "support/made_up_room.h"

@@ -1,11 +1,11 @@
 #include "patchlight/archive/form_factor_files.h"
 
-#include "patchlight/archive/scene_file.h"
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
 #include "archive/npy.h"
+#include "archive/scene_file.h"
 #include "support/scenes.h"
 #include "unit/output/temporary_folder.h"
 

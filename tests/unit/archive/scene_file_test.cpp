@@ -1,4 +1,4 @@
-#include "patchlight/archive/scene_file.h"
+#include "archive/scene_file.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"

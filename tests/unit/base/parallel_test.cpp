@@ -1,4 +1,4 @@
-#include "patchlight/base/parallel.h"
+#include "base/parallel.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,6 +1,6 @@
-#include "patchlight/form_factor/contour.h"
+#include "form_factor/contour.h"
 
-#include "patchlight/form_factor/point_polygon.h"
+#include "form_factor/point_polygon.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "patchlight/form_factor/pair_samples.h"
+#include "form_factor/pair_samples.h"
 
 #include "support/scenes.h"
 

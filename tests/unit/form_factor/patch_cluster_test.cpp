@@ -1,8 +1,8 @@
-#include "patchlight/form_factor/patch_cluster.h"
+#include "form_factor/patch_cluster.h"
 
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "form_factor/patch_shape.h"
 #include "support/scenes.h"
 
 #include <cmath>

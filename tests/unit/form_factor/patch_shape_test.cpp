@@ -1,9 +1,9 @@
-#include "patchlight/form_factor/patch_shape.h"
+#include "form_factor/patch_shape.h"
 
-#include "patchlight/form_factor/contour.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/sides.h"
 
+#include "form_factor/contour.h"
 #include "support/scenes.h"
 
 #include <functional>

@@ -1,7 +1,7 @@
-#include "patchlight/form_factor/solid_angle.h"
+#include "form_factor/solid_angle.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/form_factor/point_polygon.h"
+#include "base/sampling.h"
+#include "form_factor/point_polygon.h"
 
 #include <array>
 #include <cmath>

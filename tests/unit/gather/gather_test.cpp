@@ -1,12 +1,12 @@
 #include "patchlight/gather/gather.h"
 
-#include "patchlight/gather/doubtful_sensors.h"
 #include "patchlight/gather/readings.h"
 #include "patchlight/gather/sensor_places.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/sensor_grid.h"
 #include "patchlight/scene/sides.h"
 
+#include "gather/doubtful_sensors.h"
+#include "scene/sensor_grid.h"
 #include "support/scenes.h"
 
 #include <cmath>

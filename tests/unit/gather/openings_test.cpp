@@ -1,7 +1,7 @@
-#include "patchlight/form_factor/point_polygon.h"
 #include "patchlight/gather/gather.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "form_factor/point_polygon.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/light/photometry.h"
 #include "patchlight/light/solar_position.h"
-#include "patchlight/scene/photometric_web.h"
 
 #include "model_files.h"
+#include "scene/photometric_web.h"
 
 #include <numbers>
 #include <variant>

@@ -1,11 +1,11 @@
-#include "patchlight/lighting/direct_irradiance.h"
+#include "lighting/direct_irradiance.h"
 
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/photometric_web.h"
 #include "patchlight/scene/sides.h"
 
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "scene/photometric_web.h"
 #include "support/scenes.h"
 
 #include <cmath>

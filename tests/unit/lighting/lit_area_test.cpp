@@ -1,6 +1,6 @@
 #include "lighting/lit_area.h"
 
-#include "patchlight/base/sampling.h"
+#include "base/sampling.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 #include "lighting/shades.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/lighting/direct_irradiance.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/sampling.h"
+#include "lighting/direct_irradiance.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "patchlight/lighting/sky.h"
+#include "lighting/sky.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "patchlight/mesh/average.h"
+#include "mesh/average.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/parallel.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

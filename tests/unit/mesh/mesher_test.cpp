@@ -1,8 +1,8 @@
 #include "patchlight/mesh/mesher.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 
+#include "base/parallel.h"
 #include "support/polygon_shapes.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "patchlight/mesh/nested_mesh.h"
 
-#include "patchlight/base/sampling.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/sampling.h"
 #include "support/polygon_shapes.h"
 #include "support/scenes.h"
 

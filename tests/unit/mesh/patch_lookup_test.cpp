@@ -1,4 +1,4 @@
-#include "patchlight/mesh/patch_lookup.h"
+#include "mesh/patch_lookup.h"
 
 #include "patchlight/mesh/mesher.h"
 

@@ -1,9 +1,9 @@
-#include "patchlight/mesh/refine.h"
+#include "mesh/refine.h"
 
-#include "patchlight/base/sampling.h"
 #include "patchlight/mesh/interpolate.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/sampling.h"
 #include "support/polygon_shapes.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_ply.h"
+#include "output/write_ply.h"
 
 #include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"

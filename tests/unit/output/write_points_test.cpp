@@ -1,8 +1,8 @@
 #include "patchlight/output/write_points.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/sensor_grid.h"
 
+#include "scene/sensor_grid.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "patchlight/output/write_problems.h"
+#include "output/write_problems.h"
 
-#include "patchlight/output/write_survey.h"
 #include "patchlight/scene/repair.h"
 
+#include "output/write_survey.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_series.h"
+#include "output/write_series.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/render/tone_map.h"

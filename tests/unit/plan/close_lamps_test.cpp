@@ -1,4 +1,4 @@
-#include "patchlight/plan/close_lamps.h"
+#include "plan/close_lamps.h"
 
 #include "support/scenes.h"
 

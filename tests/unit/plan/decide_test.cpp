@@ -1,4 +1,4 @@
-#include "patchlight/plan/decide.h"
+#include "plan/decide.h"
 
 #include <gtest/gtest.h>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "patchlight/plan/effect_facts.h"
+#include "plan/effect_facts.h"
 
 #include "support/scenes.h"
 

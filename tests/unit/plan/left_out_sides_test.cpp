@@ -1,4 +1,4 @@
-#include "patchlight/plan/left_out_sides.h"
+#include "plan/left_out_sides.h"
 
 #include "patchlight/plan/plan.h"
 

@@ -1,9 +1,9 @@
 #include "patchlight/render/render.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/interpolate.h"
 
+#include "base/parallel.h"
 #include "quad_scene.h"
 
 #include <cmath>

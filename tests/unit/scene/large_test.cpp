@@ -1,10 +1,10 @@
 // Geometry of many corners and faces takes N log N: four times as many take some five times as long, and not sixteen
 // times.
-#include "patchlight/base/parallel.h"
 #include "patchlight/scene/coverings.h"
-#include "patchlight/scene/triangulate.h"
 
+#include "base/parallel.h"
 #include "scene/simple_polygon.h"
+#include "scene/triangulate.h"
 #include "support/scenes.h"
 
 #include <algorithm>

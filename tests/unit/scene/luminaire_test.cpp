@@ -1,6 +1,6 @@
 #include "patchlight/scene/luminaire.h"
 
-#include "patchlight/scene/photometric_web.h"
+#include "scene/photometric_web.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

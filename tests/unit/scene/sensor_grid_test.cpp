@@ -1,4 +1,4 @@
-#include "patchlight/scene/sensor_grid.h"
+#include "scene/sensor_grid.h"
 
 #include "support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/scene/shells.h"
+#include "scene/shells.h"
 
 #include "support/scenes.h"
 

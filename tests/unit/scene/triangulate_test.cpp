@@ -1,4 +1,4 @@
-#include "patchlight/scene/triangulate.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

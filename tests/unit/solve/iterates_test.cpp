@@ -1,5 +1,6 @@
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/dense.h"
+
+#include "transport/dense.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 #include "patchlight/solve/solve.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/transport/dense.h"
 
 #include "support/direct_solution.h"
 #include "support/made_up_room.h"
+#include "transport/dense.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "patchlight/solve/spectral_radius.h"
+#include "solve/spectral_radius.h"
 
-#include "patchlight/transport/dense.h"
+#include "transport/dense.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "study/nested_sizes.h"
 
-#include "patchlight/mesh/patch_lookup.h"
 #include "patchlight/simulate.h"
 
+#include "mesh/patch_lookup.h"
 #include "support/daylight_office.h"
 
 #include <gtest/gtest.h>

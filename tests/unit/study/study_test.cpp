@@ -1,8 +1,7 @@
 #include "patchlight/study/study.h"
 
-#include "patchlight/study/price.h"
-#include "patchlight/study/reference.h"
-
+#include "study/price.h"
+#include "study/reference.h"
 #include "support/scenes.h"
 
 #include <cmath>

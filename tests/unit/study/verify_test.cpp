@@ -1,8 +1,8 @@
 #include "patchlight/study/verify.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 
+#include "base/parallel.h"
 #include "support/meshes.h"
 #include "support/scenes.h"
 

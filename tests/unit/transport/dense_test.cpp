@@ -1,6 +1,6 @@
-#include "patchlight/transport/dense.h"
+#include "transport/dense.h"
 
-#include "patchlight/base/parallel.h"
+#include "base/parallel.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "patchlight/transport/group_exchange.h"
+#include "transport/group_exchange.h"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,16 +1,16 @@
-#include "patchlight/base/parallel.h"
-#include "patchlight/base/sampling.h"
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/dense.h"
 #include "patchlight/transport/exchange.h"
 
+#include "base/parallel.h"
+#include "base/sampling.h"
 #include "problem_of.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "support/tiny_scenes.h"
+#include "transport/dense.h"
 
 #include <algorithm>
 #include <cmath>

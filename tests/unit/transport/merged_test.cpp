@@ -1,11 +1,11 @@
-#include "patchlight/transport/merged.h"
+#include "transport/merged.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/transport/dense.h"
 
+#include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/tiny_scenes.h"
+#include "transport/dense.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

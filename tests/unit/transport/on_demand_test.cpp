@@ -1,12 +1,12 @@
-#include "patchlight/transport/on_demand.h"
+#include "transport/on_demand.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/transport/dense.h"
 
+#include "base/parallel.h"
 #include "support/meshes.h"
 #include "support/scenes.h"
+#include "transport/dense.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "patchlight/transport/random_errors.h"
+#include "transport/random_errors.h"
 
-#include "patchlight/base/parallel.h"
 #include "patchlight/mesh/mesher.h"
 
+#include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/tiny_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/transport/ray_rate.h"
+#include "transport/ray_rate.h"
 
 #include "patchlight/mesh/mesher.h"
 

@@ -1,7 +1,6 @@
 #include "patchlight/verify/path_tracer.h"
 
-#include "patchlight/base/parallel.h"
-
+#include "base/parallel.h"
 #include "support/scenes.h"
 
 #include <cmath>

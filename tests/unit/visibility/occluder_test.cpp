@@ -1,9 +1,8 @@
 #include "patchlight/visibility/occluder.h"
 
-#include "patchlight/base/sampling.h"
-#include "patchlight/visibility/convex_hull.h"
-
+#include "base/sampling.h"
 #include "support/scenes.h"
+#include "visibility/convex_hull.h"
 
 #include <gtest/gtest.h>
 

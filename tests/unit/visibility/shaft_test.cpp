@@ -1,8 +1,8 @@
 #include "patchlight/visibility/shaft.h"
 
-#include "patchlight/base/sampling.h"
 #include "patchlight/visibility/occluder.h"
 
+#include "base/sampling.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "patchlight/base/progress.h"
-#include "patchlight/lighting/lighting.h"
 #include "patchlight/mesh/patch_mesh.h"
+
+#include "lighting/lighting.h"
 
 #include <cstdint>
 #include <span>

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/mesh/patch_mesh.h"
+
+#include "form_factor/patch_shape.h"
 
 #include <array>
 #include <cstdint>

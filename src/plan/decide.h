@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/plan/effect_facts.h"
 #include "patchlight/plan/effects.h"
 #include "patchlight/plan/plan.h"
+
+#include "plan/effect_facts.h"
 
 #include <string>
 #include <vector>

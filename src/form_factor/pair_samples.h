@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/form_factor/monte_carlo.h"
-#include "patchlight/form_factor/patch_shape.h"
 #include "patchlight/visibility/occluder.h"
+
+#include "form_factor/monte_carlo.h"
+#include "form_factor/patch_shape.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/lighting/light_paths.h"
-#include "patchlight/lighting/sky.h"
 #include "patchlight/scene/scene.h"
+
+#include "lighting/light_paths.h"
+#include "lighting/sky.h"
 
 #include <array>
 #include <memory>

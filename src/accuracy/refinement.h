@@ -2,8 +2,9 @@
 
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/transport/exchange_areas.h"
-#include "patchlight/transport/random_errors.h"
 #include "patchlight/transport/transport_operator.h"
+
+#include "transport/random_errors.h"
 
 #include <Eigen/Core>
 #include <cmath>
