@@ -4,7 +4,7 @@
 /// machine chooses when the program starts, by what it can, whoever made it. Sanitizers and clang take the plain
 /// version.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+    !defined(__SANITIZE_THREAD__) && !defined(PATCHLIGHT_ONE_INSTRUCTION_SET)
 #define PATCHLIGHT_TARGET_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define PATCHLIGHT_TARGET_CLONES
