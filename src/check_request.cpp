@@ -9,7 +9,7 @@ namespace {
 
 // Error bars follow from the errors of stored form factors.
 void require_stored_rows(const Request& request) {
-  if (!request.on_demand || !(request.error_bars || refines(request))) return;
+  if (keeps_entries(request.storage) || !(request.error_bars || refines(request))) return;
   const char* const other = request.accuracy ? "--accuracy" : request.seconds ? "--time" : "--error-bars";
   throw InputError("--on-demand", std::string("form factors that are not kept do not tell the errors that ") + other +
                                       " needs; leave one of them out");

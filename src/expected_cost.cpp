@@ -35,7 +35,7 @@ double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh
 double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   const Occluder occluder(scene, blockers_of(plan), find_coverings(scene, plan.sides));
   const double of_matrix = expected_assembly_seconds(mesh, occluder, assembly_options(plan));
-  const bool lamps_alone = plan.on_demand && !simulates(plan, Effect::interreflection);
+  const bool lamps_alone = !keeps_entries(plan.storage) && !simulates(plan, Effect::interreflection);
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 

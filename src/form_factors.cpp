@@ -12,7 +12,7 @@ namespace patchlight {
 FormFactors find_form_factors(const Scene& scene, const Request& request, const Observer& observer) {
   const ThreadLimit threads(request.threads);
   Request used = request;
-  used.on_demand = false;
+  used.storage = Storage::tiles;
   if (used.sides == Sides::automatic && !has_lamp(scene)) used.sides = Sides::front;
   require_memory(scene, used);
   Plan plan = plan_form_factors(scene, used);

@@ -28,14 +28,14 @@ constexpr double bytes_of_program = 50e6;
 constexpr double usable_share = 0.8;
 
 double bytes_of_a_pair(const Request& request) {
-  if (request.on_demand) return 0;
+  if (!keeps_entries(request.storage)) return 0;
   if (refines(request)) return bytes_per_pair + bytes_while_refining;
   if (request.error_bars) return 2 * bytes_per_pair + bytes_per_error + bytes_of_parents;
   return bytes_per_pair + (request.standard_errors ? bytes_per_error : 0);
 }
 
 double bytes_of_a_patch(const Request& request) {
-  return bytes_per_patch + (request.on_demand ? bytes_of_coarse_transport : 0);
+  return bytes_per_patch + (keeps_entries(request.storage) ? 0 : bytes_of_coarse_transport);
 }
 
 double installed_bytes() {
@@ -88,12 +88,13 @@ void require_memory(std::size_t patches, const Request& request) {
           ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
           : "ask for at most " + std::to_string(fitting) + " patches with --patches";
   throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
-                    (request.on_demand ? ", and " : ", most of it for their form factors, and ") + gigabytes(usable) +
-                    (request.memory ? " may be taken (--memory); " : " may be taken here; ") + hint);
+                    (keeps_entries(request.storage) ? ", most of it for their form factors, and " : ", and ") +
+                    gigabytes(usable) + (request.memory ? " may be taken (--memory); " : " may be taken here; ") +
+                    hint);
 }
 
 Request as_planned(Request request, const Plan& plan) {
-  request.on_demand = plan.on_demand;
+  request.storage = plan.storage;
   return request;
 }
 

@@ -25,7 +25,7 @@ std::string gigabytes(double bytes);
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.
 void require_memory(const Scene& scene, const Request& request);
 
-/// The request with what the plan has decided on rows on demand: what its memory follows from.
+/// The request with the storage that the plan has chosen: what its memory follows from.
 Request as_planned(Request request, const Plan& plan);
 
 /// \throws MemoryError when solving for so many patches would take more memory than it may.

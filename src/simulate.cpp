@@ -27,9 +27,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   //    how form factors and radiosities are found.
   check(request, scene);
   Plan plan = make_plan(scene, request);
-  assert(!with.exchange || (!request.on_demand && !plan.error_bars));
+  assert(!with.exchange || (keeps_entries(request.storage) && !plan.error_bars));
   assert(!with.mesh || !plan.error_bars);
-  if (with.exchange) plan.on_demand = false;
+  if (with.exchange) plan.storage = Storage::tiles;
   const Request planned = as_planned(request, plan);
   require_memory(scene, planned);
   const Scene lit = scene_as_planned(scene, plan);

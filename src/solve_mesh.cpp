@@ -40,7 +40,7 @@ LostShare lost_share_of(const Setting& setting, const Plan& plan, const MeshToSo
 // Exchange areas by computation, unless they are known or computed on demand.
 Exchange exchange_on(const Setting& setting, const Plan& plan, const PatchMesh& mesh) {
   if (setting.with.exchange) return setting.with.exchange(mesh);
-  const auto find = plan.on_demand ? exchange_on_demand : trace_exchange;
+  const auto find = keeps_entries(plan.storage) ? trace_exchange : exchange_on_demand;
   return find(mesh, setting.occluder, assembly_options(plan), plan.lost_share_rays, setting.observer);
 }
 
@@ -89,7 +89,7 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   // 2. Closure: each row sums up to what its patch sees.
   std::unique_ptr<RowTransport> transport;
   std::optional<ClosedExchangeAreas> of_parents;
-  if (plan.on_demand) {
+  if (!keeps_entries(plan.storage)) {
     transport = on_demand_transport(mesh, occluder, assembly_options(plan), area);
   } else {
     ClosedExchangeAreas exchange_areas = closed(std::move(exchange), plan, observer);
@@ -111,7 +111,8 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
 
   // 4. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
-  options.largest_row_sum = plan.on_demand ? std::numeric_limits<double>::infinity() : facts.row_sum.maxCoeff();
+  options.largest_row_sum =
+      keeps_entries(plan.storage) ? facts.row_sum.maxCoeff() : std::numeric_limits<double>::infinity();
   const SolveWith solve = solver_as_planned(with.solve, plan);
   const Solve once = [&](const SolverOptions& by) {
     return solve(*transport, simulation.problem, by, setting.observer);
@@ -119,8 +120,9 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   SolvedWith solved = solve_for_interest(setting, simulation, options, once);
   simulation.plan.solver.relative_error = solved.relative_error;
   simulation.solution = std::move(solved.solution);
-  simulation.balance = energy_balance(simulation.problem, simulation.solution,
-                                      plan.on_demand ? expected_row_sum(facts.lost) : facts.row_sum, facts.lost);
+  simulation.balance =
+      energy_balance(simulation.problem, simulation.solution,
+                     keeps_entries(plan.storage) ? facts.row_sum : expected_row_sum(facts.lost), facts.lost);
   clock.finish(Stage::solve);
 
   // 5. How far that may be off.

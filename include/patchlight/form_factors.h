@@ -16,7 +16,7 @@ struct FormFactors {
 };
 
 /// The first half of simulate(), for a scene that need not have a lamp: without one Sides::automatic means the front
-/// sides. All form factors are computed, whether Request::on_demand is set or not. What the storage of closed exchange
+/// sides. All form factors are computed and kept, whatever Request::storage says. What the storage of closed exchange
 /// areas as floats takes from the rows, below 1e-7 of the area, is left out. What is not closed keeps the errors of its
 /// entries where closure will weigh by them. \throws InputError, MemoryError, Cancelled.
 FormFactors find_form_factors(const Scene& scene, const Request& request, const Observer& observer = {});

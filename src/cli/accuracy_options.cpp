@@ -39,7 +39,7 @@ void require_error_bars_possible(const Request& request, const std::string& form
     if (request.interest.empty()) return;
     throw UsageError("--interest needs --accuracy, --time or --error-bars");
   }
-  const char* const other = request.on_demand                                 ? "--on-demand"
+  const char* const other = !keeps_entries(request.storage)                   ? "--on-demand"
                             : !form_factors.empty()                           ? "--form-factors"
                             : !request.close                                  ? "--no-closure"
                             : contains(request.skip, Effect::closure)         ? "--skip closure"

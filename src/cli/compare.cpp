@@ -54,7 +54,7 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
 std::string not_reached(const Comparison& comparison) {
   std::string names;
   for (const SolverRun& run : comparison.runs) {
-    if (run.solution.converged || run.contestant.on_demand) continue;
+    if (run.solution.converged || !keeps_entries(run.contestant.storage)) continue;
     names += (names.empty() ? "" : ", ") + name_of(run.contestant);
   }
   return names;

@@ -97,7 +97,7 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
     throw UsageError("--relaxation needs sor among --solvers");
   }
   require_consistent_effects(arguments.request, {});
-  const auto on_demand = [](const Contestant& contestant) { return contestant.on_demand; };
+  const auto on_demand = [](const Contestant& contestant) { return !keeps_entries(contestant.storage); };
   const std::vector<Contestant>& chosen = arguments.options.contestants;
   if (std::any_of(chosen.begin(), chosen.end(), on_demand) && arguments.request.estimator != Estimator::automatic) {
     throw UsageError(

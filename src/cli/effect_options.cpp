@@ -78,7 +78,7 @@ void require_consistent_effects(const Request& request, const std::string& form_
   }
   if (!form_factors.empty()) require_neither(Effect::occlusion, "--form-factors");
   if (!request.close) require_without(request.force, Effect::closure, "--force", "--no-closure");
-  if (request.on_demand) require_without(request.force, Effect::closure, "--force", "--on-demand");
+  if (!keeps_entries(request.storage)) require_without(request.force, Effect::closure, "--force", "--on-demand");
 }
 
 }  // namespace patchlight::cli

@@ -24,7 +24,7 @@ namespace {
 // Rows on demand serve a solver that asks for few of them, and cannot be closed, as that takes all.
 void require_solver_of_rows(const SolveArguments& arguments) {
   const Request& request = arguments.request;
-  if (!request.on_demand) return;
+  if (keeps_entries(request.storage)) return;
   if (!is_shooting(request.solver)) throw UsageError("--on-demand needs --solver progressive or overshooting");
   const char* const other = !arguments.form_factors.empty()             ? "--form-factors"
                             : !request.close                            ? "--no-closure"
@@ -53,7 +53,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
         to.form_factors = text;
       });
   command.add_flag_callback(
-      "--on-demand", [&to] { to.mesh.request.on_demand = true; },
+      "--on-demand", [&to] { to.mesh.request.storage = Storage::on_demand; },
       "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
       "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
   add_effect_options(command, to.mesh.request);

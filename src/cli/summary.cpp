@@ -147,7 +147,7 @@ std::string details(const Scene& scene, const Simulation& simulation) {
     text << sentence(decision) << '\n';
   }
   text << "estimator of form factors: " << name_of(simulation.plan.estimator) << '\n';
-  if (!simulation.plan.on_demand) return text.str() + assembly(scene, simulation);
+  if (keeps_entries(simulation.plan.storage)) return text.str() + assembly(scene, simulation);
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 

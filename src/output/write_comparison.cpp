@@ -199,7 +199,7 @@ double iterations_of(const SolverRun& run, const Iteration& iteration, PatchInde
 }
 
 double seconds_of(const SolverRun& run, const Iteration& iteration) {
-  return iteration.seconds + (run.contestant.on_demand ? run.assembly_seconds : 0);
+  return iteration.seconds + (keeps_entries(run.contestant.storage) ? 0 : run.assembly_seconds);
 }
 
 void write_comparison(const fs::path& folder, const Scene& scene, const Comparison& comparison,

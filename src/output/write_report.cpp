@@ -51,7 +51,7 @@ Json request_part(const Request& request) {
   part["samples"] = request.samples;
   part["estimator"] = name_of(request.estimator);
   part["close"] = request.close;
-  part["on_demand"] = request.on_demand;
+  part["on_demand"] = request.storage == Storage::on_demand;
   part["seed"] = request.seed;
   part["threads"] = request.threads;
   part["memory_bytes"] = json_of(request.memory);
@@ -90,7 +90,7 @@ Json plan_part(const Plan& plan) {
   part["samples"] = plan.samples;
   part["estimator"] = name_of(plan.estimator);
   part["close"] = plan.close;
-  part["on_demand"] = plan.on_demand;
+  part["on_demand"] = plan.storage == Storage::on_demand;
   part["lost_share_rays"] = plan.lost_share_rays;
   part["seed"] = plan.seed;
   part["solver"] = name_of(plan.solver.solver);
@@ -198,7 +198,7 @@ Json transport_part(const Scene& scene, const Simulation& simulation) {
   const Eigen::VectorXd& area = simulation.problem.area;
   Json part;
   // Pairs that are looked at on demand are not counted.
-  const auto counted = [&](const auto& count) { return simulation.plan.on_demand ? Json() : Json(count); };
+  const auto counted = [&](const auto& count) { return keeps_entries(simulation.plan.storage) ? Json(count) : Json(); };
   part["facing_pairs"] = counted(transport.counts.facing_pairs);
   part["near_pairs"] = counted(transport.counts.near_pairs);
   part["partly_occluded_pairs"] = counted(transport.counts.partial_pairs);

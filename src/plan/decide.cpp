@@ -136,7 +136,7 @@ Decision sky(const EffectFacts& facts) {
 Decision closure(const Request& request, bool interreflects) {
   Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
                     "a few products with the matrix"};
-  if (request.on_demand) return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
+  if (!keeps_entries(request.storage)) return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
   if (!interreflects)
     decision = {Effect::closure, false, "no light is reflected twice: no error of row sums adds up", "the matrix"};
   Request asked = request;

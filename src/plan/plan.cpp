@@ -94,7 +94,7 @@ Plan make_plan(const Scene& scene, const Request& request) {
   for (std::string& note : notes_on_overruling(facts, request)) plan.notes.push_back(std::move(note));
   require_light(scene, facts, plan);
   plan.close = simulates(plan, Effect::closure);
-  plan.on_demand = request.on_demand || takes_lamps_alone(plan);
+  if (takes_lamps_alone(plan)) plan.storage = Storage::on_demand;
   // By force every pair takes its rays, also those between which nothing is found to stand.
   if (simulates(plan, Effect::occlusion) && facts.inside_hull == 0) plan.short_cuts.free = false;
   if (!simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour) plan.lamp_colour = *facts.lamp_colour;
@@ -143,8 +143,8 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   plan.accuracy = request.accuracy;
   plan.seconds = request.seconds;
   plan.interest = request.interest;
-  plan.on_demand = request.on_demand;
-  plan.close = request.close && !request.on_demand;
+  plan.storage = request.storage;
+  plan.close = request.close && keeps_entries(request.storage);
   plan.solver = {.solver = request.solver,
                  .relative_error = request.tolerance.value_or(default_tolerance),
                  .max_iterations = request.max_iterations,

@@ -63,7 +63,7 @@ SolverRun Race::run(const Contestant& contestant, const RowTransport& transport,
   SolverOptions of_run = usual;
   of_run.solver = contestant.solver;
   of_run.relative_error = options.relative_error;
-  of_run.max_iterations = contestant.on_demand ? 1 : options.max_iterations;
+  of_run.max_iterations = keeps_entries(contestant.storage) ? options.max_iterations : 1;
   of_run.reference = reference;
 
   SolverRun result;
@@ -94,7 +94,7 @@ double assembly_seconds(const Simulation& simulation) {
 SolverRun run_on_demand(const Scene& scene, const Request& request, const Contestant& contestant, const Race& race,
                         const Observer& observer) {
   Request asked = request;
-  asked.on_demand = true;
+  asked.storage = contestant.storage;
   std::erase(asked.force, Effect::closure);
   asked.solver = contestant.solver;
   SolverRun run;
@@ -110,13 +110,13 @@ SolverRun run_on_demand(const Scene& scene, const Request& request, const Contes
 }  // namespace
 
 std::string name_of(const Contestant& contestant) {
-  return std::string(name_of(contestant.solver)) + (contestant.on_demand ? "-on-demand" : "");
+  return std::string(name_of(contestant.solver)) + (keeps_entries(contestant.storage) ? "" : "-on-demand");
 }
 
 std::vector<Contestant> all_contestants() {
   std::vector<Contestant> all;
   for (const Solver solver : all_solvers()) all.push_back({solver});
-  all.push_back({Solver::progressive, true});
+  all.push_back({Solver::progressive, Storage::on_demand});
   return all;
 }
 
@@ -141,7 +141,8 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
         (strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0).maxCoeff();
     const Race race{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
-      if (!contestant.on_demand) comparison.runs.push_back(race.run(contestant, transport, problem, usual, watch));
+      if (keeps_entries(contestant.storage))
+        comparison.runs.push_back(race.run(contestant, transport, problem, usual, watch));
     }
     return reference;
   };
@@ -153,7 +154,7 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
   // 2. Those that compute their rows.
   const Race race{options, comparison.simulation.solution.radiosity};
   for (const Contestant& contestant : options.contestants) {
-    if (contestant.on_demand) {
+    if (!keeps_entries(contestant.storage)) {
       comparison.runs.push_back(run_on_demand(scene, with_matrix, contestant, race, observer));
     }
   }

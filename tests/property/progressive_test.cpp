@@ -37,7 +37,7 @@ TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
   request.patches = 2000;
   const Simulation reference = simulate(scene, request);
   ASSERT_TRUE(reference.solution.converged);
-  request.on_demand = true;
+  request.storage = Storage::on_demand;
   request.max_rows = 0.05;
   for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
     request.solver = solver;

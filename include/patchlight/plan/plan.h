@@ -29,10 +29,9 @@ struct Request {
   int samples = 8;                        ///< shadow rays of a pair of patches that rays decide
   std::uint64_t seed = 1;
   Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};  ///< of the automatic estimator
-  bool close = true;          ///< correct the form factors so that rows sum up to what is seen
-  bool on_demand = false;     ///< no matrix: rows of form factors are computed whenever the solver asks for them, and
-                              ///< not closed. Memory in proportion to the patches; for progressive refinement
+  ShortCuts short_cuts = {};            ///< of the automatic estimator
+  bool close = true;                    ///< correct the form factors so that rows sum up to what is seen
+  Storage storage = Storage::tiles;     ///< of form factors; with rows on demand these are not closed
   bool standard_errors = false;         ///< keep one for each entry: a quarter more memory
   bool error_bars = false;              ///< of every patch, from mesh, form factors and solver; keeps standard errors
   std::optional<double> accuracy = {};  ///< relative error of the patches' mean radiosities that is asked for: patches
@@ -58,7 +57,7 @@ struct Plan {
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};
   bool close = true;
-  bool on_demand = false;  ///< as asked for, or as the rows of the lamps are enough
+  Storage storage = Storage::tiles;  ///< as asked for, or on demand where the rows of the lamps are enough
   bool standard_errors = false;
   bool error_bars = false;
   std::optional<double> accuracy;

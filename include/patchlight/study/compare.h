@@ -11,7 +11,7 @@ namespace patchlight {
 /// A solver as it takes part in a comparison.
 struct Contestant {
   Solver solver = Solver::cg;
-  bool on_demand = false;  ///< its rows of the transport are computed when it shoots, and not closed
+  Storage storage = Storage::tiles;  ///< of the form factors that it runs on; rows on demand are not closed
 };
 
 /// "cg", "progressive-on-demand".

@@ -25,6 +25,16 @@ enum class Estimator {
 /// The estimator's name as on the command line.
 const char* name_of(Estimator estimator);
 
+/// How the exchange areas of all pairs of patches are kept.
+enum class Storage {
+  tiles,     ///< each pair once, as floats: time and memory in proportion to the square of the patches
+  on_demand  ///< not at all: a row is computed whenever a solver asks for it. Memory in proportion to the patches
+};
+
+/// True when entries are kept, so that they can be closed, summed up and written. What keeps none is for solvers that
+/// take single rows.
+constexpr bool keeps_entries(Storage storage) { return storage != Storage::on_demand; }
+
 /// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs; docs/theory.md
 /// section 5.
 struct ShortCuts {

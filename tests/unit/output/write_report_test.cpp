@@ -104,7 +104,7 @@ TEST(WriteReport, WeighsRowSumsByArea) {
 
 TEST(WriteReport, SaysWhatIsNotKnownOfRowsOnDemand) {
   Simulation simulation = tiny_simulation();
-  simulation.plan.on_demand = true;
+  simulation.plan.storage = Storage::on_demand;
   simulation.transport.row_sum = simulation.transport.raw_row_sum = Eigen::VectorXd();
   const nlohmann::json report = report_of(tiny_scene(), simulation);
   for (const char* key : {"facing_pairs", "shadow_rays", "bare_shadow_rays_per_second", "raw_row_sum", "row_sum"}) {

@@ -160,9 +160,9 @@ TEST(Decide, ClosureFollowsItsOptions) {
   EXPECT_TRUE(decision(usual_facts(), Effect::closure, request).forced);
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request));
   request.close = true;
-  request.on_demand = true;
+  request.storage = Storage::on_demand;
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request));
-  request.on_demand = false;
+  request.storage = Storage::tiles;
   request.skip = {Effect::interreflection};
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request)) << "it cannot matter any more";
   request.force = {Effect::closure};

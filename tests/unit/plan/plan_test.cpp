@@ -91,11 +91,11 @@ TEST(MakePlan, RefusesToSkipAllLight) {
 
 // No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
 TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
-  EXPECT_TRUE(make_plan(furnished_room(0), {}).on_demand);
-  EXPECT_FALSE(make_plan(furnished_room(0.5), {}).on_demand);
+  EXPECT_EQ(make_plan(furnished_room(0), {}).storage, Storage::on_demand);
+  EXPECT_EQ(make_plan(furnished_room(0.5), {}).storage, Storage::tiles);
   Request request;
   request.force = {Effect::closure};
-  EXPECT_FALSE(make_plan(furnished_room(0), request).on_demand);
+  EXPECT_EQ(make_plan(furnished_room(0), request).storage, Storage::tiles);
   EXPECT_TRUE(make_plan(furnished_room(0), request).close);
 }
 
@@ -136,7 +136,7 @@ TEST(MakePlan, TakesTheEdgeThatIsAskedFor) {
 
 TEST(Simulate, RefusesErrorsOfFormFactorsThatAreNotKept) {
   Request request;
-  request.on_demand = true;
+  request.storage = Storage::on_demand;
   request.solver = Solver::progressive;
   request.accuracy = 0.1;
   try {
