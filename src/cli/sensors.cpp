@@ -5,7 +5,6 @@
 #include "patchlight/input/read_points.h"
 #include "patchlight/radiosity_errors.h"
 
-#include "cli/text_table.h"
 #include "effects.h"
 #include "lighting/direct_irradiance.h"
 
@@ -98,21 +97,6 @@ Readings read_sensors(const Scene& whole, const Simulation& simulation, std::spa
                        .outside_by_sky = only_overcast_sky(scene)};
   for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);
   return readings;
-}
-
-std::string sensor_summary(const Scene& scene, const Readings& readings) {
-  if (scene.sensors.empty()) return {};
-  const std::string in_unit = std::string(", ") + sensor_unit(readings);
-  std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit, "max" + in_unit,
-                                "U0", "largest standard error" + in_unit}};
-  if (readings.outside_by_sky) rows[0].emplace_back("mean daylight factor, %");
-  for (const GroupReadings& group : by_group(scene.sensors, readings)) {
-    rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls), rounded(group.min),
-                    rounded(group.mean), rounded(group.max), rounded(group.uniformity),
-                    rounded(group.largest_standard_error, 2)});
-    if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
-  }
-  return text_table(rows);
 }
 
 }  // namespace patchlight::cli

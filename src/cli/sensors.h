@@ -7,7 +7,6 @@
 #include "cli/arguments.h"
 
 #include <span>
-#include <string>
 
 namespace patchlight::cli {
 
@@ -22,9 +21,5 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
 /// luminaires, sun and sky. \throws Cancelled.
 Readings read_sensors(const Scene& scene, const Simulation& simulation, std::span<const SensorPlace> places,
                       const Observer& observer);
-
-/// A line for each group of sensors: least, mean and greatest value, uniformity, daylight factor; empty without
-/// sensors.
-std::string sensor_summary(const Scene& scene, const Readings& readings);
 
 }  // namespace patchlight::cli

@@ -41,6 +41,7 @@ struct Results {
   std::vector<std::string> warnings;  // about sensors
   DisplayImage picture;
   std::vector<IterateIrradiance> iterates;
+  Report report;
   Provenance provenance;
 };
 
@@ -122,12 +123,11 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   const double exposure = exposure_for(display_radiance(simulation), area);
   results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
 
-  // 3. Look at the solution
-  return with_views(std::move(results), arguments, observer);
-}
-
-SensorReport sensor_report(const Results& results) {
-  return {by_group(results.scene.sensors, results.readings), sensor_unit(results.readings), results.warnings};
+  // 3. Look at the solution, and tell of it
+  results = with_views(std::move(results), arguments, observer);
+  results.report = report_of(results.scene, arguments.request, simulation,
+                             sensor_facts(results.scene.sensors, results.readings, results.warnings));
+  return results;
 }
 
 // Writes one file after the other, the series last, and lets them appear together; the run can be stopped between two.
@@ -150,10 +150,7 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   for (const Path& file : results.points_outputs) {
     write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, results.readings); });
   }
-  write_to(arguments.report, [&](const Path& to) {
-    write_report(to,
-                 {results.scene, arguments.request, results.simulation, results.provenance, sensor_report(results)});
-  });
+  write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {
     if (interrupted()) throw Cancelled();
     files.publish();
@@ -188,16 +185,15 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.warnings) print_message("warning", warning);
-    std::cout << summary(results.scene, results.simulation, arguments.verbosity == Verbosity::verbose);
-    std::cout << sensor_summary(results.scene, results.readings);
+    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose);
     std::cout << files_line(written) << std::flush;
   }
-  if (!results.simulation.solution.converged) {
-    print_message("warning", explain_not_converged(results.simulation));
+  if (!results.report.solution.converged) {
+    print_message("warning", explain_not_converged(results.report));
     return not_converged;
   }
-  if (is_accurate(results.simulation)) return good;
-  print_message("warning", explain_not_accurate(results.simulation));
+  if (is_accurate(results.report)) return good;
+  print_message("warning", explain_not_accurate(results.report));
   return not_converged;
 }
 

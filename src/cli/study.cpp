@@ -17,8 +17,6 @@
 namespace patchlight::cli {
 namespace {
 
-std::string percent(double share) { return rounded(100 * share); }
-
 // An error that is not above what the reference is good to is told with a question mark.
 std::string judged(double error, const Study& study) {
   return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/simulate.h"
+#include "patchlight/report/report.h"
 
 #include <filesystem>
 #include <string>
@@ -11,20 +11,17 @@ namespace patchlight::cli {
 /// What the user should know about the scene and the plan.
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation);
 
-/// A few lines: patches, convergence, errors where they are known, where the light goes, seconds. The long form adds
-/// decisions, counts, speed and the meshes on the way to an accuracy.
-std::string summary(const Scene& scene, const Simulation& simulation, bool long_form);
+/// A few lines: patches, convergence, errors where they are known, where the light goes, seconds, and a line for each
+/// group of sensors. The long form adds decisions, counts, speed and the meshes on the way to an accuracy.
+std::string summary(const Report& report, bool long_form);
 
 /// "wrote a, b, c" as one line.
 std::string files_line(const std::vector<std::filesystem::path>& files);
 
 /// Why a solution that has not converged probably has not, and what to do.
-std::string explain_not_converged(const Simulation& simulation);
-
-/// False when an accuracy was asked for and the error bars are above it.
-bool is_accurate(const Simulation& simulation);
+std::string explain_not_converged(const Report& report);
 
 /// What has been reached instead of the accuracy that was asked for, what limits it, and what to do.
-std::string explain_not_accurate(const Simulation& simulation);
+std::string explain_not_accurate(const Report& report);
 
 }  // namespace patchlight::cli

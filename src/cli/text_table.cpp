@@ -16,6 +16,8 @@ std::string rounded(double value, int digits) {
   return text.str();
 }
 
+std::string percent(double share, int digits) { return rounded(100 * share, digits); }
+
 std::string text_table(const std::vector<TextRow>& cells) {
   std::vector<std::size_t> width(cells.front().size());
   std::vector<TextRow> rows = cells;

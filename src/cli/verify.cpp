@@ -75,11 +75,11 @@ double root_mean_square(const Field& values) {
 
 // What the irradiances are granted.
 std::string bars(const std::optional<double>& bar, const Simulation& simulation) {
-  if (bar) return "a bar of " + rounded(100 * *bar) + " % of the irradiance, or of its mean where that is larger";
+  if (bar) return "a bar of " + percent(*bar) + " % of the irradiance, or of its mean where that is larger";
   const AccuracyStep& errors = simulation.accuracy.back();
-  return "the error bars of the patches, " + rounded(100 * errors.total, 2) + " % as a whole (mesh " +
-         rounded(100 * errors.mesh, 2) + ", form factors " + rounded(100 * errors.form_factor, 2) + ", solver " +
-         rounded(100 * errors.solver, 1) + ")";
+  return "the error bars of the patches, " + percent(errors.total, 2) + " % as a whole (mesh " +
+         percent(errors.mesh, 2) + ", form factors " + percent(errors.form_factor, 2) + ", solver " +
+         percent(errors.solver, 1) + ")";
 }
 
 // What the differences of a part come to.
@@ -89,9 +89,9 @@ std::string sums_of(const VerifiedPart& part) {
   part.offset.abs().maxCoeff(&band);
   std::ostringstream text;
   text << std::setprecision(3) << (all ? "" : part.name + ": ") << "chi-square " << part.chi_square.maxCoeff() << " of "
-       << part.rows.size() << " patches in the worst band; mean difference "
-       << rounded(100 * part.mean_difference[band], 3) << " %, " << part.offset[band]
-       << " of its standard errors; bars " << rounded(100 * part.width, 2) << " % of the light\n";
+       << part.rows.size() << " patches in the worst band; mean difference " << percent(part.mean_difference[band], 3)
+       << " %, " << part.offset[band] << " of its standard errors; bars " << percent(part.width, 2)
+       << " % of the light\n";
   return text.str();
 }
 
@@ -127,7 +127,7 @@ std::string verdict(const Verification& verification, const std::string& granted
        << least_probability;
   if (differs && verification.probability >= least_probability) text << ", but a side that was left out is lit";
   if (verification.verdict == Verdict::inconclusive) {
-    text << ", but bars above " << rounded(100 * widest_bar, 2)
+    text << ", but bars above " << percent(widest_bar, 2)
          << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
             "what scatters";
   }
@@ -153,7 +153,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   const Simulation simulation = simulate(scene, arguments.request, observer);
   if (!simulation.solution.converged) {
     line.hide();
-    print_message("warning", "not verified: " + explain_not_converged(simulation));
+    print_message("warning", "not verified: " + explain_not_converged(report_of(scene, arguments.request, simulation)));
     return not_converged;
   }
 

@@ -15,31 +15,31 @@ Json errors_of(const AccuracyStep& step) {
 
 }  // namespace
 
-Json relative_errors(const Simulation& simulation) {
-  if (simulation.accuracy.empty()) return nullptr;
-  return errors_of(simulation.accuracy.back());
+Json relative_errors(const std::vector<AccuracyStep>& steps) {
+  if (steps.empty()) return nullptr;
+  return errors_of(steps.back());
 }
 
-Json relative_errors_by_space(const Simulation& simulation) {
-  if (simulation.spaces.empty()) return nullptr;
-  Json spaces;
-  for (const SpaceErrors& space : simulation.spaces) {
-    spaces[space.space] = errors_of(space.errors);
-    spaces[space.space]["patches"] = space.errors.patches;
+Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {
+  if (spaces.empty()) return nullptr;
+  Json part;
+  for (const SpaceErrors& space : spaces) {
+    part[space.space] = errors_of(space.errors);
+    part[space.space]["patches"] = space.errors.patches;
   }
-  return spaces;
+  return part;
 }
 
-Json accuracy_steps(const Simulation& simulation) {
-  Json steps = Json::array();
-  for (const AccuracyStep& step : simulation.accuracy) {
+Json accuracy_steps(const std::vector<AccuracyStep>& steps) {
+  Json parts = Json::array();
+  for (const AccuracyStep& step : steps) {
     Json part = {{"patches", step.patches}, {"new_patches", step.new_patches}, {"samples", step.samples}};
     part.update(errors_of(step));
     part["seconds"] = step.seconds;
     part["cpu_seconds"] = step.cpu_seconds;
-    steps.push_back(std::move(part));
+    parts.push_back(std::move(part));
   }
-  return steps;
+  return parts;
 }
 
 }  // namespace patchlight

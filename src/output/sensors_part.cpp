@@ -2,7 +2,7 @@
 
 namespace patchlight {
 
-nlohmann::ordered_json sensors_part(const SensorReport& sensors) {
+nlohmann::ordered_json sensors_part(const SensorFacts& sensors) {
   using Json = nlohmann::ordered_json;
   Json part;
   part["unit"] = sensors.unit;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "patchlight/output/write_report.h"
+#include "patchlight/report/report.h"
 
 #include <nlohmann/json.hpp>
 
 namespace patchlight {
 
 /// What sensors read, group by group, as a part of the report.
-nlohmann::ordered_json sensors_part(const SensorReport& sensors);
+nlohmann::ordered_json sensors_part(const SensorFacts& sensors);
 
 }  // namespace patchlight

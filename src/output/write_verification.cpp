@@ -32,8 +32,8 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["agrees"] = verification.verdict == Verdict::agrees;
   json["probability"] = verification.probability;
   json["least_probability"] = least_probability;
-  json["relative_error"] = relative_errors(simulation);
-  json["relative_error_by_space"] = relative_errors_by_space(simulation);
+  json["relative_error"] = relative_errors(simulation.accuracy);
+  json["relative_error_by_space"] = relative_errors_by_space(simulation.spaces);
   json["widest_bar"] = widest_bar;
   json["parts"] = Json::array();
   for (const VerifiedPart& part : verification.parts) {

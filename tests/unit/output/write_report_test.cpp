@@ -9,19 +9,19 @@
 namespace patchlight::write_report_test {
 namespace {
 
-nlohmann::json report_of(const Scene& scene, const Simulation& simulation) {
+nlohmann::json written_report(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   Request request;
   request.max_edge = 0.25;
   const Provenance provenance{"patchlight solve tiny.obj", 0.125};
-  write_report(folder.path() / "report.json", {scene, request, simulation, provenance});
+  write_report(folder.path() / "report.json", report_of(scene, request, simulation), provenance);
   return nlohmann::json::parse(content_of(folder.path() / "report.json"));
 }
 
 // With B = E + rho o H: sum A E - sum A (1 - rho) H = sum A (B - H).
 TEST(WriteReport, FluxesOfTheMaterialsAddUp) {
   const Simulation simulation = tiny_simulation();
-  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  const nlohmann::json report = written_report(tiny_scene(), simulation);
   double area = 0;
   Eigen::Array3d net = Eigen::Array3d::Zero();
   for (const auto& material : report["materials"]) {
@@ -44,7 +44,7 @@ TEST(WriteReport, FluxesOfTheMaterialsAddUp) {
 }
 
 TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
-  const nlohmann::json report = report_of(tiny_scene(), tiny_simulation());
+  const nlohmann::json report = written_report(tiny_scene(), tiny_simulation());
   EXPECT_EQ(report["version"], version());
   EXPECT_EQ(report["command_line"], "patchlight solve tiny.obj");
   EXPECT_EQ(report["input"]["sha256"], "00ff");
@@ -70,7 +70,7 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
 }
 
 TEST(WriteReport, TellsWhatAccuracyHasCost) {
-  const nlohmann::json report = report_of(tiny_scene(), tiny_simulation_with_bars());
+  const nlohmann::json report = written_report(tiny_scene(), tiny_simulation_with_bars());
   EXPECT_EQ(
       report["relative_error"],
       (nlohmann::json{{"mesh", 0.03}, {"form_factor", 0.04}, {"solver", 0.001}, {"total", 0.05}, {"display", 0.25}}));
@@ -86,7 +86,7 @@ TEST(WriteReport, TellsWhatAccuracyHasCost) {
   EXPECT_TRUE(report["request"].at("accuracy").is_null());
   EXPECT_TRUE(report["request"].at("time_s").is_null());
 
-  const nlohmann::json without = report_of(tiny_scene(), tiny_simulation());
+  const nlohmann::json without = written_report(tiny_scene(), tiny_simulation());
   EXPECT_TRUE(without.at("relative_error").is_null());
   EXPECT_TRUE(without.at("accuracy").empty());
 }
@@ -94,7 +94,7 @@ TEST(WriteReport, TellsWhatAccuracyHasCost) {
 // The row sums are 1 - lost, so the closed ones have no defect; the raw ones are off by 0, 1/4 and -1/4.
 TEST(WriteReport, WeighsRowSumsByArea) {
   const Simulation simulation = tiny_simulation();
-  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  const nlohmann::json report = written_report(tiny_scene(), simulation);
   const Eigen::VectorXd& area = simulation.problem.area;
   const double raw = std::sqrt((area[1] + area[2]) / area.sum()) / 4;
   EXPECT_NEAR(report["transport"]["raw_row_sum"]["rms_defect"].get<double>(), raw, 1e-15);
@@ -106,7 +106,7 @@ TEST(WriteReport, SaysWhatIsNotKnownOfRowsOnDemand) {
   Simulation simulation = tiny_simulation();
   simulation.plan.storage = Storage::on_demand;
   simulation.transport.row_sum = simulation.transport.raw_row_sum = Eigen::VectorXd();
-  const nlohmann::json report = report_of(tiny_scene(), simulation);
+  const nlohmann::json report = written_report(tiny_scene(), simulation);
   for (const char* key : {"facing_pairs", "shadow_rays", "bare_shadow_rays_per_second", "raw_row_sum", "row_sum"}) {
     EXPECT_TRUE(report["transport"].at(key).is_null()) << key;
   }
@@ -121,7 +121,7 @@ TEST(WriteReport, NamesTheWorstPatches) {
   Scene scene = tiny_scene();
   scene.groups = {"table"};
   scene.polygons[1].line = 7;
-  const nlohmann::json worst = report_of(scene, simulation)["transport"]["worst_rows"];
+  const nlohmann::json worst = written_report(scene, simulation)["transport"]["worst_rows"];
   ASSERT_EQ(worst.size(), 3U);
   EXPECT_EQ(worst[0]["patch"], 1);
   EXPECT_EQ(worst[0]["place"], "tiny.obj:7");
@@ -138,7 +138,7 @@ TEST(WriteReport, NamesTheWorstPatches) {
 TEST(WriteReport, IsValidJsonWhateverItHolds) {
   Scene scene = tiny_scene();
   scene.materials.push_back({"not \xff UTF-8 \"quoted\"", rgb(0, 0, 0), rgb(0, 0, 0)});  // no patch has it
-  const nlohmann::json report = report_of(scene, tiny_simulation());
+  const nlohmann::json report = written_report(scene, tiny_simulation());
   EXPECT_TRUE(report["solution"]["iterations"][0]["error_bound"].is_null());  // infinite
   EXPECT_EQ(report["materials"][2]["area_m2"], 0);
   EXPECT_TRUE(report["materials"][2]["irradiance_mean_W_m2"][0].is_null());

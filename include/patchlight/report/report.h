@@ -1,0 +1,143 @@
+#pragma once
+
+#include "patchlight/gather/readings.h"
+#include "patchlight/simulate.h"
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What was read, as it was solved.
+struct SceneFacts {
+  std::string file;
+  std::string sha256;  ///< of all its files
+  std::size_t polygons = 0;
+  std::size_t materials = 0;
+  double metres_per_unit = 1;
+  Vector up = Vector::UnitZ();
+  Vector size = Vector::Zero();  ///< of the bounds, m
+  std::vector<std::string> notes;
+};
+
+/// What the patches of one material add up to; spectra have a value per band.
+struct MaterialLight {
+  std::string name;
+  double area = 0;       ///< m^2
+  Spectrum reflectance;  ///< as the scene has it
+  Spectrum exitance;     ///< as the scene has it, W/m^2
+  Spectrum emitted;      ///< W
+  Spectrum absorbed;     ///< W
+  Spectrum lowest;       ///< irradiance, W/m^2; infinite without patches
+  Spectrum mean;         ///< irradiance by area, W/m^2; not a number without patches
+  Spectrum highest;      ///< irradiance, W/m^2; minus infinity without patches
+};
+
+/// What the sensors read.
+struct SensorFacts {
+  std::vector<GroupReadings> groups;
+  std::string unit;                   ///< of their values
+  bool daylight = false;              ///< they have daylight factors
+  std::vector<std::string> warnings;  ///< a sentence for each sensor whose place is in doubt
+};
+
+/// How far the sampled form factors are off, as shares of the unoccluded form factor.
+struct SamplingFacts {
+  /// Pairs whose rays disagreed, with about the same visible share.
+  struct Partial {
+    double visible_share = 0;
+    std::uint64_t sampled_again = 0;
+    double standard_error = 0;  ///< of a pair that takes the usual number of samples
+  };
+  /// Pairs whose rays agreed.
+  struct Unanimous {
+    std::uint64_t sampled_again = 0;
+    std::uint64_t missed = 0;  ///< of these, those where not all of the second rays agreed with the first
+    double bound = 1;          ///< bound_on_miss()
+  };
+  std::array<Partial, SamplingError::bins> partial{};  ///< by their visible share
+  double half_hidden = 0;                              ///< the standard error of pairs that see half of each other
+  Unanimous visible;
+  Unanimous occluded;
+};
+
+/// The sums of the rows of form factors.
+struct RowSumFacts {
+  double min = 0;
+  double mean = 0;  ///< by area
+  double max = 0;
+  double rms_defect = 0;  ///< by area, against 1 - lost
+};
+
+/// A patch whose form factors, before closure, are far off.
+struct WorstPatch {
+  PatchIndex patch = 0;
+  std::string place;       ///< file and line of its polygon
+  std::uint32_t face = 0;  ///< number of its polygon in the model's files, from 0
+  std::string group;
+  std::string material;
+  Point centre = Point::Zero();  ///< m
+  double area = 0;               ///< m^2
+  double row_sum = 0;
+  double expected = 0;  ///< of the row sum: 1 - lost
+};
+
+/// What is known of the form factors.
+struct FormFactorFacts {
+  std::optional<AssemblyCounts> counts;    ///< nothing with rows on demand
+  std::optional<double> rays_per_second;   ///< shadow rays over the seconds of the form factors, where these took any
+  double bare_rays_per_second = 0;         ///< the rate without anything else; 0 where not known
+  std::optional<SamplingFacts> sampling;   ///< nothing when no pair was sampled again
+  std::uint64_t lost_share_rays = 0;       ///< in all
+  std::string closure;                     ///< the method that has closed the rows
+  std::optional<RowSumFacts> raw_row_sum;  ///< before closure; nothing with rows on demand
+  std::optional<RowSumFacts> row_sum;      ///< after closure; nothing with rows on demand
+  std::vector<WorstPatch> worst;           ///< the five with the largest defect times area
+  double escaped = 0;                      ///< mean lost share by area
+  double at_backs = 0;                     ///< mean lost share by area
+};
+
+/// How the solution came about.
+struct SolutionFacts {
+  bool converged = false;
+  std::string trapped;             ///< Solution::trapped
+  double patch_bound = 0;          ///< Solution::patch_bound
+  std::vector<Iteration> history;  ///< from iteration 0
+  double highest_reflectance = 0;  ///< of all patches and bands
+  bool stopped_by_rows = false;    ///< SolverOptions::max_rows ended it, not max_iterations
+};
+
+/// All that is told of a run. Text, JSON and whatever else prints a run take their numbers from here.
+struct Report {
+  SceneFacts scene;
+  Request request;
+  Plan plan;
+  PatchIndex patches = 0;
+  std::size_t vertices = 0;
+  double area = 0;  ///< of all patches, m^2
+  std::vector<MaterialLight> materials;
+  SensorFacts sensors;
+  FormFactorFacts form_factors;
+  EnergyBalance balance;  ///< its defect is the row sums' and means nothing where these are not known
+  SolutionFacts solution;
+  std::vector<AccuracyStep> accuracy;  ///< Simulation::accuracy
+  std::vector<SpaceErrors> spaces;     ///< Simulation::spaces
+  std::vector<StageCost> costs;
+};
+
+/// What the sensors of groups read, told of a scene.
+SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings,
+                         std::vector<std::string> warnings);
+
+/// Works out the report of a run; costs are those noted so far. O(patches log patches).
+Report report_of(const Scene& scene, const Request& request, const Simulation& simulation, SensorFacts sensors = {});
+
+/// False when an accuracy was asked for and the error bars are above it.
+bool is_accurate(const Report& report);
+
+}  // namespace patchlight

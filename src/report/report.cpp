@@ -1,0 +1,174 @@
+#include "patchlight/report/report.h"
+
+#include "transport/worst_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+SceneFacts scene_facts(const Scene& scene) {
+  return {.file = scene.file,
+          .sha256 = scene.sha256,
+          .polygons = scene.polygons.size(),
+          .materials = scene.materials.size(),
+          .metres_per_unit = scene.metres_per_unit,
+          .up = scene.up,
+          .size = bounds(scene).diagonal(),
+          .notes = scene.notes};
+}
+
+std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& simulation) {
+  const Field& irradiance = simulation.solution.irradiance;
+  const Spectrum zero = Spectrum::Zero(irradiance.cols());
+  const Spectrum infinite = Spectrum::Constant(irradiance.cols(), std::numeric_limits<double>::infinity());
+  std::vector<MaterialLight> all;
+  for (const Material& material : scene.materials) {
+    all.push_back({.name = material.name,
+                   .reflectance = material.reflectance,
+                   .exitance = material.exitance,
+                   .emitted = zero,
+                   .absorbed = zero,
+                   .lowest = infinite,
+                   .mean = zero,
+                   .highest = -infinite});
+  }
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    MaterialLight& of_material = all[simulation.mesh.material[i]];
+    const double area = simulation.problem.area[i];
+    of_material.area += area;
+    of_material.emitted += area * simulation.problem.exitance.row(i);
+    of_material.mean += area * irradiance.row(i);
+    of_material.absorbed += area * (1 - simulation.problem.reflectance.row(i)) * irradiance.row(i);
+    of_material.lowest = of_material.lowest.min(irradiance.row(i));
+    of_material.highest = of_material.highest.max(irradiance.row(i));
+  }
+  for (MaterialLight& of_material : all) of_material.mean /= of_material.area;
+  return all;
+}
+
+SamplingFacts::Unanimous unanimous_facts(const SamplingError::Unanimous& unanimous) {
+  return {unanimous.pairs(), unanimous.missed, bound_on_miss(unanimous)};
+}
+
+std::optional<SamplingFacts> sampling_facts(const SamplingError& error) {
+  if (!was_audited(error)) return {};
+  SamplingFacts facts{.half_hidden = standard_error(error, 0.5),
+                      .visible = unanimous_facts(error.visible),
+                      .occluded = unanimous_facts(error.occluded)};
+  for (std::size_t bin = 0; bin < SamplingError::bins; ++bin) {
+    const double share = (static_cast<double>(bin) + 0.5) / SamplingError::bins;
+    facts.partial[bin] = {share, with_visible_share(error, bin).pairs, standard_error(error, share)};
+  }
+  return facts;
+}
+
+std::optional<RowSumFacts> row_sum_facts(const Eigen::VectorXd& row_sum, const Simulation& simulation) {
+  if (row_sum.size() == 0) return {};
+  const Eigen::ArrayXd& area = simulation.problem.area.array();
+  const Eigen::ArrayXd defect = (row_sum - expected_row_sum(simulation.transport.lost)).array();
+  return RowSumFacts{.min = row_sum.minCoeff(),
+                     .mean = (area * row_sum.array()).sum() / area.sum(),
+                     .max = row_sum.maxCoeff(),
+                     .rms_defect = std::sqrt((area * defect.square()).sum() / area.sum())};
+}
+
+std::vector<WorstPatch> worst_patches(const Scene& scene, const Simulation& simulation) {
+  constexpr std::size_t count = 5;
+  const PatchMesh& mesh = simulation.mesh;
+  std::vector<WorstPatch> worst;
+  for (const RowDefect& row :
+       worst_rows(simulation.transport.raw_row_sum, simulation.transport.lost, simulation.problem.area, count)) {
+    const Polygon& polygon = scene.polygons[mesh.polygon[row.patch]];
+    worst.push_back({.patch = row.patch,
+                     .place = place_of(scene, polygon),
+                     .face = polygon.face,
+                     .group = group_name(scene, polygon.group),
+                     .material = scene.materials[mesh.material[row.patch]].name,
+                     .centre = mesh.centroid[row.patch],
+                     .area = simulation.problem.area[row.patch],
+                     .row_sum = row.row_sum,
+                     .expected = row.expected});
+  }
+  return worst;
+}
+
+double seconds_of(const std::vector<StageCost>& costs, Stage stage) {
+  double seconds = 0;
+  for (const StageCost& cost : costs) seconds += cost.stage == stage ? cost.seconds : 0;
+  return seconds;
+}
+
+FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulation) {
+  const TransportFacts& transport = simulation.transport;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  FormFactorFacts facts;
+  if (keeps_entries(simulation.plan.storage)) facts.counts = transport.counts;
+  const double seconds = seconds_of(simulation.costs, Stage::form_factors);
+  if (seconds > 0) facts.rays_per_second = static_cast<double>(transport.counts.shadow_rays) / seconds;
+  facts.bare_rays_per_second = transport.bare_rays_per_second;
+  facts.sampling = sampling_facts(transport.error);
+  facts.lost_share_rays =
+      static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
+  facts.closure = transport.closure;
+  facts.raw_row_sum = row_sum_facts(transport.raw_row_sum, simulation);
+  facts.row_sum = row_sum_facts(transport.row_sum, simulation);
+  facts.worst = worst_patches(scene, simulation);
+  facts.escaped = area.dot(transport.lost.escaped) / area.sum();
+  facts.at_backs = area.dot(transport.lost.at_backs) / area.sum();
+  return facts;
+}
+
+bool stopped_by_rows(const Simulation& simulation) {
+  const SolverOptions& options = simulation.plan.solver;
+  if (simulation.solution.history.empty()) return false;
+  const auto shots = static_cast<double>(simulation.solution.history.back().number);
+  return options.max_rows && shots < static_cast<double>(options.max_iterations) * simulation.mesh.size();
+}
+
+SolutionFacts solution_facts(const Simulation& simulation) {
+  const Solution& solution = simulation.solution;
+  return {.converged = solution.converged,
+          .trapped = solution.trapped,
+          .patch_bound = solution.patch_bound,
+          .history = solution.history,
+          .highest_reflectance = simulation.problem.reflectance.maxCoeff(),
+          .stopped_by_rows = stopped_by_rows(simulation)};
+}
+
+}  // namespace
+
+SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings,
+                         std::vector<std::string> warnings) {
+  return {.groups = by_group(groups, readings),
+          .unit = sensor_unit(readings),
+          .daylight = readings.outside_by_sky.has_value(),
+          .warnings = std::move(warnings)};
+}
+
+Report report_of(const Scene& scene, const Request& request, const Simulation& simulation, SensorFacts sensors) {
+  return {.scene = scene_facts(scene),
+          .request = request,
+          .plan = simulation.plan,
+          .patches = simulation.mesh.size(),
+          .vertices = simulation.mesh.vertices.size(),
+          .area = simulation.problem.area.sum(),
+          .materials = material_light(scene, simulation),
+          .sensors = std::move(sensors),
+          .form_factors = form_factor_facts(scene, simulation),
+          .balance = simulation.balance,
+          .solution = solution_facts(simulation),
+          .accuracy = simulation.accuracy,
+          .spaces = simulation.spaces,
+          .costs = simulation.costs};
+}
+
+bool is_accurate(const Report& report) {
+  const std::optional<double>& asked = report.plan.accuracy;
+  return !asked || (!report.accuracy.empty() && report.accuracy.back().total <= *asked);
+}
+
+}  // namespace patchlight
