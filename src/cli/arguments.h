@@ -7,6 +7,7 @@
 #include "patchlight/study/compare.h"
 #include "patchlight/study/study.h"
 #include "patchlight/study/verify.h"
+#include "patchlight/views/picture.h"
 
 #include "cli/messages.h"
 
@@ -24,8 +25,6 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-enum class PictureColors { natural, luminance };
 
 /// What `patchlight solve` or `patchlight relight` is asked to do. A path that is empty stands for an output that is
 /// not wanted.

@@ -1,44 +1,13 @@
 #include "cli/picture.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/light/photometry.h"
 #include "patchlight/output/write_image.h"
-#include "patchlight/render/render.h"
-#include "patchlight/render/tone_map.h"
+#include "patchlight/views/picture.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include <string>
 
 namespace patchlight::cli {
 namespace {
-
-Eigen::VectorXd pixel_luminance(const Image& image) {
-  Eigen::VectorXd values(image.pixels.rows());
-  for (Eigen::Index pixel = 0; pixel < values.size(); ++pixel) values[pixel] = luminance(image.pixels.row(pixel));
-  return values;
-}
-
-// The next of 1, 2, 5, 10, ... not below the value: a legend that ends at such a number is easy to read.
-double rounded_up(double value) {
-  const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (value <= step * decade) return step * decade;
-  }
-  return 10 * decade;
-}
-
-// Where the legend ends: lamps are so much brighter than what they light that only the brightest twentieth of the
-// pixels may lie above.
-double legend_end(const Eigen::VectorXd& values) {
-  std::vector<double> lit;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(lit), [](double value) { return value > 0; });
-  if (lit.empty()) return 1;
-  const auto end = lit.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(lit.size() - 1));
-  std::nth_element(lit.begin(), end, lit.end());
-  return rounded_up(*end);
-}
 
 Camera in_metres(const Camera& camera, double metres_per_unit) {
   return {camera.eye * metres_per_unit, camera.target * metres_per_unit, camera.vertical_field_of_view};
@@ -58,30 +27,11 @@ std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& s
                                  (names.empty() ? "it has none" : "one of " + names));
 }
 
-Field display_radiance(const Simulation& simulation) {
-  const Solution& solution = simulation.solution;
-  Field radiosity = solution.radiosity;
-  if (!solution.converged && solution.ambient.size() > 0) {
-    // B + rho H_ambient: Cohen et al. 1988, the ambient term
-    radiosity += simulation.problem.reflectance * solution.ambient;
-  }
-  return radiosity / std::numbers::pi;  // L = B / pi
-}
-
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
                           const Occluder& occluder, const Observer& observer) {
-  const std::optional<Camera> asked = camera_for(arguments, scene);
-  const Camera camera = asked ? *asked : default_camera(scene, simulation.plan.sides, occluder);
-  const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
-  const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
-  if (arguments.colors == PictureColors::natural) {
-    const double exposure = exposure_for(image.pixels, Eigen::VectorXd::Ones(image.pixels.rows()));
-    return {.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure)};
-  }
-  const Eigen::VectorXd values = pixel_luminance(image);
-  const double end = legend_end(values);
-  const DisplayImage colored{.width = image.width, .height = image.height, .pixels = false_color(values, 0, end)};
-  return with_legend(colored, 0, end, "luminance, cd/m^2");
+  const PictureOptions options{.camera = camera_for(arguments, scene), .colors = arguments.colors};
+  const Picture picture = take_picture(scene, simulation, occluder, options, observer);
+  return picture.brightest ? with_legend(picture.image, 0, *picture.brightest, "luminance, cd/m^2") : picture.image;
 }
 
 }  // namespace patchlight::cli

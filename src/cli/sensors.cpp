@@ -1,56 +1,9 @@
 #include "cli/sensors.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/gather/gather.h"
 #include "patchlight/input/read_points.h"
-#include "patchlight/radiosity_errors.h"
-
-#include "effects.h"
-#include "lighting/direct_irradiance.h"
-
-#include <limits>
-#include <numbers>
-#include <utility>
-#include <vector>
 
 namespace patchlight::cli {
-namespace {
-
-// The horizontal irradiance outside of a CIE overcast sky, when that is all the light there is: then readings have a
-// daylight factor.
-std::optional<Spectrum> only_overcast_sky(const Scene& scene) {
-  if (!scene.sky || scene.sky->kind != SkyKind::cie_overcast || scene.sun || !scene.luminaires.empty()) return {};
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_lamp(scene, p)) return {};
-  }
-  const Sky& sky = *scene.sky;
-  if (sky.horizontal_irradiance.size() > 0) return sky.horizontal_irradiance;
-  return 7.0 / 9 * std::numbers::pi * sky.zenith_radiance;  // E = 7 pi L_z / 9: Moon and Spencer 1942
-}
-
-// The sensors that are not inside walls.
-std::vector<Sensor> free_sensors(std::span<const SensorPlace> places) {
-  std::vector<Sensor> sensors;
-  for (const SensorPlace& place : places) {
-    if (place.standing != Standing::inside_wall) sensors.push_back(place.sensor);
-  }
-  return sensors;
-}
-
-// A row for each place from one for each of the free sensors; NaN inside walls.
-Field at_places(const Field& values, std::span<const SensorPlace> places) {
-  Field all(static_cast<Eigen::Index>(places.size()), values.cols());
-  Eigen::Index next = 0;
-  for (Eigen::Index row = 0; row < all.rows(); ++row) {
-    if (places[static_cast<std::size_t>(row)].standing == Standing::inside_wall)
-      all.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
-    else
-      all.row(row) = values.row(next++);
-  }
-  return all;
-}
-
-}  // namespace
 
 Scene with_points(Scene scene, const SolveArguments& arguments) {
   if (arguments.points.empty()) return scene;
@@ -65,38 +18,6 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
   }
   if (arguments.points_outputs.empty()) return {};
   throw InputError("--points-output", "the scene file has no sensors; give it a table [[sensors]], or --points FILE");
-}
-
-Readings read_sensors(const Scene& whole, const Simulation& simulation, std::span<const SensorPlace> places,
-                      const Observer& observer) {
-  const Scene scene = scene_for_sensors(whole, simulation.plan);
-  // Without interreflection sensors see what lamps send, and nothing that is reflected.
-  const Field& sent =
-      simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
-  const std::vector<Sensor> sensors = free_sensors(places);
-  const std::uint64_t seed = simulation.plan.seed;
-  const Coverings coverings = find_coverings(scene, simulation.plan.sides);
-  const Occluder occluder(scene, Occluder::Blockers::all, coverings);
-  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors,
-                                                  {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
-  SensorErrors& errors = gathered.errors;
-  if (has_point_or_daylight(scene)) {
-    std::vector<SurfacePoint> points;
-    for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
-    gathered.irradiance += direct.irradiance;
-    errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
-  }
-  Readings readings = {.irradiance = at_places(gathered.irradiance, places),
-                       .standard_error = at_places(errors.total(), places),
-                       .errors = {.rays = at_places(errors.rays, places),
-                                  .sampling = at_places(errors.sampling, places),
-                                  .mesh = at_places(errors.mesh, places),
-                                  .solver = at_places(errors.solver, places)},
-                       .photometric = scene.photometric,
-                       .outside_by_sky = only_overcast_sky(scene)};
-  for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);
-  return readings;
 }
 
 }  // namespace patchlight::cli

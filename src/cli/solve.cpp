@@ -7,6 +7,9 @@
 #include "patchlight/output/write_result.h"
 #include "patchlight/render/tone_map.h"
 #include "patchlight/simulate.h"
+#include "patchlight/views/picture.h"
+#include "patchlight/views/sensors.h"
+#include "patchlight/views/surface.h"
 
 #include "base/parallel.h"
 #include "cli/interrupt.h"
@@ -16,7 +19,6 @@
 #include "cli/solution_options.h"
 #include "cli/solve_input.h"
 #include "cli/summary.h"
-#include "gather/doubtful_sensors.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
 #include "output/write_series.h"
@@ -37,8 +39,7 @@ struct Results {
   Scene scene;
   Simulation simulation;
   std::vector<std::filesystem::path> points_outputs;
-  Readings readings;
-  std::vector<std::string> warnings;  // about sensors
+  SensorView sensors;
   DisplayImage picture;
   std::vector<IterateIrradiance> iterates;
   Report report;
@@ -85,9 +86,7 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));
   if (!scene.sensors.empty()) {
     results.points_outputs = points_outputs(arguments, scene);
-    const std::vector<SensorPlace> places = place_sensors(scene, simulation.plan.sides, occluder);
-    results.readings = read_sensors(scene, simulation, places, observer);
-    results.warnings = doubtful_sensors(scene, places);
+    results.sensors = read_sensors(scene, simulation, occluder, observer);
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
@@ -126,7 +125,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
   results.report = report_of(results.scene, arguments.request, simulation,
-                             sensor_facts(results.scene.sensors, results.readings, results.warnings));
+                             sensor_facts(results.scene.sensors, results.sensors.readings, results.sensors.warnings));
   return results;
 }
 
@@ -143,12 +142,15 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   };
   using Path = std::filesystem::path;
   const WritingGuard guard;
-  for (const Path& file : arguments.results) {
-    write_to(file, [&](const Path& to) { write_result(to, results.scene, results.simulation, results.provenance); });
+  if (!arguments.results.empty()) {
+    const SolvedSurface surface = surface_of(results.scene, results.simulation);
+    for (const Path& file : arguments.results) {
+      write_to(file, [&](const Path& to) { write_result(to, surface, results.provenance); });
+    }
   }
   write_to(arguments.picture, [&](const Path& to) { write_png(to, results.picture); });
   for (const Path& file : results.points_outputs) {
-    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, results.readings); });
+    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, results.sensors.readings); });
   }
   write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {
@@ -184,7 +186,7 @@ ExitCode solve(const SolveArguments& arguments) {
 
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
-    for (const std::string& warning : results.warnings) print_message("warning", warning);
+    for (const std::string& warning : results.sensors.warnings) print_message("warning", warning);
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose);
     std::cout << files_line(written) << std::flush;
   }

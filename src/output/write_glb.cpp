@@ -1,10 +1,10 @@
 #include "output/write_glb.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/render/tone_map.h"
 
 #include "output/append_bytes.h"
 #include "output/json_array.h"
-#include "output/vertex_colours.h"
 #include "output/write_bytes.h"
 
 #include <Eigen/Core>
@@ -48,19 +48,19 @@ void append_triangle(std::string& bytes, std::uint32_t a, std::uint32_t b, std::
   for (const std::uint32_t corner : {a, b, c}) append_bytes(bytes, corner);
 }
 
-Buffer buffer_of(const Scene& scene, const Simulation& simulation, const Point& centre, double exposure) {
-  const PatchMesh& mesh = simulation.mesh;
+Buffer buffer_of(const SolvedSurface& surface, const Point& centre, double exposure) {
+  const PatchMesh& mesh = surface.simulation.mesh;
   Buffer buffer;
   buffer.vertices = mesh.vertices.size();
   for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-    const Eigen::Array3f position = y_up(mesh.vertices[k] - centre, scene).cast<float>().array();
+    const Eigen::Array3f position = y_up(mesh.vertices[k] - centre, surface.scene).cast<float>().array();
     for (const float coordinate : position) append_bytes(buffer.bytes, coordinate);
     buffer.lowest = k == 0 ? position : buffer.lowest.min(position);
     buffer.highest = k == 0 ? position : buffer.highest.max(position);
   }
   buffer.positions = buffer.bytes.size();
   // Vertex colours are linear in glTF: sixteen bits keep all eight of sRGB. Opaque.
-  for (const auto& colour : vertex_colours(scene, simulation, exposure)) {
+  for (const auto& colour : tone_map(surface.radiance_at_vertices, exposure)) {
     for (const std::uint8_t channel : colour) append_bytes(buffer.bytes, linear(channel));
     append_bytes(buffer.bytes, std::numeric_limits<std::uint16_t>::max());
   }
@@ -122,13 +122,12 @@ void append_chunk(std::string& bytes, std::uint32_t type, const std::string& chu
 
 }  // namespace
 
-void write_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance) {
-  const Point centre = bounds(scene).center();
-  const Buffer buffer = buffer_of(scene, simulation, centre, provenance.exposure);
+void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const Point centre = bounds(surface.scene).center();
+  const Buffer buffer = buffer_of(surface, centre, provenance.exposure);
   // Bytes that are not UTF-8 are replaced. Chunks are padded to four bytes, JSON with spaces; the other one fits.
   std::string text =
-      description(buffer, y_up(centre, scene), provenance).dump(-1, ' ', false, Json::error_handler_t::replace);
+      description(buffer, y_up(centre, surface.scene), provenance).dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   const std::size_t header = 12, chunk_header = 8;

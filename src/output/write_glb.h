@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/simulate.h"
+#include "patchlight/views/surface.h"
 
 #include <filesystem>
 
@@ -11,7 +11,6 @@ namespace patchlight {
 /// sided, triangles, vertex colours of the interpolated radiance at the recorded exposure. glTF is Y up: a scene whose
 /// z points up is turned, (x, y, z) becomes (x, z, -y). Positions are floats relative to the centre of the bounds,
 /// which is the node's translation. \throws OutputError, also when the file would exceed the format's 4 GiB.
-void write_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance);
+void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 }  // namespace patchlight

@@ -1,7 +1,8 @@
 #include "output/write_ply.h"
 
+#include "patchlight/render/tone_map.h"
+
 #include "output/append_bytes.h"
-#include "output/vertex_colours.h"
 #include "output/write_bytes.h"
 
 #include <sstream>
@@ -32,10 +33,9 @@ std::string header(const PatchMesh& mesh, const Provenance& provenance) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance) {
-  const PatchMesh& mesh = simulation.mesh;
-  const auto colours = vertex_colours(scene, simulation, provenance.exposure);
+void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const PatchMesh& mesh = surface.simulation.mesh;
+  const auto colours = tone_map(surface.radiance_at_vertices, provenance.exposure);
   std::string bytes = header(mesh, provenance);
   for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
     for (const double coordinate : mesh.vertices[k]) append_bytes(bytes, coordinate);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/simulate.h"
+#include "patchlight/views/surface.h"
 
 #include <filesystem>
 
@@ -10,7 +10,6 @@ namespace patchlight {
 /// Writes the patches as a coloured surface for viewers: binary little-endian PLY, positions in metres in double, per
 /// vertex the display colour (sRGB, 8 bits) of the interpolated radiance at the recorded exposure, one face per patch.
 /// \throws OutputError.
-void write_ply(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance);
+void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 }  // namespace patchlight

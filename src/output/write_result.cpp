@@ -13,12 +13,11 @@ const std::vector<std::string>& result_extensions() {
   return extensions;
 }
 
-void write_result(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-                  const Provenance& provenance) {
+void write_result(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
   const std::string extension = file.extension().string();
-  if (extension == ".vtp") return write_vtk(file, scene, simulation, provenance);
-  if (extension == ".ply") return write_ply(file, scene, simulation, provenance);
-  if (extension == ".glb") return write_glb(file, scene, simulation, provenance);
+  if (extension == ".vtp") return write_vtk(file, surface, provenance);
+  if (extension == ".ply") return write_ply(file, surface, provenance);
+  if (extension == ".glb") return write_glb(file, surface, provenance);
   throw OutputError(file.string(), "the extension names no known format; expected .vtp, .ply or .glb");
 }
 

@@ -1,9 +1,7 @@
 #include "output/write_vtk.h"
 
 #include "patchlight/light/photometry.h"
-#include "patchlight/render/smooth.h"
 #include "patchlight/render/tone_map.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "output/vtk_polygons.h"
 
@@ -61,7 +59,8 @@ void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
   cell_data.AddArray(floats("error_irradiance", total));
 }
 
-void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& simulation, double exposure) {
+void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double exposure) {
+  const Simulation& simulation = surface.simulation;
   const PatchMesh& mesh = simulation.mesh;
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
   Field luminances(radiance.rows(), 1);
@@ -83,7 +82,7 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   cell_data.AddArray(numbers<vtkFloatArray>("area", mesh.area));
   cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
   std::vector<std::uint32_t> faces;
-  for (const PolygonIndex polygon : mesh.polygon) faces.push_back(scene.polygons[polygon].face);
+  for (const PolygonIndex polygon : mesh.polygon) faces.push_back(surface.scene.polygons[polygon].face);
   cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
   // Not known of rows on demand.
   if (simulation.transport.row_sum.size() > 0) {
@@ -93,8 +92,7 @@ void add_values(vtkPolyData& polygons, const Scene& scene, const Simulation& sim
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  const SmoothField smooth_radiance = smooth(mesh, radiance, simulation.problem.area, Occluder(scene));
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", smooth_radiance.at_vertices));
+  polygons.GetPointData()->AddArray(floats("radiance_smooth", surface.radiance_at_vertices));
 }
 
 template <class Value>
@@ -156,12 +154,11 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
 
 }  // namespace
 
-void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance) {
-  const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
-  add_values(*polygons, scene, simulation, provenance.exposure);
-  add_facts(*polygons->GetFieldData(), scene, simulation, provenance);
-  add_history(*polygons->GetFieldData(), simulation);
+void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const Pointer<vtkPolyData> polygons = polygons_of(surface.simulation.mesh);
+  add_values(*polygons, surface, provenance.exposure);
+  add_facts(*polygons->GetFieldData(), surface.scene, surface.simulation, provenance);
+  add_history(*polygons->GetFieldData(), surface.simulation);
 
   write_polygons(file, *polygons);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/simulate.h"
+#include "patchlight/views/surface.h"
 
 #include <filesystem>
 
@@ -14,7 +14,6 @@ namespace patchlight {
 /// else error_solver where it is known. Point array: radiance_smooth. FieldData: the unit of every array, material
 /// names, version, command line, seed, SHA-256 of the input, exposure, convergence history, relative errors, seconds
 /// per stage. docs/output.md lists them all. \throws OutputError.
-void write_vtk(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-               const Provenance& provenance);
+void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 }  // namespace patchlight

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/simulate.h"
+#include "patchlight/views/surface.h"
 
 #include <filesystem>
 #include <string>
@@ -13,7 +13,6 @@ namespace patchlight {
 const std::vector<std::string>& result_extensions();
 
 /// Writes the solved patches in the format that the extension names. \throws OutputError, also for an unknown one.
-void write_result(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
-                  const Provenance& provenance);
+void write_result(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 }  // namespace patchlight

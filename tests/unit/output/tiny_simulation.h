@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/simulate.h"
+#include "patchlight/views/surface.h"
 
 #include <limits>
 
@@ -66,7 +67,14 @@ inline Simulation tiny_simulation() {
   return simulation;
 }
 
-/// The same with invented error bars on the irradiance.
+/// Its surface.
+inline SolvedSurface tiny_surface() {
+  static const Scene scene = tiny_scene();
+  static const Simulation simulation = tiny_simulation();
+  return surface_of(scene, simulation);
+}
+
+/// The same simulation with invented error bars on the irradiance.
 inline Simulation tiny_simulation_with_bars() {
   Simulation simulation = tiny_simulation();
   const Field& H = simulation.solution.irradiance;

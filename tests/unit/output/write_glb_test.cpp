@@ -51,7 +51,7 @@ Glb taken_apart(const std::string& bytes) {
 
 Glb written(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
-  write_glb(folder.path() / "result.glb", scene, simulation, {"patchlight solve \xff.obj", exposure});
+  write_glb(folder.path() / "result.glb", surface_of(scene, simulation), {"patchlight solve \xff.obj", exposure});
   return taken_apart(content_of(folder.path() / "result.glb"));
 }
 

@@ -21,7 +21,7 @@ namespace {
 constexpr double exposure = 0.125;
 
 std::string written(const std::filesystem::path& file) {
-  write_ply(file, tiny_scene(), tiny_simulation(), {"patchlight solve tiny.obj\nend_header", exposure});
+  write_ply(file, tiny_surface(), {"patchlight solve tiny.obj\nend_header", exposure});
   return content_of(file);
 }
 

@@ -16,7 +16,7 @@ TEST(WriteResult, WritesEveryExtensionItNames) {
   ASSERT_EQ(result_extensions().size(), beginnings.size());
   for (std::size_t k = 0; k < beginnings.size(); ++k) {
     const std::filesystem::path file = folder.path() / ("result" + result_extensions()[k]);
-    write_result(file, tiny_scene(), tiny_simulation(), {"", 0.125});
+    write_result(file, tiny_surface(), {"", 0.125});
     EXPECT_TRUE(content_of(file).starts_with(beginnings[k])) << file;
   }
 }
@@ -24,7 +24,7 @@ TEST(WriteResult, WritesEveryExtensionItNames) {
 TEST(WriteResult, RefusesOthersAndNamesThose) {
   const TemporaryFolder folder;
   try {
-    write_result(folder.path() / "result.stl", tiny_scene(), tiny_simulation(), {"", 1});
+    write_result(folder.path() / "result.stl", tiny_surface(), {"", 1});
     FAIL() << "no error";
   } catch (const OutputError& error) {
     for (const std::string& extension : result_extensions()) {
@@ -39,12 +39,12 @@ TEST(WriteResult, FullDiskIsAnErrorAndKeepsTheOldFile) {
   for (const std::string& extension : result_extensions()) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / ("result" + extension);
-    write_result(file, tiny_scene(), tiny_simulation(), {"", 0.125});
+    write_result(file, tiny_surface(), {"", 0.125});
     const std::string old = content_of(file);
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{100}, old.size() - 1}) {
       {
         const FullDisk disk(bytes);
-        EXPECT_THROW(write_result(file, tiny_scene(), tiny_simulation(), {"", 0.125}), OutputError) << file << bytes;
+        EXPECT_THROW(write_result(file, tiny_surface(), {"", 0.125}), OutputError) << file << bytes;
       }
       EXPECT_EQ(content_of(file), old);
       EXPECT_EQ(folder.entries(), 1U);

@@ -37,7 +37,7 @@ vtkSmartPointer<vtkPolyData> read(const std::string& file) {
 vtkSmartPointer<vtkPolyData> written_and_read(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "result.vtp";
-  write_vtk(file, scene, simulation, {"patchlight solve tiny.obj", exposure});
+  write_vtk(file, surface_of(scene, simulation), {"patchlight solve tiny.obj", exposure});
   EXPECT_EQ(folder.entries(), 1U);
   return read(file);
 }
@@ -226,12 +226,12 @@ TEST(WriteVtk, TakesAnyNumberOfBands) {
 TEST(WriteVtk, FullDiskIsAnErrorAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "result.vtp";
-  write_vtk(file, tiny_scene(), tiny_simulation(), {"", exposure});
+  write_vtk(file, tiny_surface(), {"", exposure});
   const std::string old = content_of(file);
   for (const std::size_t bytes : {std::size_t{0}, std::size_t{100}, old.size() / 2, old.size() - 1}) {
     {
       const FullDisk disk(bytes);
-      EXPECT_THROW(write_vtk(file, tiny_scene(), tiny_simulation(), {"", exposure}), OutputError) << bytes;
+      EXPECT_THROW(write_vtk(file, tiny_surface(), {"", exposure}), OutputError) << bytes;
     }
     EXPECT_EQ(content_of(file), old);
     EXPECT_EQ(folder.entries(), 1U);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/simulate.h"
+
+namespace patchlight {
+
+/// The surface of a solved scene, ready to be written. It refers to its scene and simulation, which must outlive it.
+struct SolvedSurface {
+  const Scene& scene;
+  const Simulation& simulation;
+  Field radiance_at_vertices;  ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
+};
+
+/// Smooths the radiance of a solution, which traces rays along the patches; see smooth().
+SolvedSurface surface_of(const Scene& scene, const Simulation& simulation);
+
+}  // namespace patchlight

@@ -1,0 +1,68 @@
+#include "patchlight/views/picture.h"
+
+#include "patchlight/light/photometry.h"
+#include "patchlight/render/render.h"
+#include "patchlight/render/tone_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+Eigen::VectorXd pixel_luminance(const Image& image) {
+  Eigen::VectorXd values(image.pixels.rows());
+  for (Eigen::Index pixel = 0; pixel < values.size(); ++pixel) values[pixel] = luminance(image.pixels.row(pixel));
+  return values;
+}
+
+// The next of 1, 2, 5, 10, ... not below the value: a legend that ends at such a number is easy to read.
+double rounded_up(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (value <= step * decade) return step * decade;
+  }
+  return 10 * decade;
+}
+
+// Where false colours end: lamps are so much brighter than what they light that only the brightest twentieth of the
+// pixels may lie above.
+double end_of_scale(const Eigen::VectorXd& values) {
+  std::vector<double> lit;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(lit), [](double value) { return value > 0; });
+  if (lit.empty()) return 1;
+  const auto end = lit.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(lit.size() - 1));
+  std::nth_element(lit.begin(), end, lit.end());
+  return rounded_up(*end);
+}
+
+}  // namespace
+
+Field display_radiance(const Simulation& simulation) {
+  const Solution& solution = simulation.solution;
+  Field radiosity = solution.radiosity;
+  if (!solution.converged && solution.ambient.size() > 0) {
+    // B + rho H_ambient: Cohen et al. 1988, the ambient term
+    radiosity += simulation.problem.reflectance * solution.ambient;
+  }
+  return radiosity / std::numbers::pi;  // L = B / pi
+}
+
+Picture take_picture(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
+                     const PictureOptions& options, const Observer& observer) {
+  const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
+  const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
+  const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
+  if (options.colors == PictureColors::natural) {
+    const double exposure = exposure_for(image.pixels, Eigen::VectorXd::Ones(image.pixels.rows()));
+    return {{.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure)}};
+  }
+  const Eigen::VectorXd values = pixel_luminance(image);
+  const double end = end_of_scale(values);
+  return {{.width = image.width, .height = image.height, .pixels = false_color(values, 0, end)}, end};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,94 @@
+#include "patchlight/views/sensors.h"
+
+#include "patchlight/gather/gather.h"
+#include "patchlight/gather/sensor_places.h"
+#include "patchlight/radiosity_errors.h"
+
+#include "effects.h"
+#include "gather/doubtful_sensors.h"
+#include "lighting/direct_irradiance.h"
+
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// The horizontal irradiance outside of a CIE overcast sky, when that is all the light there is: then readings have a
+// daylight factor.
+std::optional<Spectrum> only_overcast_sky(const Scene& scene) {
+  if (!scene.sky || scene.sky->kind != SkyKind::cie_overcast || scene.sun || !scene.luminaires.empty()) return {};
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_lamp(scene, p)) return {};
+  }
+  const Sky& sky = *scene.sky;
+  if (sky.horizontal_irradiance.size() > 0) return sky.horizontal_irradiance;
+  return 7.0 / 9 * std::numbers::pi * sky.zenith_radiance;  // E = 7 pi L_z / 9: Moon and Spencer 1942
+}
+
+// The sensors that are not inside walls.
+std::vector<Sensor> free_sensors(std::span<const SensorPlace> places) {
+  std::vector<Sensor> sensors;
+  for (const SensorPlace& place : places) {
+    if (place.standing != Standing::inside_wall) sensors.push_back(place.sensor);
+  }
+  return sensors;
+}
+
+// A row for each place from one for each of the free sensors; NaN inside walls.
+Field at_places(const Field& values, std::span<const SensorPlace> places) {
+  Field all(static_cast<Eigen::Index>(places.size()), values.cols());
+  Eigen::Index next = 0;
+  for (Eigen::Index row = 0; row < all.rows(); ++row) {
+    if (places[static_cast<std::size_t>(row)].standing == Standing::inside_wall)
+      all.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
+    else
+      all.row(row) = values.row(next++);
+  }
+  return all;
+}
+
+Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, const Simulation& simulation,
+                     const Observer& observer) {
+  const Scene scene = scene_for_sensors(whole, simulation.plan);
+  // Without interreflection sensors see what lamps send, and nothing that is reflected.
+  const Field& sent =
+      simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
+  const std::vector<Sensor> sensors = free_sensors(places);
+  const std::uint64_t seed = simulation.plan.seed;
+  const Coverings coverings = find_coverings(scene, simulation.plan.sides);
+  const Occluder occluder(scene, Occluder::Blockers::all, coverings);
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors,
+                                                  {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
+  SensorErrors& errors = gathered.errors;
+  if (has_point_or_daylight(scene)) {
+    std::vector<SurfacePoint> points;
+    for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
+    gathered.irradiance += direct.irradiance;
+    errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
+  }
+  Readings readings = {.irradiance = at_places(gathered.irradiance, places),
+                       .standard_error = at_places(errors.total(), places),
+                       .errors = {.rays = at_places(errors.rays, places),
+                                  .sampling = at_places(errors.sampling, places),
+                                  .mesh = at_places(errors.mesh, places),
+                                  .solver = at_places(errors.solver, places)},
+                       .photometric = scene.photometric,
+                       .outside_by_sky = only_overcast_sky(scene)};
+  for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);
+  return readings;
+}
+
+}  // namespace
+
+SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
+                        const Observer& observer) {
+  const std::vector<SensorPlace> places = place_sensors(scene, simulation.plan.sides, occluder);
+  return {readings_at(places, scene, simulation, observer), doubtful_sensors(scene, places)};
+}
+
+}  // namespace patchlight
