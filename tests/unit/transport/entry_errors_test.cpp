@@ -58,7 +58,7 @@ TEST(EntryErrors, FollowFromTheUnoccludedValueAndTheAudit) {
   unoccluded.set(0, 2, EntryKind::all_visible);
   SamplingError error;
   for (std::size_t bin = 0; bin < SamplingError::bins; ++bin)
-    error.partial[sampling_efforts - 1][bin] = {100, static_cast<double>(bin + 1)};
+    error.partial[sampling_efforts - 1][bin] = {100, static_cast<double>(bin + 1), 100};
   const EntryErrors errors = with_sampling_error(unoccluded, S, error, std::vector<double>(3, 2.0));
   const double twice = (1 + resolution) * (1 + resolution) - 1;
   EXPECT_NEAR(errors.standard_error(0, 1), 0.5 * 0.1, twice * 0.5 * 0.1);

@@ -34,8 +34,8 @@ Entries cube(EntryKind kind) {
   }
   for (std::size_t effort = 0; effort < sampling_efforts; ++effort) {
     const double falling = 1.0 / static_cast<double>(1 + effort);
-    entries.sampling.visible.audited[effort] = {100, 0.03 * falling};
-    entries.sampling.occluded.audited[effort] = {100, 0.28 * falling};
+    entries.sampling.visible.audited[effort] = {100, 0.03 * falling, 100};
+    entries.sampling.occluded.audited[effort] = {100, 0.28 * falling, 100};
   }
   return entries;
 }
