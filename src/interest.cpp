@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/vectors.h"
 #include "spaces.h"
 
 #include <algorithm>
@@ -68,8 +69,8 @@ Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std
 
 void require_reflecting(const Scene& scene, const RadiosityProblem& problem, const Eigen::VectorXd& interest) {
   if ((interest.array() == 1).all()) return;
-  const double highest = (problem.reflectance.colwise() * interest.array()).maxCoeff();
-  if (highest > 0) return;
+  const Field reflected = problem.reflectance.colwise() * interest.array();
+  if ((highest(reflected) > 0).any()) return;
   throw InputError(scene.file,
                    "found nothing that reflects light among what is of interest; expected a material, object or group "
                    "with a reflectance above 0, as an accuracy is that of reflected light");

@@ -2,6 +2,7 @@
 
 #include "patchlight/accuracy/error_bars.h"
 
+#include "base/vectors.h"
 #include "interest.h"
 #include "spaces.h"
 
@@ -29,7 +30,7 @@ std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& s
   const Eigen::VectorXd interest = interest_of(scene, mesh, simulation.plan.interest);
   const Eigen::VectorXd inside = interest.cwiseProduct(inside_shells(scene, mesh, Dividing::with_openings));
   const Eigen::VectorXd outside = interest - inside;
-  if (inside.sum() == 0 || outside.sum() == 0) return {};
+  if (total(inside) == 0 || total(outside) == 0) return {};
   return {{"inside", errors_of(simulation, inside)}, {"outside", errors_of(simulation, outside)}};
 }
 

@@ -2,6 +2,7 @@
 
 #include "patchlight/mesh/mesher.h"
 
+#include "base/vectors.h"
 #include "effects.h"
 #include "lighting/direct_irradiance.h"
 #include "memory.h"
@@ -112,7 +113,7 @@ SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_s
   // 4. Solve B = E + rho o (F B + H_direct), and see where the light went.
   SolverOptions options = plan.solver;
   options.largest_row_sum =
-      keeps_entries(plan.storage) ? facts.row_sum.maxCoeff() : std::numeric_limits<double>::infinity();
+      keeps_entries(plan.storage) ? largest(facts.row_sum) : std::numeric_limits<double>::infinity();
   const SolveWith solve = solver_as_planned(with.solve, plan);
   const Solve once = [&](const SolverOptions& by) {
     return solve(*transport, simulation.problem, by, setting.observer);

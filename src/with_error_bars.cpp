@@ -2,6 +2,7 @@
 
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
+#include "base/vectors.h"
 #include "effects.h"
 #include "interest.h"
 #include "transport/dense.h"
@@ -92,8 +93,8 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
   const auto shared_out = [&](const Field& bar, const Field& difference) -> Eigen::VectorXd {
     const ExchangeAreas& S = result.raw->exchange_areas;
     const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, {difference, weight});
-    const double sum = effects.sum();
-    return sum > 0 ? Eigen::VectorXd(squares(bar).sum() / sum * effects) : effects;
+    const double sum = total(effects);
+    return sum > 0 ? Eigen::VectorXd(total(squares(bar)) / sum * effects) : effects;
   };
   return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
          shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps);

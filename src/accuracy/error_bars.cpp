@@ -1,5 +1,7 @@
 #include "patchlight/accuracy/error_bars.h"
 
+#include "base/vectors.h"
+
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -15,7 +17,7 @@ double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
   // Of what reflects nothing every error is infinitely large.
   const Eigen::ArrayXd relative = (error > 0).select(error / reflected, 0.0);
-  return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : relative.maxCoeff();
+  return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : largest(relative);
 }
 
 Field solver_errors(const SolvedProblem& solved) {
@@ -23,7 +25,7 @@ Field solver_errors(const SolvedProblem& solved) {
   const Field& error = solved.solution.error;
   if (error.size() == 0) return Field::Constant(rho.rows(), rho.cols(), std::numeric_limits<double>::infinity());
   const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
-  return (rho > 0).select(of_reflecting, of_reflecting.colwise().maxCoeff().replicate(rho.rows(), 1));
+  return (rho > 0).select(of_reflecting, highest(of_reflecting).transpose().replicate(rho.rows(), 1));
 }
 
 Eigen::ArrayXd exposure_errors(const LostShare& lost) {

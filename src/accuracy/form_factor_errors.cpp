@@ -2,6 +2,7 @@
 #include "patchlight/solve/solve.h"
 
 #include "accuracy/means_around.h"
+#include "base/vectors.h"
 #include "transport/random_errors.h"
 
 #include <cmath>
@@ -26,27 +27,21 @@ Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area
   const Field row_sum = transport.apply(Field::Ones(area.size(), 1)).colwise() * A;
   const Eigen::ArrayXd diagonal = row_sum.col(0).max(1e-12 * A);
   const Eigen::ArrayXd damped = (1 + damping) * diagonal;
-  const auto sums = [](const Field& x, const Field& y) -> Eigen::ArrayXd {
-    return (x * y).colwise().sum().transpose();
-  };
-  const auto ratio = [](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
-    return (b != 0).select(a / b, 0.0);
-  };
 
   Field lambda = Field::Zero(row_errors.rows(), row_errors.cols());
   Field r = -row_errors;
   Field z = r.colwise() / diagonal;
   Field p = z;
-  Eigen::ArrayXd rz = sums(r, z);
+  Eigen::ArrayXd rz = dot(r, z);
   const Eigen::ArrayXd first = rz;
   for (int k = 0; k < most_iterations && (rz > tolerance * tolerance * first).any(); ++k) {
     const Field q = (transport.apply(p).colwise() * A) + (p.colwise() * damped);
-    const Eigen::ArrayXd step = ratio(rz, sums(p, q));
-    lambda += p.rowwise() * step.transpose();
-    r -= q.rowwise() * step.transpose();
+    const Eigen::ArrayXd step = quotient(rz, dot(p, q));
+    lambda += scaled(p, step);
+    r -= scaled(q, step);
     z = r.colwise() / diagonal;
-    const Eigen::ArrayXd rz_next = sums(r, z);
-    p = z + p.rowwise() * ratio(rz_next, rz).transpose();
+    const Eigen::ArrayXd rz_next = dot(r, z);
+    p = z + scaled(p, quotient(rz_next, rz));
     rz = rz_next;
   }
   return lambda;

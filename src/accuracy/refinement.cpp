@@ -2,6 +2,7 @@
 
 #include "patchlight/solve/solve.h"
 
+#include "base/vectors.h"
 #include "transport/merged.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ Field squared_reflectance(const SolvedProblem& solved) {
   const RadiosityProblem& problem = solved.problem;
   const Eigen::ArrayXd reflected = area_norm(solved.solution.radiosity - problem.exitance, problem.area).square();
   const Eigen::ArrayXd inverse = (reflected > 0).select(reflected.inverse(), 0.0);
-  return problem.reflectance.square().rowwise() * inverse.transpose();
+  return scaled(problem.reflectance.square(), inverse);
 }
 
 // w_i^2 rho_i^2 / (A_i ||B - E||_A^2)
@@ -60,7 +61,7 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const C
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return effects[static_cast<Eigen::Index>(a)] > effects[static_cast<Eigen::Index>(b)];
   });
-  const double all = effects.sum();
+  const double all = total(effects);
   const double wanted = std::max(all / (goal.factor * goal.factor), all * (1 - bulk * (1 - goal.left)));
   std::vector<std::uint8_t> marks(order.size(), 0);
   if (goal.factor <= 1) return marks;

@@ -1,5 +1,6 @@
 #include "solve/bounds.h"
 
+#include "base/vectors.h"
 #include "solve/krylov.h"
 
 #include <limits>
@@ -23,10 +24,10 @@ bool Bounds::contracts() const { return (contraction < largest_contraction).all(
 Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
                               const SolverOptions& options) {
   // ||K||_A <= rho_max max_i sum_j F_ij, as A^(1/2) F A^(-1/2) is symmetric and similar to F.
-  const double row_sum =
-      options.largest_row_sum ? *options.largest_row_sum : transport.apply(Field::Ones(transport.size(), 1)).maxCoeff();
-  const Eigen::ArrayXd highest = problem.reflectance.colwise().maxCoeff().transpose();
-  return (highest > 0).select(highest * row_sum, 0.0);
+  const double row_sum = options.largest_row_sum ? *options.largest_row_sum
+                                                 : highest(transport.apply(Field::Ones(transport.size(), 1)))[0];
+  const Eigen::ArrayXd reflected = highest(problem.reflectance);
+  return (reflected > 0).select(reflected * row_sum, 0.0);
 }
 
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
@@ -42,12 +43,11 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
 }
 
 Field patch_errors(const PatchWeights& weights, const FieldView& residual) {
-  const Field worst = (residual.abs() / weights.g).colwise().maxCoeff();
-  return (weights.v - weights.g).max(0.0).rowwise() * worst.row(0);
+  return scaled((weights.v - weights.g).max(0.0), highest(residual.abs() / weights.g));
 }
 
 std::string trapped_light(const TransportOperator& transport, const RadiosityProblem& problem) {
-  if (problem.reflectance.maxCoeff() < 1) return {};
+  if ((highest(problem.reflectance) < 1).all()) return {};
   // 1. Patches that lose light: they absorb, or some leaves.
   const Field row_sum = transport.apply(Field::Ones(transport.size(), 1));
   const auto keeps = [&](Eigen::Index i) { return row_sum(i, 0) >= 1 - least_escape; };
@@ -61,7 +61,7 @@ std::string trapped_light(const TransportOperator& transport, const RadiosityPro
   // 2. With them all from which light gets to them, bounce by bounce.
   for (bool grows = true; grows;) {
     const Field wider = (loses > 0 || transport.apply(loses) > 0).cast<double>();
-    grows = wider.sum() > loses.sum();
+    grows = total(sum_over_patches(wider)) > total(sum_over_patches(loses));
     loses = wider;
   }
 

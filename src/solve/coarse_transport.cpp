@@ -1,5 +1,7 @@
 #include "solve/coarse_transport.h"
 
+#include "base/vectors.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -25,7 +27,7 @@ void CoarseTransport::learn(Eigen::Index source, const Field& shot_radiosity, co
   const Eigen::VectorXd row = arriving.col(band) / shot_radiosity(0, band);
   const Eigen::Index group = group_of(source);
   arriving_.col(group) += row.cast<float>();
-  arrived_[group] += problem_.area.dot(row);
+  arrived_[group] += scalar_product(problem_.area, row);
   area_[group] += problem_.area[source];
 }
 
@@ -50,8 +52,8 @@ Eigen::Index CoarseTransport::next_source(const Field& waiting) const {
 Field CoarseTransport::ambient(const Field& unshot) const {
   // 1. Q_ig, the irradiance at patch i by unit flux of group g, is (arriving_ig + even) / weight_g. No more than all
   //    light arrives, sum_i A_i Q_ig <= 1, whatever the errors of the rows.
-  const double mean_area = problem_.area.mean();
-  const double arrived_share = area_.sum() > 0 ? std::min(1.0, arrived_.sum() / area_.sum()) : 1;
+  const double mean_area = total(problem_.area) / static_cast<double>(patches_);
+  const double arrived_share = total(area_) > 0 ? std::min(1.0, total(arrived_) / total(area_)) : 1;
   const double even = arrived_share / static_cast<double>(patches_);
   const Eigen::VectorXd weight = (area_.array() + mean_area).max(arrived_.array() + mean_area * arrived_share).matrix();
 
@@ -72,7 +74,7 @@ Field CoarseTransport::ambient(const Field& unshot) const {
     // 3. With all reflections the flux is (I - T)^-1 U; Q takes it to the patches.
     const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(groups_, groups_);
     const Eigen::VectorXd flux = (I - T).partialPivLu().solve(U).cwiseQuotient(weight);
-    irradiance.col(band) = (arriving_ * flux.cast<float>()).cast<double>().array() + even * flux.sum();
+    irradiance.col(band) = (arriving_ * flux.cast<float>()).cast<double>().array() + even * total(flux);
   }
   return irradiance;
 }

@@ -1,3 +1,4 @@
+#include "base/vectors.h"
 #include "solve/krylov.h"
 
 #include <functional>
@@ -34,8 +35,6 @@ class ConjugateGradient {
   const Field& irradiance() const { return H_; }
 
  private:
-  // Sums over the patches, one per band.
-  static Eigen::ArrayXd dot(const Field& x, const Field& y) { return (x * y).colwise().sum().transpose(); }
   void advance(const Field& radiosity, const Field& irradiance, const Field& image, const Eigen::ArrayXd& length);
 
   Apply apply_;
@@ -92,14 +91,6 @@ Solution solved(Iterations iterations, bool deflated) {
 
 }  // namespace
 
-Eigen::ArrayXd inner_product(const FieldView& x, const FieldView& y, const Eigen::VectorXd& area) {
-  return ((x * y).colwise() * area.array()).colwise().sum().transpose();
-}
-
-Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (b != 0).select(a / b, 0.0); }
-
-Field scaled(const FieldView& field, const Eigen::ArrayXd& factors) { return field.rowwise() * factors.transpose(); }
-
 Solution cg(Iterations iterations) { return solved(std::move(iterations), false); }
 
 Solution deflated_cg(Iterations iterations) { return solved(std::move(iterations), true); }
@@ -112,7 +103,7 @@ GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const Rad
   int k = 0;
   for (; k < max_iterations; ++k) {
     const Field r = problem.exitance + problem.reflectance * method.irradiance() - method.radiosity();
-    if (r.maxCoeff() <= largest_residual) break;
+    if ((highest(r) <= largest_residual).all()) break;
     method.step();
   }
   return {method.radiosity(), k + 1};

@@ -1,13 +1,12 @@
 #include "solve/energy.h"
 
+#include "base/vectors.h"
+
 namespace patchlight {
 
 EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& solution, const Eigen::VectorXd& row_sum,
                              const LostShare& lost) {
-  // Flux of a field, per band: sum_i A_i x_i.
-  const auto flux = [&](const Field& x) -> Eigen::ArrayXd {
-    return (x.colwise() * problem.area.array()).colwise().sum().transpose();
-  };
+  const auto flux = [&](const Field& x) { return area_sum(x, problem.area); };
   const Field& B = solution.radiosity;
   const Field& H = solution.irradiance;
 
@@ -22,7 +21,7 @@ EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& so
   balance.defect = flux(B.colwise() * (1 - row_sum.array() - lost.escaped.array() - lost.at_backs.array()));
   const Eigen::ArrayXd all = balance.emitted + balance.arriving;
   const Eigen::ArrayXd left = all - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
-  balance.imbalance = (all > 0).select(left.abs() / all, 0.0).maxCoeff();
+  balance.imbalance = largest((all > 0).select(left.abs() / all, 0.0));
   return balance;
 }
 

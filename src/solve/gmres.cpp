@@ -1,3 +1,4 @@
+#include "base/vectors.h"
 #include "solve/krylov.h"
 
 #include <Eigen/QR>

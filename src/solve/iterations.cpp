@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "solve/spectral_radius.h"
 
 #include <algorithm>
@@ -70,9 +71,8 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     if (bounds_.contracts(band)) {
       bound = norm[band] / (1 - bounds_.contraction[band]);
     } else if (bounds_.weights) {
-      const auto v = bounds_.weights->v.col(band);
-      const double worst = (iterate.residual.col(band).abs() / bounds_.weights->g.col(band)).maxCoeff();
-      bound = std::sqrt((problem_.area.array() * v.square()).sum()) * worst;
+      const auto& [v, g, applications] = *bounds_.weights;
+      bound = area_norm(v.col(band), problem_.area)[0] * highest(iterate.residual.col(band).abs() / g.col(band))[0];
     }
     iteration.relative_residual = worse(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);

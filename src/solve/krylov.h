@@ -30,13 +30,4 @@ struct GlowingRadiosity {
 GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem,
                                    int max_iterations);
 
-/// Area-weighted inner products sum_i A_i x_i y_i, one per band.
-Eigen::ArrayXd inner_product(const FieldView& x, const FieldView& y, const Eigen::VectorXd& area);
-
-/// a / b per band; 0 where b is 0, as for bands that are solved.
-Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
-
-/// A field with each band multiplied by a scalar.
-Field scaled(const FieldView& field, const Eigen::ArrayXd& factors);
-
 }  // namespace patchlight

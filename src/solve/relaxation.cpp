@@ -1,5 +1,7 @@
 #include "solve/relaxation.h"
 
+#include "base/vectors.h"
+
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -68,7 +70,7 @@ Solution sor(Iterations iterations, const RowTransport& transport) {
   if (given) return swept(std::move(iterations), transport, *given);
   // A few steps are enough: the factor hardly depends on the third digit.
   constexpr int steps = 5;
-  const double radius = iterations.spectral_radius(steps).maxCoeff();
+  const double radius = largest(iterations.spectral_radius(steps));
   return swept(std::move(iterations), transport, relaxation_for(radius));
 }
 
@@ -102,7 +104,7 @@ Solution chebyshev(Iterations iterations) {
     if (k == 2) omega = 1 / (1 - bound.square() / 2);
     if (k > 2) omega = 1 / (1 - bound.square() * omega / 4);
     // E + K B_k, between that and B_k-1
-    const Field next = before + (problem.exitance + problem.reflectance * H - before).rowwise() * omega.transpose();
+    const Field next = before + scaled(problem.exitance + problem.reflectance * H - before, omega);
     before = std::move(B);
     B = next;
     H = iterations.apply(B);

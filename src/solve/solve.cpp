@@ -1,5 +1,6 @@
 #include "patchlight/solve/solve.h"
 
+#include "base/vectors.h"
 #include "solve/iterations.h"
 #include "solve/krylov.h"
 #include "solve/relaxation.h"
@@ -130,9 +131,7 @@ Field source_radiosity(const RadiosityProblem& problem) {
   return problem.exitance + problem.reflectance * problem.direct_irradiance;
 }
 
-Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) {
-  return (x.square().colwise() * area.array()).colwise().sum().sqrt().transpose();
-}
+Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { return inner_product(x, x, area).sqrt(); }
 
 double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem) {
   const Eigen::ArrayXd error = area_norm(reference - radiosity, problem.area);

@@ -1,5 +1,6 @@
 #include "solve/southwell.h"
 
+#include "base/vectors.h"
 #include "solve/coarse_transport.h"
 
 #include <algorithm>
@@ -13,10 +14,10 @@ namespace {
 // Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly:
 // sum_i A_i dB_i / sum_i A_i / (1 - mean rho). Cohen et al. 1988, section 3.2. What overshooting shoots beforehand.
 Field even_irradiance(const Field& unshot, const RadiosityProblem& problem) {
-  const double total = problem.area.sum();
-  const Field mean_unshot = (unshot.colwise() * problem.area.array()).colwise().sum() / total;
-  const Field mean_reflectance = (problem.reflectance.colwise() * problem.area.array()).colwise().sum() / total;
-  return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
+  const double area = total(problem.area);
+  const Eigen::ArrayXd mean_unshot = area_sum(unshot, problem.area) / area;
+  const Eigen::ArrayXd mean_reflectance = area_sum(problem.reflectance, problem.area) / area;
+  return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0).transpose();
 }
 
 // The lamps' light where it arrives first, the number of their patches, and what their rows tell.
@@ -48,9 +49,8 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
 // best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
 Field over_relaxation(const RadiosityProblem& problem) {
   constexpr double next_eigenvalue = 0.7;
-  const Field mean_reflectance =
-      (problem.reflectance.colwise() * problem.area.array()).colwise().sum() / problem.area.sum();
-  return 2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt());
+  const Eigen::ArrayXd mean_reflectance = area_sum(problem.reflectance, problem.area) / total(problem.area);
+  return (2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt())).transpose();
 }
 
 // How many shots there may be after the lamps'.

@@ -1,13 +1,13 @@
 #include "solve/spectral_radius.h"
 
+#include "base/vectors.h"
+
 namespace patchlight {
 
 Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const RadiosityProblem& problem, int steps) {
   // With B = rho o h, h an irradiance, w = (A rho)^1/2 h: h <- F (rho o h) is w <- G w, and radius = ||G w|| / ||w||.
   const Field& rho = problem.reflectance;
-  const auto squares = [&](const Field& h) -> Eigen::ArrayXd {
-    return ((rho * h.square()).colwise() * problem.area.array()).colwise().sum().transpose();
-  };
+  const auto squares = [&](const Field& h) { return area_sum(rho * h.square(), problem.area); };
   Field h = Field::Ones(rho.rows(), rho.cols());
   Eigen::ArrayXd radius = Eigen::ArrayXd::Zero(rho.cols());
   for (int k = 0; k < steps; ++k) {
@@ -16,7 +16,7 @@ Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const Radiosi
     const Eigen::ArrayXd after = squares(next);
     radius = (before > 0).select((after / before).sqrt(), 0.0);
     const Eigen::ArrayXd scale = (after > 0).select(after.sqrt().inverse(), 0.0);
-    h = next.rowwise() * scale.transpose();
+    h = scaled(next, scale);
   }
   return radius;
 }

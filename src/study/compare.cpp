@@ -1,6 +1,7 @@
 #include "patchlight/study/compare.h"
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "solve/spectral_radius.h"
 
 #include <algorithm>
@@ -136,9 +137,8 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     comparison.reference_residual = reference.history.back().relative_residual;
     if (!reference.trapped.empty()) return reference;
     constexpr int steps = 60;
-    const Eigen::ArrayXd strongest_lamp = problem.exitance.colwise().maxCoeff().transpose();
-    comparison.spectral_radius =
-        (strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0).maxCoeff();
+    const Eigen::ArrayXd strongest_lamp = highest(problem.exitance);
+    comparison.spectral_radius = largest((strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0));
     const Race race{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
       if (keeps_entries(contestant.storage))

@@ -1,5 +1,7 @@
 #include "study/error_parts.h"
 
+#include "base/vectors.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +39,7 @@ ErrorParts error_parts(const Scene& scene, const Simulation& finest, const Discr
   parts.mesh = std::sqrt(std::max(0.0, discrepancy.of_means * discrepancy.of_means - others));
 
   const PatchMesh& mesh = finest.mesh;
-  const double all = discrepancy.squares.sum();
+  const double all = total(discrepancy.squares);
   if (!(all > 0)) return parts;
   if (scene.groups.size() > 1) {
     const auto [sum, group] = largest_sum(discrepancy.squares, scene.groups.size(),

@@ -1,5 +1,6 @@
 #include "study/reference.h"
 
+#include "base/vectors.h"
 #include "mesh/average.h"
 
 #include <algorithm>
@@ -41,10 +42,11 @@ Reference reference_from(const Simulation& finer) {
 std::optional<Spectrum> furnace_radiosity(const RadiosityProblem& problem) {
   constexpr double tolerance = 1e-9;
   const Field absorbed = 1 - problem.reflectance;
+  const Eigen::ArrayXd absorbed_sum = sum_over_patches(absorbed);
+  const Eigen::ArrayXd exitance_sum = sum_over_patches(problem.exitance);
   Spectrum c = Spectrum::Zero(absorbed.cols());
   for (Eigen::Index band = 0; band < c.size(); ++band) {
-    const double sum = absorbed.col(band).sum();
-    if (sum > 0) c[band] = problem.exitance.col(band).sum() / sum;
+    if (absorbed_sum[band] > 0) c[band] = exitance_sum[band] / absorbed_sum[band];
   }
   const Field expected = absorbed.rowwise() * c;
   const Field difference = (problem.exitance - expected).abs();

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/vectors.h"
 #include "effects.h"
 #include "spaces.h"
 #include "study/left_out.h"
@@ -25,7 +26,7 @@ struct Space {
 
 std::vector<Space> spaces_of(const Scene& scene, const Simulation& simulation) {
   const Eigen::ArrayXd inside = inside_shells(scene, simulation.mesh, Dividing::with_openings).array();
-  const double count = inside.sum();
+  const double count = total(inside);
   if (count == 0 || count == static_cast<double>(inside.size())) return {{"all", Eigen::ArrayXd::Ones(inside.size())}};
   return {{"inside", inside}, {"outside", 1 - inside}};
 }
@@ -77,15 +78,13 @@ double both_tails(double deviate) { return std::isnan(deviate) ? 0 : std::erfc(s
 // a / b per band; 0 where nothing is over nothing.
 Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (a == 0).select(a, a / b); }
 
-Eigen::ArrayXd sums(const Field& values) { return values.colwise().sum().transpose(); }
-
 // The variance of Student's t beside that of the noise which batches tell. Of n paths that met no light the bound of 95
 // % on the share that would have is 3 / n (Hanley and Lippman-Hand 1983): of the brightest light that was traced.
 Field variance_of(const PathEstimate& paths) {
   constexpr double degrees = path_batches - 1;
   const Field noise = paths.standard_error.square() * (degrees / (degrees - 2));
   if (noise.rows() == 0) return noise;
-  const Spectrum of_none = (3 * paths.irradiance.colwise().maxCoeff() / paths.paths).square();
+  const Spectrum of_none = (3 * highest(paths.irradiance).transpose() / paths.paths).square();
   return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
 }
 
@@ -105,19 +104,20 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
   const Field traced = rows_at(result.paths.irradiance, part.rows);
   const Field bar = rows_at(result.bar, part.rows);
   const Field variance = rows_at(variance_of(result.paths), part.rows);
-  part.chi_square = sums(rows_at(deviations(result), part.rows).square());
+  part.chi_square = sum_over_patches(rows_at(deviations(result), part.rows).square());
 
   // The common offset. Bars of different patches hang together, one cannot say how: as if they were the same.
-  const Eigen::ArrayXd difference = sums(solved - traced);
-  part.mean_difference = ratio(difference, sums(traced));
-  part.offset = ratio(difference, (sums(variance) + sums(bar).square()).sqrt());
+  const Eigen::ArrayXd difference = sum_over_patches(solved - traced);
+  part.mean_difference = ratio(difference, sum_over_patches(traced));
+  part.offset = ratio(difference, (sum_over_patches(variance) + sum_over_patches(bar).square()).sqrt());
 
   // How much that would grant.
   const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(space.holds.matrix());
-  const Eigen::ArrayXd of_checked = ratio(sums(bar.square()).sqrt(), sums(traced.square()).sqrt());
+  const Eigen::ArrayXd of_checked =
+      ratio(sum_over_patches(bar.square()).sqrt(), sum_over_patches(traced.square()).sqrt());
   const Eigen::ArrayXd of_all = ratio(area_norm(bars, area), area_norm(simulation.solution.irradiance, area));
-  const Eigen::ArrayXd of_noise = ratio(sums(variance).sqrt(), sums(traced));
-  part.width = of_checked.max(of_all).max(of_noise).maxCoeff();
+  const Eigen::ArrayXd of_noise = ratio(sum_over_patches(variance).sqrt(), sum_over_patches(traced));
+  part.width = largest(of_checked.max(of_all).max(of_noise));
   return part;
 }
 
@@ -157,14 +157,14 @@ const char* name_of(Verdict verdict) {
 
 Field irradiance_bar(const Simulation& simulation, double relative) {
   const Solution& solution = simulation.solution;
-  const Eigen::ArrayXd& area = simulation.problem.area.array();
-  const Spectrum mean = (solution.irradiance.colwise() * area).colwise().sum() / area.sum();
+  const Eigen::VectorXd& area = simulation.problem.area;
+  const Spectrum mean = area_sum(solution.irradiance, area).transpose() / total(area);
   Field bar = relative * solution.irradiance.max(mean.replicate(solution.irradiance.rows(), 1));
   if (solution.error.size() == 0) return bar;
   // B = E + rho o H: |dB_i| = rho_i |dH_i|.
   const Field& rho = simulation.problem.reflectance;
   const Field of_solver = (rho > 0).select(solution.error / rho, 0.0);
-  const Spectrum largest = of_solver.colwise().maxCoeff();
+  const Spectrum largest = highest(of_solver).transpose();
   return bar + (rho > 0).select(of_solver, largest.replicate(rho.rows(), 1));
 }
 

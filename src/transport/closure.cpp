@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "transport/narrow.h"
 #include "transport/tile_edge.h"
 
@@ -133,17 +134,17 @@ std::optional<Eigen::VectorXd> row_multipliers(const EntryWeights& W, const Eige
   Eigen::VectorXd r = (defect.array() * active).matrix();
   Eigen::VectorXd z = (r.array() * inverse).matrix();
   Eigen::VectorXd p = z;
-  double rz = r.dot(z);
+  double rz = scalar_product(r, z);
   for (int k = 0; k < max_iterations; ++k) {
     if ((r.array().abs() <= row_tolerance * area.array()).all()) return lambda;
     report(observer, 0);
     const Eigen::VectorXd q = apply(p);
-    const double step = rz / p.dot(q);
+    const double step = rz / scalar_product(p, q);
     if (!std::isfinite(step)) return std::nullopt;
     lambda += step * p;
     r -= step * q;
     z = (r.array() * inverse).matrix();
-    const double rz_next = r.dot(z);
+    const double rz_next = scalar_product(r, z);
     p = z + rz_next / rz * p;
     rz = rz_next;
   }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+
+#include <Eigen/Core>
+
+namespace patchlight {
+
+// Sums, products and maxima over all patches, one per band (column). Every sum is taken in an order that follows from
+// the number of patches and bands alone, so that it has the same bits for any number of threads.
+
+/// sum_i x_i
+Eigen::ArrayXd sum_over_patches(const FieldView& x);
+
+/// sum_i A_i x_i: the flux of a radiosity or irradiance, W for W/m^2 and `area` in m^2.
+Eigen::ArrayXd area_sum(const FieldView& x, const Eigen::VectorXd& area);
+
+/// sum_i x_i y_i
+Eigen::ArrayXd dot(const FieldView& x, const FieldView& y);
+
+/// sum_i A_i x_i y_i
+Eigen::ArrayXd inner_product(const FieldView& x, const FieldView& y, const Eigen::VectorXd& area);
+
+/// max_i x_i
+Eigen::ArrayXd highest(const FieldView& x);
+
+/// sum_i x_i, sum_i x_i y_i and max_i x_i of values without bands.
+double total(const Eigen::VectorXd& x);
+double scalar_product(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
+double largest(const Eigen::VectorXd& x);
+
+/// a / b per band; 0 where b is 0, as for bands that are solved.
+Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
+
+/// A field with each band multiplied by a factor.
+Field scaled(const FieldView& field, const Eigen::ArrayXd& factors);
+
+}  // namespace patchlight

@@ -1,0 +1,39 @@
+#include "base/vectors.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight::vectors_test {
+
+Field two_bands() {
+  Field x(3, 2);
+  x << 1, -2, 3, 4, 5, 0.5;
+  return x;
+}
+
+TEST(Vectors, SumsAreOverPatchesAndOnePerBand) {
+  const Field x = two_bands();
+  const Eigen::Vector3d area(2, 1, 0.5);
+  EXPECT_TRUE((sum_over_patches(x) == Eigen::Array2d(9, 2.5)).all());
+  EXPECT_TRUE((area_sum(x, area) == Eigen::Array2d(7.5, 0.25)).all());
+  EXPECT_TRUE((dot(x, x) == Eigen::Array2d(35, 20.25)).all());
+  EXPECT_TRUE((inner_product(x, x, area) == Eigen::Array2d(23.5, 24.125)).all());
+  EXPECT_TRUE((highest(x) == Eigen::Array2d(5, 4)).all());
+}
+
+// A band has the sums that it would have alone but for rounding: which bands are solved together does not matter.
+TEST(Vectors, BandsDoNotMix) {
+  const Field x = Field::Random(1000, 5);
+  const Field y = Field::Random(1000, 5);
+  const Eigen::ArrayXd all = dot(x, y);
+  for (Eigen::Index band = 0; band < x.cols(); ++band) {
+    EXPECT_NEAR(dot(x.col(band), y.col(band))[0], all[band], 1e-12);
+    EXPECT_EQ(highest(x.col(band))[0], highest(x)[band]);
+  }
+}
+
+TEST(Vectors, AQuotientByNothingIsNothing) {
+  EXPECT_TRUE((quotient(Eigen::Array2d(3, 1), Eigen::Array2d(2, 0)) == Eigen::Array2d(1.5, 0)).all());
+  EXPECT_TRUE((scaled(two_bands(), Eigen::Array2d(0, 2)).col(1) == 2 * two_bands().col(1)).all());
+}
+
+}  // namespace patchlight::vectors_test
