@@ -97,7 +97,7 @@ Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& p
   if (problem.direct_irradiance.size() > 0) H += problem.direct_irradiance;
   const auto rows = (problem.exitance > 0).rowwise().any().count();
   Solution solution;
-  solution.radiosity = problem.exitance + problem.reflectance * H;
+  solution.radiosity = radiosity_from(problem, H);
   solution.direct_irradiance = H;
   solution.irradiance = H;
   solution.error = Field::Zero(H.rows(), H.cols());

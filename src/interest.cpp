@@ -69,8 +69,8 @@ Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std
 
 void require_reflecting(const Scene& scene, const RadiosityProblem& problem, const Eigen::VectorXd& interest) {
   if ((interest.array() == 1).all()) return;
-  const Field reflected = problem.reflectance.colwise() * interest.array();
-  if ((highest(reflected) > 0).any()) return;
+  const Field even = interest.array().replicate(1, problem.exitance.cols());
+  if ((highest(problem.scattering.reflect(even)) > 0).any()) return;
   throw InputError(scene.file,
                    "found nothing that reflects light among what is of interest; expected a material, object or group "
                    "with a reflectance above 0, as an accuracy is that of reflected light");

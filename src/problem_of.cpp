@@ -10,11 +10,11 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
   RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
-    problem.reflectance.row(i) = material.reflectance;
+    problem.scattering.reflectance.row(i) = material.reflectance;
     const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
     if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
     const double held = held_of(mean_transmittance(scene, mesh.polygon[i]));
-    problem.reflectance.row(i) = (problem.reflectance.row(i) / held).min(1.0);
+    problem.scattering.reflectance.row(i) = (problem.scattering.reflectance.row(i) / held).min(1.0);
     problem.exitance.row(i) /= held;
   }
   return problem;
@@ -27,7 +27,7 @@ Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
     RadiosityProblem& problem = simulation.problem;
     Solution& solution = simulation.solution;
     problem.area[i] /= held;
-    for (Field* field : {&problem.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
+    for (Field* field : {&problem.scattering.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
       if (field->rows() > 0) field->row(i) *= held;
   }
   return simulation;

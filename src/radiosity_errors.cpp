@@ -14,11 +14,11 @@ RadiosityErrors radiosity_errors(const Simulation& simulation) {
   errors.reflected = solution.radiosity - problem.exitance;
   errors.solver = solution.error;
   if (simulation.error_bars) {
-    errors.sampling = problem.reflectance * simulation.error_bars->form_factor;
-    errors.mesh = problem.reflectance * simulation.error_bars->mesh;
+    errors.sampling = problem.scattering.reflect(simulation.error_bars->form_factor);
+    errors.mesh = problem.scattering.reflect(simulation.error_bars->mesh);
     return errors;
   }
-  Field squares = Field::Zero(problem.reflectance.rows(), problem.reflectance.cols());
+  Field squares = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
   if (simulation.direct_standard_error.size() > 0) squares += simulation.direct_standard_error.square();
   if (simulation.transport.raw_row_sum.size() > 0) {
     const Eigen::ArrayXd expected = expected_row_sum(simulation.transport.lost).array();
@@ -26,7 +26,7 @@ RadiosityErrors radiosity_errors(const Simulation& simulation) {
     const Eigen::ArrayXd relative = (expected > 0).select(defect / expected, 0.0);
     squares += (solution.irradiance.colwise() * relative).square();
   }
-  errors.sampling = problem.reflectance * squares.sqrt();
+  errors.sampling = problem.scattering.reflect(squares.sqrt());
   return errors;
 }
 

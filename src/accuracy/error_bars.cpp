@@ -1,6 +1,7 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "base/vectors.h"
+#include "solve/scattering.h"
 
 #include <cassert>
 #include <cmath>
@@ -13,7 +14,7 @@ Field ErrorBars::total() const { return (mesh.square() + form_factor.square() + 
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
                     const Eigen::VectorXd& weight) {
   const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
-  const Eigen::ArrayXd error = area_norm(problem.reflectance * bar, area);
+  const Eigen::ArrayXd error = area_norm(problem.scattering.reflect(bar), area);
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
   // Of what reflects nothing every error is infinitely large.
   const Eigen::ArrayXd relative = (error > 0).select(error / reflected, 0.0);
@@ -21,11 +22,10 @@ double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const
 }
 
 Field solver_errors(const SolvedProblem& solved) {
-  const Field& rho = solved.problem.reflectance;
+  const Field& H = solved.solution.irradiance;
   const Field& error = solved.solution.error;
-  if (error.size() == 0) return Field::Constant(rho.rows(), rho.cols(), std::numeric_limits<double>::infinity());
-  const Field of_reflecting = (rho > 0).select(error / rho, 0.0);
-  return (rho > 0).select(of_reflecting, highest(of_reflecting).transpose().replicate(rho.rows(), 1));
+  if (error.size() == 0) return Field::Constant(H.rows(), H.cols(), std::numeric_limits<double>::infinity());
+  return irradiance_errors(solved.problem.scattering, error);
 }
 
 Eigen::ArrayXd exposure_errors(const LostShare& lost) {
@@ -45,7 +45,7 @@ Field dark_differences(const LostShare& lost, const SolvedProblem& solved) {
 
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
   RadiosityProblem of_parents;
-  of_parents.reflectance = means_by_parent(mesh, problem.reflectance, problem.area);
+  of_parents.scattering = {means_by_parent(mesh, problem.scattering.reflectance, problem.area)};
   of_parents.exitance = means_by_parent(mesh, problem.exitance, problem.area);
   if (problem.direct_irradiance.size() > 0)
     of_parents.direct_irradiance = means_by_parent(mesh, problem.direct_irradiance, problem.area);

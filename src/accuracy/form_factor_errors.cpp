@@ -3,11 +3,13 @@
 
 #include "accuracy/means_around.h"
 #include "base/vectors.h"
+#include "solve/scattering.h"
 #include "transport/random_errors.h"
 
 #include <cmath>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
@@ -59,7 +61,7 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
 // What an error of the irradiance, the problem's exitance, comes to through all reflections: e = irradiance + F R e.
 Field followed(const RowTransport& transport, RadiosityProblem of_irradiance) {
   const Field irradiance = std::move(of_irradiance.exitance);
-  of_irradiance.exitance = of_irradiance.reflectance * irradiance;
+  of_irradiance.exitance = of_irradiance.scattering.reflect(irradiance);
   return irradiance + solve(transport, of_irradiance, {.relative_error = 0.05}).irradiance;
 }
 
@@ -85,8 +87,8 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
     Field irradiance = column_of_draws(drawn, bands + 1, band).colwise() / A;
     if (closed) irradiance += lambda.colwise() * H.col(band) + transport.apply(lambda.colwise() * B.col(band));
     // 3. Through all reflections.
-    const Field reflectance = problem.reflectance.col(band).replicate(1, draws);
-    const Field e = followed(transport, {reflectance, irradiance, problem.area});
+    const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
+    const Field e = followed(transport, {of_draws, irradiance, problem.area});
     squares.col(band) = e.square().rowwise().sum() / draws;
   }
   return squares.sqrt();
@@ -95,7 +97,7 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference) {
   // Of two independent values each is off by a root of one half of their difference.
-  const Field error = followed(transport, {problem.reflectance, difference / std::sqrt(2.0), problem.area});
+  const Field error = followed(transport, {problem.scattering, difference / std::sqrt(2.0), problem.area});
   return form_factor_scale * means_around(mesh, problem.area, error);
 }
 

@@ -3,6 +3,7 @@
 #include "patchlight/solve/solve.h"
 
 #include "base/vectors.h"
+#include "solve/scattering.h"
 #include "transport/merged.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ Field squared_reflectance(const SolvedProblem& solved) {
   const RadiosityProblem& problem = solved.problem;
   const Eigen::ArrayXd reflected = area_norm(solved.solution.radiosity - problem.exitance, problem.area).square();
   const Eigen::ArrayXd inverse = (reflected > 0).select(reflected.inverse(), 0.0);
-  return scaled(problem.reflectance.square(), inverse);
+  return scaled(reflected_variance(problem.scattering, Field::Ones(problem.exitance.rows(), inverse.size())), inverse);
 }
 
 // w_i^2 rho_i^2 / (A_i ||B - E||_A^2)
@@ -80,8 +81,8 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const C
 Eigen::VectorXd importance(const RowTransport& transport, const RadiosityProblem& problem,
                            const Eigen::VectorXd& interest) {
   // With y = R psi it reads y = R interest + R F y.
-  const Field rho = problem.reflectance;
-  const RadiosityProblem adjoint{rho, rho.colwise() * interest.array(), problem.area};
+  const Field wanted = interest.array().replicate(1, problem.exitance.cols());
+  const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
   const Field psi = solve(transport, adjoint, {.relative_error = 0.05}).irradiance.colwise() + interest.array();
   return psi.rowwise().maxCoeff().matrix();
 }

@@ -121,7 +121,7 @@ std::string facts(const Scene& scene, const Comparison& comparison, const Proven
   json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}};
   json["patches"] = simulation.mesh.size();
   json["bands"] = simulation.problem.exitance.cols();
-  json["highest_reflectance"] = simulation.problem.reflectance.maxCoeff();
+  json["highest_reflectance"] = simulation.problem.scattering.reflectance.maxCoeff();
   json["closure"] = simulation.transport.closure;
   json["reference_relative_residual"] = comparison.reference_residual;
   json["spectral_radius"] = comparison.spectral_radius;

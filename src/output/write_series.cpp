@@ -41,7 +41,7 @@ std::string name_of_values(const Simulation& simulation, const std::vector<Itera
   std::uint32_t hash = hashed(2166136261U, provenance.command_line.data(), provenance.command_line.size());
   hash = hashed(hash, &provenance.exposure, sizeof provenance.exposure);
   for (const Point& vertex : simulation.mesh.vertices) hash = hashed(hash, vertex.data(), 3 * sizeof(double));
-  for (const Field* field : {&simulation.problem.reflectance, &simulation.problem.exitance}) {
+  for (const Field* field : {&simulation.problem.scattering.reflectance, &simulation.problem.exitance}) {
     hash = hashed(hash, field->data(), static_cast<std::size_t>(field->size()) * sizeof(double));
   }
   for (const IterateIrradiance& iterate : iterates) {
@@ -91,7 +91,7 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Iteration& iterati
 
 void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field& irradiance, double exposure) {
   // B_k = E + rho o H_k, L_k = B_k / pi
-  const Field radiance = (problem.exitance + problem.reflectance * irradiance) / std::numbers::pi;
+  const Field radiance = radiosity_from(problem, irradiance) / std::numbers::pi;
   cells.AddArray(floats("radiance", radiance));
   cells.AddArray(floats("irradiance", irradiance));
   cells.AddArray(colours("rgb", tone_map(radiance, exposure)));

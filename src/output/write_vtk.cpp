@@ -50,7 +50,7 @@ void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
   }
   const ErrorBars& bars = *simulation.error_bars;
   const Field total = bars.total();
-  const Field per_irradiance = simulation.problem.reflectance / std::numbers::pi;  // dL = rho dH / pi
+  const Field per_irradiance = simulation.problem.scattering.reflectance / std::numbers::pi;  // dL = rho dH / pi
   cell_data.AddArray(floats("error_mesh", per_irradiance * bars.mesh));
   cell_data.AddArray(floats("error_form_factor", per_irradiance * bars.form_factor));
   cell_data.AddArray(floats("error_solver", per_irradiance * bars.solver));
@@ -77,7 +77,7 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   cell_data.AddArray(floats("indirect_irradiance", (H - H_direct).max(0.0)));
   add_errors(cell_data, simulation);
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
-  cell_data.AddArray(floats("reflectance", simulation.problem.reflectance));
+  cell_data.AddArray(floats("reflectance", simulation.problem.scattering.reflectance));
   cell_data.AddArray(floats("luminance", luminances));
   cell_data.AddArray(numbers<vtkFloatArray>("area", mesh.area));
   cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));

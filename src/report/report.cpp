@@ -42,7 +42,7 @@ std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& 
     of_material.area += area;
     of_material.emitted += area * simulation.problem.exitance.row(i);
     of_material.mean += area * irradiance.row(i);
-    of_material.absorbed += area * (1 - simulation.problem.reflectance.row(i)) * irradiance.row(i);
+    of_material.absorbed += area * (1 - simulation.problem.scattering.reflectance.row(i)) * irradiance.row(i);
     of_material.lowest = of_material.lowest.min(irradiance.row(i));
     of_material.highest = of_material.highest.max(irradiance.row(i));
   }
@@ -135,7 +135,7 @@ SolutionFacts solution_facts(const Simulation& simulation) {
           .trapped = solution.trapped,
           .patch_bound = solution.patch_bound,
           .history = solution.history,
-          .highest_reflectance = simulation.problem.reflectance.maxCoeff(),
+          .highest_reflectance = simulation.problem.scattering.reflectance.maxCoeff(),
           .stopped_by_rows = stopped_by_rows(simulation)};
 }
 

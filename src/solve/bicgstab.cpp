@@ -12,19 +12,19 @@ Solution bicgstab(Iterations iterations) {
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   Field B = problem.exitance;
   Field H = iterations.direct_irradiance();
-  Field r = problem.reflectance * H;
+  Field r = problem.scattering.reflect(H);
   const Field shadow = r;
   Field p = r;
   Eigen::ArrayXd rho = dot(shadow, r);
   for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     // v = (I - K) p, s = r - alpha v
     const Field Hp = iterations.apply(p);
-    const Field v = p - problem.reflectance * Hp;
+    const Field v = p - problem.scattering.reflect(Hp);
     const Eigen::ArrayXd alpha = quotient(rho, dot(shadow, v));
     const Field s = r - scaled(v, alpha);
     // t = (I - K) s, r = s - omega t
     const Field Hs = iterations.apply(s);
-    const Field t = s - problem.reflectance * Hs;
+    const Field t = s - problem.scattering.reflect(Hs);
     const Eigen::ArrayXd omega = quotient(dot(t, s), dot(t, t));
     B += scaled(p, alpha) + scaled(s, omega);
     H += scaled(Hp, alpha) + scaled(Hs, omega);

@@ -26,7 +26,7 @@ Eigen::ArrayXd contraction_of(const TransportOperator& transport, const Radiosit
   // ||K||_A <= rho_max max_i sum_j F_ij, as A^(1/2) F A^(-1/2) is symmetric and similar to F.
   const double row_sum = options.largest_row_sum ? *options.largest_row_sum
                                                  : highest(transport.apply(Field::Ones(transport.size(), 1)))[0];
-  const Eigen::ArrayXd reflected = highest(problem.reflectance);
+  const Eigen::ArrayXd reflected = problem.scattering.norm_bound();
   return (reflected > 0).select(reflected * row_sum, 0.0);
 }
 
@@ -35,9 +35,9 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
   // r.
   constexpr int most_iterations = 60;
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
-  const RadiosityProblem glowing{problem.reflectance, ones, problem.area};
+  const RadiosityProblem glowing{problem.scattering, ones, problem.area};
   const auto [v, applications] = glowing_radiosity(transport, glowing, most_iterations);
-  PatchWeights weights{v, v - problem.reflectance * transport.apply(v), applications + 1};
+  PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), applications + 1};
   if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
   return weights;
 }
@@ -47,14 +47,15 @@ Field patch_errors(const PatchWeights& weights, const FieldView& residual) {
 }
 
 std::string trapped_light(const TransportOperator& transport, const RadiosityProblem& problem) {
-  if ((highest(problem.reflectance) < 1).all()) return {};
+  if ((problem.scattering.norm_bound() < 1).all()) return {};
   // 1. Patches that lose light: they absorb, or some leaves.
   const Field row_sum = transport.apply(Field::Ones(transport.size(), 1));
   const auto keeps = [&](Eigen::Index i) { return row_sum(i, 0) >= 1 - least_escape; };
+  const Field reflected = problem.scattering.reflect(Field::Ones(problem.exitance.rows(), problem.exitance.cols()));
   Field loses = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
   for (Eigen::Index i = 0; i < loses.rows(); ++i) {
     for (Eigen::Index band = 0; band < loses.cols(); ++band) {
-      loses(i, band) = problem.reflectance(i, band) < 1 || !keeps(i) ? 1 : 0;
+      loses(i, band) = reflected(i, band) < 1 || !keeps(i) ? 1 : 0;
     }
   }
 

@@ -57,16 +57,15 @@ Field CoarseTransport::ambient(const Field& unshot) const {
   const double even = arrived_share / static_cast<double>(patches_);
   const Eigen::VectorXd weight = (area_.array() + mean_area).max(arrived_.array() + mean_area * arrived_share).matrix();
 
+  const Field sent_back = problem_.scattering.reflect(problem_.area.array().replicate(1, unshot.cols()));  // A_i rho_i
   Field irradiance = Field::Zero(unshot.rows(), unshot.cols());
   for (Eigen::Index band = 0; band < unshot.cols(); ++band) {
     // 2. Flux of group h by unit flux of group g: T_hg = sum_i A_i rho_i Q_ig over the patches i of h.
     Eigen::VectorXd U = Eigen::VectorXd::Zero(groups_);
     Eigen::MatrixXd T = Eigen::MatrixXd::Zero(groups_, groups_);
     for (Eigen::Index i = 0; i < patches_; ++i) {
-      const double area = problem_.area[i];
-      U[group_of(i)] += area * unshot(i, band);
-      T.row(group_of(i)) +=
-          area * problem_.reflectance(i, band) * (arriving_.row(i).cast<double>().array() + even).matrix();
+      U[group_of(i)] += problem_.area[i] * unshot(i, band);
+      T.row(group_of(i)) += sent_back(i, band) * (arriving_.row(i).cast<double>().array() + even).matrix();
     }
     T.array().rowwise() /= weight.array().transpose();
     if (T.colwise().sum().maxCoeff() >= 1) continue;

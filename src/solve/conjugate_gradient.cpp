@@ -1,5 +1,6 @@
 #include "base/vectors.h"
 #include "solve/krylov.h"
+#include "solve/scattering.h"
 
 #include <functional>
 #include <optional>
@@ -22,11 +23,10 @@ class ConjugateGradient {
   // Starts at w = 0, B = E.
   ConjugateGradient(const RadiosityProblem& problem, Apply apply, Field direct_irradiance)
       : apply_(std::move(apply)),
-        D_(problem.reflectance.sqrt().colwise() / problem.area.array().sqrt()),
-        T_(problem.reflectance.sqrt().colwise() * problem.area.array().sqrt()),
+        root_(problem.scattering, problem.area),
         B_(problem.exitance),
         H_(std::move(direct_irradiance)),
-        s_(T_ * H_) {}
+        s_(root_.of_irradiance(H_)) {}
 
   // Deflates the mode of constant irradiance, h = 1: z = R^1/2 A^1/2.
   void deflate();
@@ -38,8 +38,7 @@ class ConjugateGradient {
   void advance(const Field& radiosity, const Field& irradiance, const Field& image, const Eigen::ArrayXd& length);
 
   Apply apply_;
-  Field D_;  // R^1/2 A^-1/2: from w to radiosity
-  Field T_;  // R^1/2 A^1/2: from irradiance to w
+  SymmetricRoot root_;
   Field B_, H_;
   Field s_;  // residual of w
   Field p_;  // direction
@@ -54,11 +53,12 @@ void ConjugateGradient::advance(const Field& radiosity, const Field& irradiance,
 }
 
 void ConjugateGradient::deflate() {
-  const Field y = D_ * T_;
+  const Field& z = root_.of_even_irradiance();
+  const Field y = root_.radiosity_of(z);
   const Field Hy = apply_(y);
-  const Field image = T_ - T_ * Hy;
-  deflation_ = {T_, image, y, Hy, dot(T_, image)};
-  advance(y, Hy, image, quotient(dot(T_, s_), deflation_->energy));
+  const Field image = z - root_.of_irradiance(Hy);
+  deflation_ = {z, image, y, Hy, dot(z, image)};
+  advance(y, Hy, image, quotient(dot(z, s_), deflation_->energy));
 }
 
 void ConjugateGradient::step() {
@@ -68,9 +68,9 @@ void ConjugateGradient::step() {
     if (deflation_) p_ -= scaled(deflation_->z, quotient(dot(deflation_->image, s_), deflation_->energy));
   }
   // q = (I - G) p
-  const Field y = D_ * p_;
+  const Field y = root_.radiosity_of(p_);
   const Field Hy = apply_(y);
-  const Field q = p_ - T_ * Hy;
+  const Field q = p_ - root_.of_irradiance(Hy);
   advance(y, Hy, q, quotient(ss, dot(p_, q)));
   p_ = s_ + scaled(p_, quotient(dot(s_, s_), ss));
   if (deflation_) p_ -= scaled(deflation_->z, quotient(dot(deflation_->image, s_), deflation_->energy));
@@ -102,7 +102,7 @@ GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const Rad
   ConjugateGradient method(problem, apply, apply(problem.exitance));
   int k = 0;
   for (; k < max_iterations; ++k) {
-    const Field r = problem.exitance + problem.reflectance * method.irradiance() - method.radiosity();
+    const Field r = radiosity_from(problem, method.irradiance()) - method.radiosity();
     if ((highest(r) <= largest_residual).all()) break;
     method.step();
   }

@@ -1,6 +1,7 @@
 #include "solve/energy.h"
 
 #include "base/vectors.h"
+#include "solve/scattering.h"
 
 namespace patchlight {
 
@@ -14,7 +15,7 @@ EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& so
   balance.emitted = flux(problem.exitance);
   balance.arriving = Eigen::ArrayXd::Zero(balance.emitted.size());
   if (problem.direct_irradiance.size() > 0) balance.arriving = flux(problem.direct_irradiance);
-  balance.absorbed = flux((1 - problem.reflectance) * H);
+  balance.absorbed = flux(absorb(problem.scattering, H));
   balance.escaped = flux(B.colwise() * lost.escaped.array());
   balance.lost_at_backs = flux(B.colwise() * lost.at_backs.array());
   // What leaves a patch and arrives at no other, beyond the measured lost share.

@@ -30,7 +30,7 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
 // The next direction: (I - K) v_k, orthogonalised twice (modified Gram-Schmidt loses orthogonality in one pass).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
-  Field next = arnoldi.v.back() - problem.reflectance * irradiance;
+  Field next = arnoldi.v.back() - problem.scattering.reflect(irradiance);
   arnoldi.irradiance.push_back(std::move(irradiance));
   for (int pass = 0; pass < 2; ++pass) {
     for (Eigen::Index j = 0; j <= k; ++j) {

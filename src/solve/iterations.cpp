@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/vectors.h"
+#include "solve/scattering.h"
 #include "solve/spectral_radius.h"
 
 #include <algorithm>
@@ -24,14 +25,13 @@ double worse(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
 
 // The irradiance H for which an iterate is E + rho o H; F B where nothing is reflected.
 Field arrived(const RadiosityProblem& problem, const Iterate& iterate) {
-  return (problem.reflectance > 0)
-      .select((iterate.radiosity - problem.exitance) / problem.reflectance, iterate.irradiance);
+  return irradiance_behind(problem.scattering, iterate.radiosity - problem.exitance, iterate.irradiance);
 }
 
 }  // namespace
 
 Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance) {
-  Field residual = problem.exitance + problem.reflectance * irradiance - radiosity;
+  Field residual = radiosity_from(problem, irradiance) - radiosity;
   return {std::move(radiosity), std::move(irradiance), std::move(residual)};
 }
 
@@ -39,7 +39,7 @@ Iterations::Iterations(const TransportOperator& transport, const RadiosityProble
                        const SolverOptions& options, const Observer& observer)
     : transport_(transport), problem_(problem), options_(options), observer_(observer), start_(wall_seconds()) {
   emitted_ = problem.exitance;
-  if (problem.direct_irradiance.size() > 0) emitted_ -= problem.reflectance * problem.direct_irradiance;
+  if (problem.direct_irradiance.size() > 0) emitted_ -= problem.scattering.reflect(problem.direct_irradiance);
   bounds_.contraction = contraction_of(transport, problem, options);
   if (!options.largest_row_sum) count(1);
   if (!bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport, problem);
@@ -78,7 +78,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
   if (options_.reference) {
-    const RadiosityProblem of_emitted{problem_.reflectance, emitted_, problem_.area};
+    const RadiosityProblem of_emitted{problem_.scattering, emitted_, problem_.area};
     iteration.true_error = relative_error(*options_.reference, iterate.radiosity, of_emitted);
   }
   return iteration;
@@ -154,7 +154,7 @@ bool Iterations::record(Iterate iterate, int number, Residual residual) {
 Solution Iterations::finish() {
   Solution solution = std::move(solution_);
   solution.irradiance = last_.irradiance;
-  solution.radiosity = problem_.exitance + problem_.reflectance * last_.irradiance;
+  solution.radiosity = radiosity_from(problem_, last_.irradiance);
   solution.ambient = std::move(ambient_);
   if (!bounds_.weights && bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport_, problem_);
   if (!bounds_.weights) return solution;

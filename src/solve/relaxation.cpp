@@ -1,6 +1,7 @@
 #include "solve/relaxation.h"
 
 #include "base/vectors.h"
+#include "solve/scattering.h"
 
 #include <cassert>
 #include <cmath>
@@ -22,7 +23,7 @@ Relax relaxing(const RadiosityProblem& problem, double relaxation, Order order) 
       // The irradiance is by the old radiosities of these patches: add what those before have changed since.
       const Field H = patches.irradiance.row(r) + (patches.own_form_factors.row(r) * change.matrix()).array();
       change.row(r) =
-          relaxation * (problem.exitance.row(i) + problem.reflectance.row(i) * H - patches.radiosity.row(r));
+          relaxation * (problem.exitance.row(i) + reflect_at(problem.scattering, i, H) - patches.radiosity.row(r));
     }
     return patches.radiosity + change;
   };
@@ -53,7 +54,7 @@ Solution jacobi(Iterations iterations) {
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   Field H = iterations.direct_irradiance();
   for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
-    Field B = problem.exitance + problem.reflectance * H;
+    Field B = radiosity_from(problem, H);
     iterations.show_irradiance(std::move(H));
     H = iterations.apply(B);
     iterations.record(iterate_of(problem, std::move(B), H), k);
@@ -104,7 +105,7 @@ Solution chebyshev(Iterations iterations) {
     if (k == 2) omega = 1 / (1 - bound.square() / 2);
     if (k > 2) omega = 1 / (1 - bound.square() * omega / 4);
     // E + K B_k, between that and B_k-1
-    const Field next = before + scaled(problem.exitance + problem.reflectance * H - before, omega);
+    const Field next = before + scaled(radiosity_from(problem, H) - before, omega);
     before = std::move(B);
     B = next;
     H = iterations.apply(B);

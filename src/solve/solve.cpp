@@ -4,6 +4,7 @@
 #include "solve/iterations.h"
 #include "solve/krylov.h"
 #include "solve/relaxation.h"
+#include "solve/scattering.h"
 #include "solve/solved_bands.h"
 #include "solve/southwell.h"
 
@@ -126,11 +127,6 @@ const char* name_of(Solver solver) {
 
 bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
-Field source_radiosity(const RadiosityProblem& problem) {
-  if (problem.direct_irradiance.size() == 0) return problem.exitance;
-  return problem.exitance + problem.reflectance * problem.direct_irradiance;
-}
-
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { return inner_product(x, x, area).sqrt(); }
 
 double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem) {
@@ -148,15 +144,15 @@ double relative_error(const FieldView& reference, const FieldView& radiosity, co
 Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options,
                const Observer& observer) {
   assert(problem.exitance.rows() == static_cast<Eigen::Index>(transport.size()));
-  assert(problem.reflectance.rows() == problem.exitance.rows() &&
-         problem.reflectance.cols() == problem.exitance.cols());
+  assert(problem.scattering.reflectance.rows() == problem.exitance.rows() &&
+         problem.scattering.reflectance.cols() == problem.exitance.cols());
 
   // 1. Light that comes from no patch is a source where it is first reflected: B = S + rho o F B. Only the bands that
   //    need it.
-  const RadiosityProblem with_source{problem.reflectance, source_radiosity(problem), problem.area,
+  const RadiosityProblem with_source{problem.scattering, source_radiosity(problem), problem.area,
                                      problem.direct_irradiance};
   const SolvedBands bands = options.every_band ? all_bands(with_source) : solved_bands(with_source);
-  const RadiosityProblem needed{reduced(with_source.reflectance, bands), reduced(with_source.exitance, bands),
+  const RadiosityProblem needed{of_bands(with_source.scattering, bands.solved), reduced(with_source.exitance, bands),
                                 problem.area, reduced(problem.direct_irradiance, bands)};
   SolverOptions used = options;
   if (options.reference) used.reference = reduced(*options.reference, bands);

@@ -1,5 +1,7 @@
 #include "solve/solved_bands.h"
 
+#include "solve/scattering.h"
+
 #include <limits>
 #include <optional>
 
@@ -8,7 +10,7 @@ namespace {
 
 // The factor by which the lamps of band b are brighter than those of band a; nothing when there is no such factor.
 std::optional<double> factor_of(const RadiosityProblem& problem, Eigen::Index a, Eigen::Index b) {
-  if ((problem.reflectance.col(a) != problem.reflectance.col(b)).any()) return std::nullopt;
+  if (!same_in_bands(problem.scattering, a, b)) return std::nullopt;
   Eigen::Index brightest = 0;
   const double of_a = problem.exitance.col(a).maxCoeff(&brightest);
   const double factor = problem.exitance(brightest, b) / of_a;

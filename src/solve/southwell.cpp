@@ -11,12 +11,16 @@
 namespace patchlight {
 namespace {
 
+// The share of even irradiance that is reflected.
+Eigen::ArrayXd mean_reflectance_of(const RadiosityProblem& problem) {
+  const Field even = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
+  return area_sum(problem.scattering.reflect(even), problem.area) / total(problem.area);
+}
+
 // Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly:
 // sum_i A_i dB_i / sum_i A_i / (1 - mean rho). Cohen et al. 1988, section 3.2. What overshooting shoots beforehand.
-Field even_irradiance(const Field& unshot, const RadiosityProblem& problem) {
-  const double area = total(problem.area);
-  const Eigen::ArrayXd mean_unshot = area_sum(unshot, problem.area) / area;
-  const Eigen::ArrayXd mean_reflectance = area_sum(problem.reflectance, problem.area) / area;
+Field even_irradiance(const Field& unshot, const Eigen::VectorXd& area, const Eigen::ArrayXd& mean_reflectance) {
+  const Eigen::ArrayXd mean_unshot = area_sum(unshot, area) / total(area);
   return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0).transpose();
 }
 
@@ -47,10 +51,15 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
 
 // How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
 // best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
-Field over_relaxation(const RadiosityProblem& problem) {
+Field over_relaxation(const Eigen::ArrayXd& mean_reflectance) {
   constexpr double next_eigenvalue = 0.7;
-  const Eigen::ArrayXd mean_reflectance = area_sum(problem.reflectance, problem.area) / total(problem.area);
   return (2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt())).transpose();
+}
+
+// What is shot of what is unshot and of what is expected to come.
+Field with_expected(const Field& unshot, const RadiosityProblem& problem, const Eigen::ArrayXd& mean_reflectance) {
+  const Field even = even_irradiance(unshot, problem.area, mean_reflectance).replicate(unshot.rows(), 1);
+  return unshot.rowwise() * over_relaxation(mean_reflectance).row(0) + problem.scattering.reflect(even);
 }
 
 // How many shots there may be after the lamps'.
@@ -72,18 +81,16 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   Field H = lamps.irradiance;
   // With X the radiosity shot so far, B = E + K X: the residual of X, and what B lacks before one reflection, is
   // unshot.
-  Field unshot = problem.reflectance * H;
+  Field unshot = problem.scattering.reflect(H);
   iterations.show(coarse.ambient(unshot));
   if (iterations.start(std::move(lamps.irradiance))) return iterations.finish();
 
   const std::int64_t most = most_shots(iterations.options(), n, lamps.patches);
   std::int64_t next_record = 1;
-  const Field factor = over_relaxation(problem);
+  const Eigen::ArrayXd mean_reflectance = mean_reflectance_of(problem);
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
-    const Field waiting = shot == Shot::unshot
-                              ? unshot
-                              : Field(unshot.rowwise() * factor.row(0) +
-                                      problem.reflectance.rowwise() * even_irradiance(unshot, problem).row(0));
+    const Field overshot = shot == Shot::overshot ? with_expected(unshot, problem, mean_reflectance) : Field();
+    const Field& waiting = shot == Shot::overshot ? overshot : unshot;
     const Eigen::Index source = coarse.next_source(waiting);
     const Field shot_radiosity = waiting.row(source);
     // Nothing is left to shoot: what there is is the solution.
@@ -93,14 +100,14 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
     const Field arriving =
         is_done ? Field::Zero(n, shot_radiosity.cols()) : transport.shoot({index, index + 1}, shot_radiosity);
     unshot.row(source) -= shot_radiosity;
-    unshot += problem.reflectance * arriving;
+    unshot += problem.scattering.reflect(arriving);
     H += arriving;
     coarse.learn(source, shot_radiosity, arriving);
     iterations.count(1.0 / static_cast<double>(n));
     iterations.keep_observer();
     if (shots < next_record && shots < most) continue;
     iterations.show(coarse.ambient(unshot));
-    iterations.record({problem.exitance + problem.reflectance * H, H, unshot}, static_cast<int>(shots));
+    iterations.record({radiosity_from(problem, H), H, unshot}, static_cast<int>(shots));
     // Ever longer pauses, up to an eighth of all patches.
     next_record = shots + std::clamp<std::int64_t>(shots / 10, 1, std::max<Eigen::Index>(1, n / 8));
   }

@@ -2,6 +2,7 @@
 
 #include "base/vectors.h"
 #include "mesh/average.h"
+#include "solve/scattering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ Reference reference_from(const Simulation& finer) {
 
 std::optional<Spectrum> furnace_radiosity(const RadiosityProblem& problem) {
   constexpr double tolerance = 1e-9;
-  const Field absorbed = 1 - problem.reflectance;
+  const Field absorbed = absorb(problem.scattering, Field::Ones(problem.exitance.rows(), problem.exitance.cols()));
   const Eigen::ArrayXd absorbed_sum = sum_over_patches(absorbed);
   const Eigen::ArrayXd exitance_sum = sum_over_patches(problem.exitance);
   Spectrum c = Spectrum::Zero(absorbed.cols());

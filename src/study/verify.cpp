@@ -4,6 +4,7 @@
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "effects.h"
+#include "solve/scattering.h"
 #include "spaces.h"
 #include "study/left_out.h"
 
@@ -161,11 +162,7 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
   const Spectrum mean = area_sum(solution.irradiance, area).transpose() / total(area);
   Field bar = relative * solution.irradiance.max(mean.replicate(solution.irradiance.rows(), 1));
   if (solution.error.size() == 0) return bar;
-  // B = E + rho o H: |dB_i| = rho_i |dH_i|.
-  const Field& rho = simulation.problem.reflectance;
-  const Field of_solver = (rho > 0).select(solution.error / rho, 0.0);
-  const Spectrum largest = highest(of_solver).transpose();
-  return bar + (rho > 0).select(of_solver, largest.replicate(rho.rows(), 1));
+  return bar + irradiance_errors(simulation.problem.scattering, solution.error);
 }
 
 Field deviations(const Verification& verification) {

@@ -46,7 +46,7 @@ Field display_radiance(const Simulation& simulation) {
   Field radiosity = solution.radiosity;
   if (!solution.converged && solution.ambient.size() > 0) {
     // B + rho H_ambient: Cohen et al. 1988, the ambient term
-    radiosity += simulation.problem.reflectance * solution.ambient;
+    radiosity += simulation.problem.scattering.reflect(solution.ambient);
   }
   return radiosity / std::numbers::pi;  // L = B / pi
 }

@@ -109,8 +109,8 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
     const double now = cpu_seconds();
     const Field H = *progress.irradiance + *progress.ambient;
     all.push_back({progress.iteration->work, now - begin - measuring,
-                   error_of(problem.exitance + problem.reflectance * H, reference),
-                   error_of(problem.exitance + problem.reflectance * *progress.irradiance, reference)});
+                   error_of(problem.exitance + problem.scattering.reflectance * H, reference),
+                   error_of(problem.exitance + problem.scattering.reflectance * *progress.irradiance, reference)});
     measuring += cpu_seconds() - now;
     return true;
   });

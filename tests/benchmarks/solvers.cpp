@@ -134,8 +134,8 @@ void print_factors(Assembled test_room, Assembled two_rooms) {
   std::printf("best of the grid: omega, iterations |\n|---|---|---|---|---|\n");
   print_factors("two rooms", "their own", two_rooms);
   for (const char* reflectance : {"0.5", "0.8", "0.95", "0.99"}) {
-    test_room.problem.reflectance.setConstant(std::stod(reflectance));
-    two_rooms.problem.reflectance.setConstant(std::stod(reflectance));
+    test_room.problem.scattering.reflectance.setConstant(std::stod(reflectance));
+    two_rooms.problem.scattering.reflectance.setConstant(std::stod(reflectance));
     print_factors("test room", reflectance, test_room);
     print_factors("two rooms", reflectance, two_rooms);
   }
@@ -146,7 +146,7 @@ void print_tables(const std::string& two_rooms) {
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> cells;
   for (const char* reflectance : {"0.5", "0.8", "0.95", "0.99", "0.999"}) {
-    room.problem.reflectance.setConstant(std::stod(reflectance));
+    room.problem.scattering.reflectance.setConstant(std::stod(reflectance));
     std::printf("### Test room, reflectance %s\n\n", reflectance);
     names.push_back(std::string("*rho* ") + reflectance);
     cells.push_back(print_table(room));

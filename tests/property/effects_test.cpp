@@ -80,7 +80,7 @@ TEST(Interreflection, SkippedLeavesTheLightOfTheLamps) {
   const Simulation direct = simulate(furnished_room(0.5), request);
   EXPECT_LT((direct.solution.irradiance - whole.solution.direct_irradiance).abs().maxCoeff(),
             1e-12 * whole.solution.direct_irradiance.maxCoeff());
-  const Field B = direct.problem.exitance + direct.problem.reflectance * direct.solution.irradiance;
+  const Field B = direct.problem.exitance + direct.problem.scattering.reflectance * direct.solution.irradiance;
   EXPECT_EQ((direct.solution.radiosity - B).abs().maxCoeff(), 0);
 }
 

@@ -22,9 +22,9 @@ double least_error_with_even_light(const Field& radiosity, const Simulation& ref
   const RadiosityProblem& problem = reference.problem;
   // For B + c rho the squares are least with c = <rho, B_ref - B> / <rho, rho>.
   const Field missing = reference.solution.radiosity - radiosity;
-  const Field weighted = problem.reflectance.colwise() * problem.area.array();
-  const Field c = (weighted * missing).colwise().sum() / (weighted * problem.reflectance).colwise().sum();
-  return error_of(radiosity + problem.reflectance.rowwise() * c.row(0), reference);
+  const Field weighted = problem.scattering.reflectance.colwise() * problem.area.array();
+  const Field c = (weighted * missing).colwise().sum() / (weighted * problem.scattering.reflectance).colwise().sum();
+  return error_of(radiosity + problem.scattering.reflectance.rowwise() * c.row(0), reference);
 }
 
 // A twentieth of the rows are below 20 % of error: that is what a first picture is asked for here. The Cornell box has
@@ -44,7 +44,7 @@ TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
     const Simulation early = simulate(scene, request);
     EXPECT_FALSE(early.solution.converged);
     EXPECT_LE(early.solution.history.back().work, 0.05);
-    const Field shown = early.solution.radiosity + early.problem.reflectance * early.solution.ambient;
+    const Field shown = early.solution.radiosity + early.problem.scattering.reflectance * early.solution.ambient;
     EXPECT_LT(error_of(shown, reference), 0.2) << name_of(solver);
     EXPECT_GT(least_error_with_even_light(early.solution.radiosity, reference), 0.2) << name_of(solver);
   }

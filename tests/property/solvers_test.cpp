@@ -46,9 +46,9 @@ struct Case {
 // Two bands of different reflectances and lamps: neither is a copy of the other.
 Assembled in_two_bands(Assembled room, double second_reflectance) {
   const RadiosityProblem grey = room.problem;
-  Field reflectance(grey.reflectance.rows(), 2);
-  Field exitance = Field::Zero(grey.reflectance.rows(), 2);
-  reflectance << grey.reflectance, (grey.reflectance > 0).cast<double>() * second_reflectance;
+  Field reflectance(grey.scattering.reflectance.rows(), 2);
+  Field exitance = Field::Zero(grey.scattering.reflectance.rows(), 2);
+  reflectance << grey.scattering.reflectance, (grey.scattering.reflectance > 0).cast<double>() * second_reflectance;
   exitance.col(0) = grey.exitance.col(0);
   exitance(0, 1) = 3;
   room.problem = {reflectance, exitance, grey.area};
@@ -92,14 +92,14 @@ TEST_P(EverySolver, AgreesWithADenseSolveInFiveScenes) {
 TEST_P(EverySolver, FindsTheFurnace) {
   Assembled room = assembled(furnished_room(0.5), 0.5);
   ASSERT_TRUE(room.closed);
-  const Eigen::Index n = room.problem.reflectance.rows();
+  const Eigen::Index n = room.problem.scattering.reflectance.rows();
   Field mixed(n, 1);
   // From 0 to 1: some patches emit nothing.
   for (Eigen::Index i = 0; i < n; ++i) mixed(i, 0) = 0.1 * static_cast<double>(i % 11);
   std::vector<Field> reflectances{mixed};
   for (const double uniform : {0.0, 0.3, 0.9}) reflectances.push_back(Field::Constant(n, 1, uniform));
   for (const Field& reflectance : reflectances) {
-    room.problem.reflectance = reflectance;
+    room.problem.scattering.reflectance = reflectance;
     room.problem.exitance = 1 - reflectance;
     // A patch's error is at most sqrt(sum A / A_i) times that of the norm: less than 100 times.
     const Solution solution =
@@ -130,7 +130,7 @@ TEST(ConjugateGradients, NeedFewApplicationsForAnyReflectance) {
   ASSERT_TRUE(room.closed);
   ASSERT_NEAR(room.mesh.size(), 2228, 50);
   for (const double reflectance : {0.5, 0.8, 0.95, 0.99, 0.999}) {
-    room.problem.reflectance.setConstant(reflectance);
+    room.problem.scattering.reflectance.setConstant(reflectance);
     const Field exact = reference(room);
     // Counted are also those for the row sums, the light of the lamps and the last residual.
     const Solution met = solve(*room.transport, room.problem, {.relative_error = 1e-6, .reference = exact});
@@ -149,7 +149,7 @@ TEST(Jacobi, ConvergesAtTheSpectralRadius) {
   Assembled room = assembled(test_room(0.8), test_room_edge);
   // The floor and what stands low is darker: the mode is not constant, its eigenvalue none of the reflectances.
   for (PatchIndex i = 0; i < room.mesh.size(); ++i) {
-    if (room.mesh.centroid[i].z() < 1) room.problem.reflectance(i, 0) = 0.3;
+    if (room.mesh.centroid[i].z() < 1) room.problem.scattering.reflectance(i, 0) = 0.3;
   }
   const Field exact = reference(room);
   const Solution solution =
@@ -185,7 +185,7 @@ TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
 TEST(SuccessiveOverRelaxation, EstimatesABestFactor) {
   Assembled room = assembled(test_room(0.8), test_room_edge);
   for (const double reflectance : {0.5, 0.8, 0.95}) {
-    room.problem.reflectance.setConstant(reflectance);
+    room.problem.scattering.reflectance.setConstant(reflectance);
     const Field exact = reference(room);
     const auto iterations = [&](std::optional<double> factor) {
       const Solution solution =
@@ -218,7 +218,7 @@ TEST(Overshooting, SavesMostShots) {
     return work(room, room.problem, Solver::progressive) / work(room, room.problem, Solver::overshooting);
   };
   EXPECT_GT(saving(), 2);
-  room.problem.reflectance.setConstant(0.8);
+  room.problem.scattering.reflectance.setConstant(0.8);
   EXPECT_GT(saving(), 5);
 }
 
@@ -226,7 +226,7 @@ TEST(Overshooting, SavesMostShots) {
 // who shoots, it would need three quarters more shots than without overshooting.
 TEST(Overshooting, SavesShotsInColour) {
   const Assembled room = assembled(read_scene({mesh_folder() / "two_rooms.obj"}), 0.5);
-  ASSERT_EQ(room.problem.reflectance.cols(), 3);
+  ASSERT_EQ(room.problem.scattering.reflectance.cols(), 3);
   EXPECT_LT(work(room, room.problem, Solver::overshooting), 0.75 * work(room, room.problem, Solver::progressive));
 }
 

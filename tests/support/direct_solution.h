@@ -15,7 +15,7 @@ inline Field direct_solution(const TransportOperator& transport, const Radiosity
   Field B(n, problem.exitance.cols());
   for (Eigen::Index band = 0; band < B.cols(); ++band) {
     const Eigen::MatrixXd system =
-        Eigen::MatrixXd::Identity(n, n) - problem.reflectance.col(band).matrix().asDiagonal() * F;
+        Eigen::MatrixXd::Identity(n, n) - problem.scattering.reflectance.col(band).matrix().asDiagonal() * F;
     B.col(band) = system.partialPivLu().solve(problem.exitance.col(band).matrix()).array();
   }
   return B;

@@ -42,7 +42,7 @@ inline TrueError error_against(const FinerReference& reference, const Simulation
     if (share(i, 0) < hardly || problem.area[i] < hardly * area[i]) error.of_patches.row(i).setZero();
   }
   const Eigen::ArrayXd reflected = area_norm(simulation.solution.radiosity - problem.exitance, problem.area);
-  error.relative = (area_norm(problem.reflectance * error.of_patches, problem.area) / reflected).maxCoeff();
+  error.relative = (area_norm(problem.scattering.reflectance * error.of_patches, problem.area) / reflected).maxCoeff();
   return error;
 }
 

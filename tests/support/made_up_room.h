@@ -34,7 +34,7 @@ inline Room made_up(PatchIndex n, double reflectance, double openness = 1) {
   // Two lamps of different colour; the third band has no light at all; one patch is black.
   problem.exitance(1, 0) = 5;
   problem.exitance(n - 1, 1) = 2;
-  problem.reflectance.row(2) = 0;
+  problem.scattering.reflectance.row(2) = 0;
   return {dense_transport(keep_exchange_areas(std::move(S), "test"), area), std::move(problem)};
 }
 

@@ -10,15 +10,30 @@
 
 namespace patchlight {
 
-/// B = E + rho o H, H = F B + H_direct: one row per patch, one column per band.
+/// R of B = E + R H: how patches scatter the light that arrives. R is diagonal: each reflects by itself, diffusely.
+struct Scattering {
+  Field reflectance;  ///< rho, in [0, 1]: one row per patch, one column per band
+
+  /// R H: the radiosity by an irradiance, both in W/m^2.
+  Field reflect(const FieldView& irradiance) const;
+  /// The adjoint of R in the inner product sum_i A_i x_i y_i, applied to a field.
+  Field adjoint(const FieldView& radiosity) const;
+  /// Per band a bound on ||R H||_A / ||H||_A.
+  Eigen::ArrayXd norm_bound() const;
+};
+
+/// B = E + R H, H = F B + H_direct: one row per patch, one column per band.
 struct RadiosityProblem {
-  Field reflectance;          ///< rho, in [0, 1]
+  Scattering scattering;      ///< R
   Field exitance;             ///< E, W/m^2
   Eigen::VectorXd area;       ///< m^2, the exposed part of each patch
   Field direct_irradiance{};  ///< H_direct, W/m^2: by light that comes from no patch; empty: none
 };
 
-/// What patches send out before any of it has come from another patch: E + rho o H_direct, W/m^2.
+/// B = E + R H for any irradiance H, W/m^2.
+Field radiosity_from(const RadiosityProblem& problem, const FieldView& irradiance);
+
+/// What patches send out before any of it has come from another patch: E + R H_direct, W/m^2.
 Field source_radiosity(const RadiosityProblem& problem);
 
 /// The light that a solver has found, and how good it is.

@@ -93,7 +93,7 @@ TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
   const Eigen::ArrayXd w = weight.array().square() / problem.area.array();
   double sum = 0;
   for (Eigen::Index band = 0; band < B.cols(); ++band)
-    sum += (w * problem.reflectance.col(band).square() * expected.col(band)).sum() / reflected[band];
+    sum += (w * problem.scattering.reflectance.col(band).square() * expected.col(band)).sum() / reflected[band];
   EXPECT_GT(sum, 0);
   EXPECT_NEAR(noise.sum() / sum, 1, 1e-12);
 }

@@ -94,14 +94,14 @@ TEST(Importance, IsReciprocal) {
   constexpr PatchIndex size = 60;
   test::Room room = test::made_up(size, 0.9);
   RadiosityProblem& problem = room.problem;
-  problem.reflectance = Field::Constant(size, 1, 0.9);
+  problem.scattering.reflectance = Field::Constant(size, 1, 0.9);
   problem.exitance = Field(size, 1);
   Eigen::VectorXd interest(size);
   for (PatchIndex i = 0; i < size; ++i) {
     problem.exitance(i, 0) = 1 + std::sin(3.0 * i);
     interest[i] = i % 3 == 0 ? 1 : 0;
-    if (i % 3 == 0) problem.reflectance(i, 0) = 0.3;
-    if (i % 3 == 1) problem.reflectance(i, 0) = 0.1;
+    if (i % 3 == 0) problem.scattering.reflectance(i, 0) = 0.3;
+    if (i % 3 == 1) problem.scattering.reflectance(i, 0) = 0.1;
   }
   const Eigen::VectorXd psi = importance(*room.transport, problem, interest);
   const Eigen::ArrayXd A = problem.area.array();
@@ -109,7 +109,8 @@ TEST(Importance, IsReciprocal) {
   const Eigen::ArrayXd E = problem.exitance.col(0);
   const double seen = (A * interest.array() * B).sum();
   const double by_importance = (A * psi.array() * E).sum();
-  const double off = 0.06 * area_norm(problem.reflectance.colwise() * (psi - interest).array(), problem.area)[0];
+  const double off =
+      0.06 * area_norm(problem.scattering.reflectance.colwise() * (psi - interest).array(), problem.area)[0];
   const double tolerance = off * area_norm(problem.exitance, problem.area)[0];
   EXPECT_NEAR(by_importance, seen, tolerance);
   // What is reflected is many times the tolerance.

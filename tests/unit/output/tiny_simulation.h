@@ -40,17 +40,17 @@ inline Simulation tiny_simulation() {
 
   RadiosityProblem& problem = simulation.problem;
   problem.area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), 3);
-  problem.reflectance.resize(3, 3);
+  problem.scattering.reflectance.resize(3, 3);
   problem.exitance.resize(3, 3);
   for (PatchIndex i = 0; i < 3; ++i) {
-    problem.reflectance.row(i) = scene.materials[mesh.material[i]].reflectance;
+    problem.scattering.reflectance.row(i) = scene.materials[mesh.material[i]].reflectance;
     problem.exitance.row(i) = scene.materials[mesh.material[i]].exitance;
   }
   Solution& solution = simulation.solution;
   solution.irradiance.resize(3, 3);
   solution.irradiance << 1, 2, 3, 0.1, 0.7, 5, 1e-3, 40, 6;
   solution.direct_irradiance = 0.25 * solution.irradiance;
-  solution.radiosity = problem.exitance + problem.reflectance * solution.irradiance;
+  solution.radiosity = problem.exitance + problem.scattering.reflectance * solution.irradiance;
   solution.history = {{0, 1, std::numeric_limits<double>::infinity(), 0, 1}, {1, 1e-7, 2e-7, 0.25, 2}};
   solution.converged = true;
 

@@ -67,7 +67,8 @@ TEST(WriteSeries, HoldsTheIteratesFromTheLampsOn) {
     EXPECT_EQ(polygons->GetFieldData()->GetArray("exposure")->GetComponent(0, 0), exposure);
     // B_k = E + rho o H_k
     const Field H = iterates()[k].cast<double>();
-    const Field radiance = (simulation.problem.exitance + simulation.problem.reflectance * H) / std::numbers::pi;
+    const Field radiance =
+        (simulation.problem.exitance + simulation.problem.scattering.reflectance * H) / std::numbers::pi;
     const auto colours = tone_map(radiance, exposure);
     for (int i = 0; i < 3; ++i) {
       for (int c = 0; c < 3; ++c) {

@@ -97,7 +97,7 @@ TEST(WriteVtk, ErrorBarsAreOfTheRadiance) {
   const auto polygons = written_and_read(tiny_scene(), simulation);
   vtkCellData* const cells = polygons->GetCellData();
   const ErrorBars& bars = *simulation.error_bars;
-  const Field factor = simulation.problem.reflectance / std::numbers::pi;
+  const Field factor = simulation.problem.scattering.reflectance / std::numbers::pi;
   expect_floats(cells->GetArray("error_mesh"), factor * bars.mesh);
   expect_floats(cells->GetArray("error_form_factor"), factor * bars.form_factor);
   expect_floats(cells->GetArray("error_solver"), factor * bars.solver);
@@ -152,7 +152,7 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("direct_irradiance"), simulation.solution.direct_irradiance);
   expect_floats(cells->GetArray("indirect_irradiance"), 0.75 * simulation.solution.irradiance);
   expect_floats(cells->GetArray("exitance"), simulation.problem.exitance);
-  expect_floats(cells->GetArray("reflectance"), simulation.problem.reflectance);
+  expect_floats(cells->GetArray("reflectance"), simulation.problem.scattering.reflectance);
   expect_floats(cells->GetArray("luminance"), luminances);
   expect_floats(cells->GetArray("area"), simulation.problem.area);
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
@@ -213,8 +213,9 @@ TEST(WriteVtk, TakesAnyNumberOfBands) {
     material.reflectance = material.reflectance.head(2).eval();
     material.exitance = material.exitance.head(2).eval();
   }
-  for (Field* field : {&simulation.problem.reflectance, &simulation.problem.exitance, &simulation.solution.irradiance,
-                       &simulation.solution.direct_irradiance, &simulation.solution.radiosity}) {
+  for (Field* field :
+       {&simulation.problem.scattering.reflectance, &simulation.problem.exitance, &simulation.solution.irradiance,
+        &simulation.solution.direct_irradiance, &simulation.solution.radiosity}) {
     *field = field->leftCols(2).eval();
   }
   const auto polygons = written_and_read(scene, simulation);

@@ -25,7 +25,7 @@ Sphere sphere(Eigen::Index n, double arrives) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto x = static_cast<double>(i);
     sphere.problem.area[i] = 1.5 + std::sin(1.7 * x);
-    sphere.problem.reflectance.row(i) << 0.5 + 0.4 * std::sin(0.3 * x), 0.3 + 0.2 * std::cos(x);
+    sphere.problem.scattering.reflectance.row(i) << 0.5 + 0.4 * std::sin(0.3 * x), 0.3 + 0.2 * std::cos(x);
   }
   return sphere;
 }
@@ -53,7 +53,8 @@ TEST(CoarseTransport, IsExactInAnIntegratingSphereAfterOneRow) {
       };
       ASSERT_EQ(ambient.rows(), n);
       for (Eigen::Index band = 0; band < 2; ++band) {
-        const double expected = arrives * mean(unshot, band) / (1 - arrives * mean(in.problem.reflectance, band));
+        const double expected =
+            arrives * mean(unshot, band) / (1 - arrives * mean(in.problem.scattering.reflectance, band));
         EXPECT_NEAR(ambient.col(band).minCoeff(), expected, 1e-6 * expected);
         EXPECT_NEAR(ambient.col(band).maxCoeff(), expected, 1e-6 * expected);
       }
@@ -73,7 +74,7 @@ TEST(CoarseTransport, MakesNoLightFromRowsThatAreTooLarge) {
   for (Eigen::Index band = 0; band < 2; ++band) {
     const double flux = (unshot.col(band) * in.problem.area.array()).sum();
     const double arriving = (ambient.col(band) * in.problem.area.array()).sum();
-    EXPECT_LE(arriving, flux / (1 - in.problem.reflectance.col(band).maxCoeff()));
+    EXPECT_LE(arriving, flux / (1 - in.problem.scattering.reflectance.col(band).maxCoeff()));
     EXPECT_GT(arriving, flux);
   }
 }
@@ -81,7 +82,7 @@ TEST(CoarseTransport, MakesNoLightFromRowsThatAreTooLarge) {
 // No light is ever lost: there is no such irradiance, and none is shown.
 TEST(CoarseTransport, ShowsNothingWhereLightIsNeverLost) {
   Sphere in = sphere(100, 1);
-  in.problem.reflectance.col(0).setOnes();
+  in.problem.scattering.reflectance.col(0).setOnes();
   CoarseTransport coarse(in.problem);
   Field flash(1, 2);
   flash << 1, 1;

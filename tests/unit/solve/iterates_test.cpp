@@ -25,7 +25,7 @@ std::unique_ptr<RowTransport> closed_transport() {
 
 RadiosityProblem lamp_and_walls() {
   RadiosityProblem problem{Field::Constant(4, 2, 0.5), Field::Zero(4, 2), Eigen::Vector4d(1, 1.5, 1, 1)};
-  problem.reflectance.row(0).setZero();
+  problem.scattering.reflectance.row(0).setZero();
   problem.exitance.row(0) << 8, 4;
   return problem;
 }
@@ -101,7 +101,7 @@ TEST(Jacobi, IterateKIsBounceK) {
   ASSERT_GT(run.irradiance.size(), 3U);
   EXPECT_TRUE((run.irradiance[1] == run.solution.direct_irradiance).all());
   for (std::size_t k = 1; k < run.irradiance.size(); ++k) {
-    const Field expected = transport->apply(problem.exitance + problem.reflectance * run.irradiance[k - 1]);
+    const Field expected = transport->apply(problem.exitance + problem.scattering.reflectance * run.irradiance[k - 1]);
     EXPECT_TRUE((run.irradiance[k] == expected).all()) << k;
   }
 }

@@ -30,7 +30,7 @@ TEST(Jacobi, IterationKAddsBounceK) {
   Field bounce = room.problem.exitance;
   Field sum = bounce;
   for (int k = 1; k <= 4; ++k) {
-    bounce = room.problem.reflectance * room.transport->apply(bounce);
+    bounce = room.problem.scattering.reflectance * room.transport->apply(bounce);
     sum += bounce;
     // Iterate k - 1 is measured in iteration k - 1 and handed out one bounce on.
     const Solution solution = solve(*room.transport, room.problem,
@@ -58,7 +58,7 @@ TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
   const Field exact = direct_solution(*room.transport, room.problem);
   const Solution early = solve(*room.transport, room.problem,
                                {.solver = Solver::progressive, .relative_error = 1e-15, .max_iterations = 0});
-  const Field shown = early.radiosity + room.problem.reflectance * early.ambient;
+  const Field shown = early.radiosity + room.problem.scattering.reflectance * early.ambient;
   const double without = area_norm(exact - early.radiosity, room.problem.area)[0];
   const double with = area_norm(exact - shown, room.problem.area)[0];
   EXPECT_LT(with, 0.5 * without);

@@ -77,7 +77,7 @@ TEST_P(EverySolver, NonConvergenceIsAnAnswer) {
 TEST_P(EverySolver, SaysThatASystemIsSingularBeforeIterating) {
   // rho = 1 in a closed scene: light is emitted and never absorbed.
   Room room = made_up(100, 1);
-  room.problem.reflectance.setOnes();
+  room.problem.scattering.reflectance.setOnes();
   const Solution solution = solve(*room.transport, room.problem, {.solver = GetParam()});
   EXPECT_FALSE(solution.converged);
   EXPECT_FALSE(solution.trapped.empty());
@@ -89,8 +89,8 @@ TEST_P(EverySolver, SaysThatASystemIsSingularBeforeIterating) {
 // One patch that absorbs makes it regular, however little.
 TEST_P(EverySolver, OneAbsorbingPatchIsEnough) {
   Room room = made_up(100, 1);
-  room.problem.reflectance.setOnes();
-  room.problem.reflectance.row(7).setConstant(0.5);
+  room.problem.scattering.reflectance.setOnes();
+  room.problem.scattering.reflectance.row(7).setConstant(0.5);
   const Solution solution =
       solve(*room.transport, room.problem, {.solver = GetParam(), .relative_error = 1e-5, .max_iterations = 20000});
   ASSERT_TRUE(solution.converged);
@@ -140,7 +140,7 @@ TEST_P(EverySolver, BandsOfOneColourHaveOneSolution) {
 // rho = 1 with kappa = 1 / 2, as half of the light leaves.
 TEST_P(EverySolver, SolvesPerfectReflectionInAnOpenScene) {
   Room room = made_up(100, 1, 2);
-  room.problem.reflectance.setOnes();
+  room.problem.scattering.reflectance.setOnes();
   const Solution solution =
       solve(*room.transport, room.problem, {.solver = GetParam(), .relative_error = 1e-9, .max_iterations = 1000});
   ASSERT_TRUE(solution.converged);
@@ -158,8 +158,9 @@ TEST_P(EverySolver, DivergenceIsNeverConvergence) {
   // Krylov methods may solve this system, too; what is handed out as a solution is one.
   EXPECT_TRUE(solution.radiosity.allFinite());
   if (!solution.converged) return;
-  const Field residual =
-      room.problem.exitance + room.problem.reflectance * room.transport->apply(solution.radiosity) - solution.radiosity;
+  const Field residual = room.problem.exitance +
+                         room.problem.scattering.reflectance * room.transport->apply(solution.radiosity) -
+                         solution.radiosity;
   EXPECT_LT(residual.abs().maxCoeff(), 1e-3);
 }
 
@@ -203,9 +204,10 @@ TEST_P(EverySolver, LightFromNoPatchIsASourceWhereItIsReflected) {
   EXPECT_LT((solution.irradiance - expected.irradiance - room.problem.direct_irradiance).abs().maxCoeff(), 1e-7 * size);
   const Field straight = room.transport->apply(room.problem.exitance) + room.problem.direct_irradiance;
   EXPECT_LT((solution.direct_irradiance - straight).abs().maxCoeff(), 1e-12 * size);
-  EXPECT_LT(
-      (solution.radiosity - room.problem.exitance - room.problem.reflectance * solution.irradiance).abs().maxCoeff(),
-      1e-12 * size);
+  EXPECT_LT((solution.radiosity - room.problem.exitance - room.problem.scattering.reflectance * solution.irradiance)
+                .abs()
+                .maxCoeff(),
+            1e-12 * size);
 }
 
 TEST_P(EverySolver, TellsTheObserverAllOfTheIrradiance) {
@@ -220,7 +222,7 @@ TEST_P(EverySolver, TellsTheObserverAllOfTheIrradiance) {
     return true;
   });
   // B_k = E + rho o H_k: the last one is the solution where something is reflected.
-  const Field off = room.problem.exitance + room.problem.reflectance * last - solution.radiosity;
+  const Field off = room.problem.exitance + room.problem.scattering.reflectance * last - solution.radiosity;
   EXPECT_LT(off.abs().maxCoeff(), 1e-4 * solution.radiosity.maxCoeff());
 }
 

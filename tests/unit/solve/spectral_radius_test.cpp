@@ -25,9 +25,9 @@ ExchangeAreas made_up() {
 // Half of the patches dark, half bright; the third band reflects nothing.
 RadiosityProblem problem_in(const Eigen::VectorXd& area) {
   RadiosityProblem problem{Field::Constant(size, 3, 0.9), Field::Zero(size, 3), area};
-  problem.reflectance.topRows(size / 2) = 0.2;
-  problem.reflectance.col(1) = 0.5;
-  problem.reflectance.col(2) = 0;
+  problem.scattering.reflectance.topRows(size / 2) = 0.2;
+  problem.scattering.reflectance.col(1) = 0.5;
+  problem.scattering.reflectance.col(2) = 0;
   return problem;
 }
 
@@ -40,7 +40,7 @@ TEST(SpectralRadius, IsThatOfADenseEigensolver) {
 
   const Eigen::MatrixXd F = transport->apply(Field(Eigen::MatrixXd::Identity(size, size))).matrix();
   for (Eigen::Index band = 0; band < 3; ++band) {
-    const Eigen::MatrixXd K = problem.reflectance.col(band).matrix().asDiagonal() * F;
+    const Eigen::MatrixXd K = problem.scattering.reflectance.col(band).matrix().asDiagonal() * F;
     EXPECT_NEAR(radius[band], K.eigenvalues().cwiseAbs().maxCoeff(), 1e-12) << band;
   }
 }
@@ -69,7 +69,7 @@ TEST(SpectralRadius, OfTwoPlatesHasEigenvaluesOfBothSigns) {
   S.set(0, 1, 1);
   const auto transport = dense_transport(keep_exchange_areas(std::move(S), "test"), Eigen::Vector2d(1, 1));
   RadiosityProblem problem{Field(2, 1), Field::Zero(2, 1), Eigen::Vector2d(1, 1)};
-  problem.reflectance << 0.2, 0.8;
+  problem.scattering.reflectance << 0.2, 0.8;
   EXPECT_NEAR(spectral_radius(*transport, problem, 2)[0], 0.4, 1e-14);
 }
 

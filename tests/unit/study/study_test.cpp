@@ -26,7 +26,7 @@ TEST(Furnace, IsSeenByItsMaterials) {
   RadiosityProblem problem{Field::Constant(3, 1, 0.25), Field::Constant(3, 1, 1.5), Eigen::Vector3d(1, 2, 3)};
   ASSERT_TRUE(furnace_radiosity(problem));
   EXPECT_DOUBLE_EQ((*furnace_radiosity(problem))[0], 2);
-  problem.reflectance(1, 0) = 0.75;
+  problem.scattering.reflectance(1, 0) = 0.75;
   problem.exitance(1, 0) = 0.5;
   EXPECT_TRUE(furnace_radiosity(problem));
   problem.exitance(1, 0) = 0.5 + 1e-6;

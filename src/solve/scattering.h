@@ -1,0 +1,55 @@
+#pragma once
+
+#include "patchlight/solve/problem.h"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace patchlight {
+
+// What solvers and error bars ask of R beyond Scattering's own functions. Nothing else knows that R is diagonal.
+
+/// (R H)_i, one row, from `irradiance`, the row H_i.
+Field reflect_at(const Scattering& scattering, Eigen::Index patch, const FieldView& irradiance);
+
+/// (1 - R) H: what is absorbed of an irradiance, W/m^2.
+Field absorb(const Scattering& scattering, const FieldView& irradiance);
+
+/// The irradiance H for which R H is `reflected`; that of `otherwise` where nothing is reflected.
+Field irradiance_behind(const Scattering& scattering, const FieldView& reflected, const FieldView& otherwise);
+
+/// How far irradiances may be off when radiosities are by `error`, |dB| = R |dH|, W/m^2; for patches that reflect
+/// nothing the largest of the others.
+Field irradiance_errors(const Scattering& scattering, const FieldView& error);
+
+/// The variances of R H, from those of irradiances that do not depend on each other.
+Field reflected_variance(const Scattering& scattering, const FieldView& variance);
+
+/// sum_i A_i H_i (R H)_i per band: the square of the norm in which K and its symmetric form have one spectrum.
+Eigen::ArrayXd reflected_square(const Scattering& scattering, const FieldView& irradiance, const Eigen::VectorXd& area);
+
+/// R of these bands, in this order; a band may come several times.
+Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index>& bands);
+
+/// True when R is the same in both bands.
+bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b);
+
+/// The square root of R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D = R^1/2
+/// A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is symmetric.
+class SymmetricRoot {
+ public:
+  SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd& area);
+
+  /// D w, radiosity in W/m^2.
+  Field radiosity_of(const FieldView& w) const { return radiosity_ * w; }
+  /// T H, in the units of w.
+  Field of_irradiance(const FieldView& irradiance) const { return from_irradiance_ * irradiance; }
+  /// T 1, what irradiance 1 everywhere comes to.
+  const Field& of_even_irradiance() const { return from_irradiance_; }
+
+ private:
+  Field radiosity_;        // D
+  Field from_irradiance_;  // T
+};
+
+}  // namespace patchlight
