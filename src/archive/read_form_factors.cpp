@@ -21,7 +21,9 @@
 namespace patchlight {
 namespace {
 
-constexpr PatchIndex edge = ExchangeAreas::edge;
+// Rows that are read at once, and columns that one thread takes of them: a pair is then set and compared with its
+// mirror image by one thread, or after all rows before.
+constexpr PatchIndex rows_at_once = 64;
 
 // Both halves of a symmetric matrix were rounded to float, each after a division.
 constexpr double reciprocity_tolerance = 1e-5;
@@ -104,7 +106,7 @@ bool is_plausible(double form_factor, double exchange_area, double other) {
   return std::isfinite(form_factor) && form_factor >= 0 && std::abs(exchange_area - other) <= rounding;
 }
 
-// Some rows of F, all within one block row of S, and what turns them into exchange areas.
+// Some rows of F, and what turns them into exchange areas.
 struct Rows {
   PatchIndex begin;
   PatchIndex count;
@@ -114,23 +116,19 @@ struct Rows {
   double form_factor(PatchIndex r, PatchIndex j) const { return F[r * static_cast<std::size_t>(area.size()) + j]; }
 };
 
-// Fills the tile of block column J on or right of the diagonal, S_ij = A_i F_ij, or compares one left of it with its
-// mirror image. Returns false when an entry cannot be.
-bool take_tile(const Rows& rows, PatchIndex J, ExchangeAreas& S) {
-  const PatchIndex I = rows.begin / edge;
-  const std::span<float> tile = J < I ? S.tile(J, I) : S.tile(I, J);
-  const PatchIndex columns = std::min(edge, S.size() - J * edge);
+// Sets S_ij = A_i F_ij for these rows and the columns [begin, end) on or right of the diagonal, and compares those left
+// of it with their mirror images. Returns false when an entry cannot be.
+bool take(const Rows& rows, PatchRange columns, ExchangeAreas& S) {
   bool plausible = true;
   for (PatchIndex r = 0; r < rows.count; ++r) {
-    for (PatchIndex c = 0; c < columns; ++c) {
-      const double form_factor = rows.form_factor(r, J * edge + c);
-      const double exchange_area = rows.area[rows.begin + r] * form_factor;
-      const bool is_mirrored = J < I || (J == I && c < r);
-      const double other = is_mirrored ? static_cast<double>(tile[c * edge + r]) : exchange_area;
+    const PatchIndex i = rows.begin + r;
+    for (PatchIndex j = columns.begin; j < columns.end; ++j) {
+      const double form_factor = rows.form_factor(r, j);
+      const double exchange_area = rows.area[i] * form_factor;
+      const bool is_mirrored = j < i;
+      const double other = is_mirrored ? static_cast<double>(S.at(j, i)) : exchange_area;
       plausible &= is_plausible(form_factor, exchange_area, other);
-      if (is_mirrored) continue;
-      tile[r * edge + c] = narrow_toward_zero(exchange_area);
-      if (I == J) tile[c * edge + r] = tile[r * edge + c];
+      if (!is_mirrored) S.set(i, j, narrow_toward_zero(exchange_area));
     }
   }
   return plausible;
@@ -155,7 +153,7 @@ bool take_tile(const Rows& rows, PatchIndex J, ExchangeAreas& S) {
   throw InputError(file.string(), "found a form factor that cannot be; make the form factors anew");
 }
 
-// S_ij = A_i F_ij from the rows of F, as many at a time as make a row of tiles.
+// S_ij = A_i F_ij from the rows of F.
 ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen::VectorXd& area) {
   const auto size = static_cast<PatchIndex>(area.size());
   NpyReader reader(file);
@@ -165,11 +163,14 @@ ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen
                          " values; expected one row and one column for each of " + std::to_string(size) + " patches");
   }
   ExchangeAreas S(size);
-  std::vector<std::uint8_t> plausible(S.blocks());
-  for (PatchIndex begin = 0; begin < size; begin += edge) {
-    const PatchIndex count = std::min(edge, size - begin);
+  std::vector<std::uint8_t> plausible((size + rows_at_once - 1) / rows_at_once);
+  for (PatchIndex begin = 0; begin < size; begin += rows_at_once) {
+    const PatchIndex count = std::min(rows_at_once, size - begin);
     const Rows rows{begin, count, reader.next_rows(count), area};
-    parallel_for(S.blocks(), [&](std::size_t J) { plausible[J] = take_tile(rows, static_cast<PatchIndex>(J), S); });
+    parallel_for(plausible.size(), [&](std::size_t part) {
+      const PatchIndex first = static_cast<PatchIndex>(part) * rows_at_once;
+      plausible[part] = take(rows, {first, std::min(first + rows_at_once, size)}, S);
+    });
     if (!std::all_of(plausible.begin(), plausible.end(), [](std::uint8_t good) { return good != 0; })) {
       refuse(file, rows, S);
     }

@@ -1,5 +1,7 @@
 #include "patchlight/solve/solve.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/vectors.h"
 #include "solve/iterations.h"
 #include "solve/krylov.h"
@@ -17,22 +19,23 @@
 namespace patchlight {
 namespace {
 
-Solution solution_by(Solver solver, Iterations iterations, const RowTransport& transport) {
+// `rows` is null where the solver takes none.
+Solution solution_by(Solver solver, Iterations iterations, const RowTransport* rows) {
   switch (solver) {
     case Solver::jacobi:
       return jacobi(std::move(iterations));
     case Solver::gauss_seidel:
-      return gauss_seidel(std::move(iterations), transport);
+      return gauss_seidel(std::move(iterations), *rows);
     case Solver::sor:
-      return sor(std::move(iterations), transport);
+      return sor(std::move(iterations), *rows);
     case Solver::symmetric_gauss_seidel:
-      return symmetric_gauss_seidel(std::move(iterations), transport);
+      return symmetric_gauss_seidel(std::move(iterations), *rows);
     case Solver::chebyshev:
       return chebyshev(std::move(iterations));
     case Solver::progressive:
-      return progressive_refinement(std::move(iterations), transport, Shot::unshot);
+      return progressive_refinement(std::move(iterations), *rows, Shot::unshot);
     case Solver::overshooting:
-      return progressive_refinement(std::move(iterations), transport, Shot::overshot);
+      return progressive_refinement(std::move(iterations), *rows, Shot::overshot);
     case Solver::cg:
       return cg(std::move(iterations));
     case Solver::deflated_cg:
@@ -52,13 +55,25 @@ Field with_direct(Field irradiance, const RadiosityProblem& problem) {
   return irradiance;
 }
 
-// F E, from the rows of the lamps alone.
-Field from_lamps(const RowTransport& transport, const Field& exitance) {
+// The transport with single rows, if it has them.
+const RowTransport* rows_of(const TransportOperator& transport, Solver solver) {
+  const auto* const rows = dynamic_cast<const RowTransport*>(&transport);
+  if (rows == nullptr && takes_rows(solver)) {
+    throw InputError(name_of(solver),
+                     "takes single rows of the form factors, which cannot be had as they are kept here; expected a "
+                     "solver that takes none, as cg");
+  }
+  return rows;
+}
+
+// F E, where there are rows from those of the lamps alone.
+Field from_lamps(const TransportOperator& transport, const RowTransport* rows, const Field& exitance) {
+  if (rows == nullptr) return transport.apply(exitance);
   Field irradiance = Field::Zero(exitance.rows(), exitance.cols());
   for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
     if (!(exitance.row(i) > 0).any()) continue;
     const auto index = static_cast<PatchIndex>(i);
-    irradiance += transport.shoot({index, index + 1}, exitance.row(i));
+    irradiance += rows->shoot({index, index + 1}, exitance.row(i));
   }
   return irradiance;
 }
@@ -125,6 +140,11 @@ const char* name_of(Solver solver) {
   return "";
 }
 
+bool takes_rows(Solver solver) {
+  return is_shooting(solver) || solver == Solver::gauss_seidel || solver == Solver::sor ||
+         solver == Solver::symmetric_gauss_seidel;
+}
+
 bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { return inner_product(x, x, area).sqrt(); }
@@ -141,11 +161,13 @@ double relative_error(const FieldView& reference, const FieldView& radiosity, co
   return worst;
 }
 
-Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options,
+Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
                const Observer& observer) {
   assert(problem.exitance.rows() == static_cast<Eigen::Index>(transport.size()));
   assert(problem.scattering.reflectance.rows() == problem.exitance.rows() &&
          problem.scattering.reflectance.cols() == problem.exitance.cols());
+
+  const RowTransport* const rows = rows_of(transport, options.solver);
 
   // 1. Light that comes from no patch is a source where it is first reflected: B = S + rho o F B. Only the bands that
   //    need it.
@@ -162,7 +184,7 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
   const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
   std::string trapped = known ? trapped_light(transport, needed) : std::string();
   Solution solution = trapped.empty()
-                          ? solution_by(options.solver, Iterations(transport, needed, used, of_needed), transport)
+                          ? solution_by(options.solver, Iterations(transport, needed, used, of_needed), rows)
                           : lamps_alone(transport, needed, std::move(trapped));
 
   // 3. All bands again, and all of the irradiance.
@@ -172,7 +194,7 @@ Solution solve(const RowTransport& transport, const RadiosityProblem& problem, c
   }
   if (problem.direct_irradiance.size() == 0) return solution;
   solution.irradiance += problem.direct_irradiance;
-  solution.direct_irradiance = with_direct(from_lamps(transport, problem.exitance), problem);
+  solution.direct_irradiance = with_direct(from_lamps(transport, rows, problem.exitance), problem);
   return solution;
 }
 

@@ -4,12 +4,10 @@
 
 #include "base/parallel.h"
 #include "base/vectors.h"
-#include "transport/narrow.h"
-#include "transport/tile_edge.h"
+#include "transport/entries.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,8 +21,8 @@ constexpr double entry_error = 0.02;
 // The same of one that was found without shadow rays: quadrature and rounding.
 constexpr double least_error = 1e-4;
 
-// Partial sums are kept per stripe of blocks; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex block_stripes = 8;
+// Partial sums are kept per stripe of parts; their number is fixed, so that the bits do not depend on the threads.
+constexpr PatchIndex part_stripes = 8;
 
 // Row sums of a closed scene are met to this share of the area; narrowing to float then loses more than that.
 constexpr double row_tolerance = 1e-10;
@@ -49,19 +47,6 @@ Target target_of(const Eigen::VectorXd& area, const LostShare& lost) {
   const double n = lost.rays_per_patch;
   const Eigen::ArrayXd p = (n * share + 0.5) / (n + 1);
   return {area.array() * (1 - share), area.array().square() * p * (1 - p) / n};
-}
-
-// Calls use(i, j, S_ij) for the entries i < j of block row I that are not 0.
-template <typename Use>
-void for_entries(const ExchangeAreas& S, PatchIndex I, Use use) {
-  for (PatchIndex J = I; J < S.blocks(); ++J) {
-    const std::span<const float> tile = S.tile(I, J);
-    for (PatchIndex k = 0; k < tile_edge * tile_edge; ++k) {
-      const PatchIndex i = I * tile_edge + k / tile_edge;
-      const PatchIndex j = J * tile_edge + k % tile_edge;
-      if (i < j && tile[k] != 0) use(i, j, static_cast<double>(tile[k]));
-    }
-  }
 }
 
 // The variances W_ij of the entries: what of them is known, or the same relative error for all. Entries that are 0 have
@@ -103,18 +88,18 @@ double EntryWeights::standard_error(PatchIndex i, PatchIndex j, double entry) co
 
 Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
   if (known_ == nullptr) return entry_error * entry_error * multiply(S_, column(x), 2).matrix();
-  std::vector<Eigen::VectorXd> partial(block_stripes, Eigen::VectorXd::Zero(x.size()));
-  parallel_for(block_stripes, [&](std::size_t stripe) {
+  std::vector<Eigen::VectorXd> partial(part_stripes, Eigen::VectorXd::Zero(x.size()));
+  parallel_for(part_stripes, [&](std::size_t stripe) {
     Eigen::VectorXd& sum = partial[stripe];
-    for (auto I = static_cast<PatchIndex>(stripe); I < S_.blocks(); I += block_stripes) {
-      for_entries(S_, I, [&](PatchIndex i, PatchIndex j, double entry) {
+    for (auto part = static_cast<PatchIndex>(stripe); part < entry_parts(S_); part += part_stripes) {
+      for_entries(S_, part, [&](PatchIndex i, PatchIndex j, double entry) {
         const double weight = at(i, j, entry);
         sum[i] += weight * x[j];
         sum[j] += weight * x[i];
       });
     }
   });
-  for (std::size_t stripe = 1; stripe < block_stripes; ++stripe) partial[0] += partial[stripe];
+  for (std::size_t stripe = 1; stripe < part_stripes; ++stripe) partial[0] += partial[stripe];
   return partial[0];
 }
 
@@ -151,31 +136,12 @@ std::optional<Eigen::VectorXd> row_multipliers(const EntryWeights& W, const Eige
   return std::nullopt;
 }
 
-// Every entry S_ij replaced by value(i, j, S_ij), narrowed toward zero.
-using Change = std::function<double(PatchIndex, PatchIndex, double)>;
-
-ExchangeAreas changed(ExchangeAreas S, const Change& value) {
-  const PatchIndex blocks = S.blocks();
-  parallel_for(blocks, [&](std::size_t row) {
-    const auto I = static_cast<PatchIndex>(row);
-    for (PatchIndex J = I; J < blocks; ++J) {
-      const std::span<float> tile = S.tile(I, J);
-      for (PatchIndex k = 0; k < tile_edge * tile_edge; ++k) {
-        if (tile[k] == 0) continue;
-        tile[k] = narrow_toward_zero(
-            value(I * tile_edge + k / tile_edge, J * tile_edge + k % tile_edge, static_cast<double>(tile[k])));
-      }
-    }
-  });
-  return S;
-}
-
 // Does S_ij + W_ij (lambda_i + lambda_j) stay above 0 for every entry?
 bool stays_positive(const ExchangeAreas& S, const Eigen::VectorXd& lambda, const EntryWeights& W) {
-  std::vector<std::uint8_t> positive(S.blocks(), 1);
-  parallel_for(S.blocks(), [&](std::size_t row) {
-    for_entries(S, static_cast<PatchIndex>(row), [&](PatchIndex i, PatchIndex j, double entry) {
-      if (entry + W.at(i, j, entry) * (lambda[i] + lambda[j]) < 0) positive[row] = 0;
+  std::vector<std::uint8_t> positive(entry_parts(S), 1);
+  parallel_for(positive.size(), [&](std::size_t part) {
+    for_entries(S, static_cast<PatchIndex>(part), [&](PatchIndex i, PatchIndex j, double entry) {
+      if (entry + W.at(i, j, entry) * (lambda[i] + lambda[j]) < 0) positive[part] = 0;
     });
   });
   return std::all_of(positive.begin(), positive.end(), [](std::uint8_t p) { return p != 0; });

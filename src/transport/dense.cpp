@@ -1,8 +1,8 @@
 #include "transport/dense.h"
 
 #include "base/parallel.h"
-#include "transport/tile_edge.h"
 #include "transport/tile_kernel.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <cassert>
@@ -50,12 +50,12 @@ class DenseTransport : public RowTransport {
 
 // sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones.
 Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
-  const PatchIndex count = S_.blocks() - I;
+  const PatchIndex count = Tiles::blocks(S_) - I;
   PackedField partial(gather_stripes, b.bands);
   parallel_for(gather_stripes, [&](std::size_t stripe) {
     RowSums sums(b.bands);
     for (PatchIndex J = I + first_of(stripe, count); J < I + first_of(stripe + 1, count); ++J) {
-      gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), sums.lanes.data());
+      gather_tile(Tiles::of(S_, I, J).data(), b.bands, b.block(J), sums.lanes.data());
     }
     add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
@@ -67,17 +67,17 @@ Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
 // once per block row.
 Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const {
   const PatchIndex next = I + 1;
-  const PatchIndex count = S_.blocks() - next;
+  const PatchIndex count = Tiles::blocks(S_) - next;
   PackedField partial(gather_stripes, b.bands);
   parallel_for(gather_stripes, [&](std::size_t stripe) {
     RowSums sums(b.bands);
     for (PatchIndex J = next + first_of(stripe, count); J < next + first_of(stripe + 1, count); ++J) {
-      push_tile(S_.tile(I, J).data(), b.bands, b.block(I), pushed.block(J));
-      gather_tile(S_.tile(next, J).data(), b.bands, b.block(J), sums.lanes.data());
+      push_tile(Tiles::of(S_, I, J).data(), b.bands, b.block(I), pushed.block(J));
+      gather_tile(Tiles::of(S_, next, J).data(), b.bands, b.block(J), sums.lanes.data());
     }
     add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
-  if (next == S_.blocks()) return Field(0, b.bands);
+  if (next == Tiles::blocks(S_)) return Field(0, b.bands);
   const PatchRange range = range_of(next);
   return summed(std::move(partial), gather_stripes).rows(0, range.end - range.begin);
 }
@@ -100,11 +100,11 @@ void DenseTransport::relax_block(PatchIndex I, const Field& irradiance, const Re
 // them while the tiles are in the cache. What has been pushed to a block before, with the radiosities of now, is what
 // the next sweep needs to know F B of them without another pass.
 Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) const {
-  PackedField b(from.radiosity, S_.blocks());
-  PackedField pushed(S_.blocks(), b.bands);
+  PackedField b(from.radiosity, Tiles::blocks(S_));
+  PackedField pushed(Tiles::blocks(S_), b.bands);
   Field irradiance(from.from_earlier.rows(), from.from_earlier.cols());
   Field later = gather_row(0, b);
-  for (PatchIndex I = 0; I < S_.blocks(); ++I) {
+  for (PatchIndex I = 0; I < Tiles::blocks(S_); ++I) {
     const PatchRange range = range_of(I);
     const Eigen::Index rows = range.end - range.begin;
     if (irradiance.size() > 0) {
@@ -116,7 +116,7 @@ Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) c
   }
   if (!back) return {b.rows(0, size()), std::move(irradiance), pushed.rows(0, size())};
 
-  for (PatchIndex I = S_.blocks(); I-- > 0;) {
+  for (PatchIndex I = Tiles::blocks(S_); I-- > 0;) {
     const PatchRange range = range_of(I);
     const Field sum = pushed.rows(range.begin, range.end - range.begin) + gather_row(I, b);
     relax_block(I, irradiance_of(I, sum, b), back, b);
@@ -128,17 +128,17 @@ Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) c
   assert(receivers.begin <= receivers.end && receivers.end <= size());
   const PatchIndex first = receivers.begin / tile_edge;
   const PatchIndex blocks = receivers.begin < receivers.end ? (receivers.end - 1) / tile_edge + 1 - first : 0;
-  const PackedField b(radiosity, S_.blocks());
+  const PackedField b(radiosity, Tiles::blocks(S_));
   PackedField sum(blocks, b.bands);
   parallel_for(blocks, [&](std::size_t block) {
     const PatchIndex I = first + static_cast<PatchIndex>(block);
     double* const out = sum.block(static_cast<PatchIndex>(block));
     RowSums sums(b.bands);
-    for (PatchIndex J = 0; J < S_.blocks(); ++J) {
+    for (PatchIndex J = 0; J < Tiles::blocks(S_); ++J) {
       if (I <= J) {
-        gather_tile(S_.tile(I, J).data(), b.bands, b.block(J), sums.lanes.data());
+        gather_tile(Tiles::of(S_, I, J).data(), b.bands, b.block(J), sums.lanes.data());
       } else {
-        push_tile(S_.tile(J, I).data(), b.bands, b.block(J), out);
+        push_tile(Tiles::of(S_, J, I).data(), b.bands, b.block(J), out);
       }
     }
     add_sums(sums, b.bands, out);
@@ -152,12 +152,12 @@ Field DenseTransport::gather(PatchRange receivers, const FieldView& radiosity) c
 Field DenseTransport::shoot(PatchRange sources, const FieldView& radiosity) const {
   assert(sources.begin <= sources.end && sources.end <= size());
   Field irradiance = Field::Zero(size(), radiosity.cols());
-  parallel_for(S_.blocks(), [&](std::size_t block) {
+  parallel_for(Tiles::blocks(S_), [&](std::size_t block) {
     const auto I = static_cast<PatchIndex>(block);
     const PatchIndex end = std::min(S_.size(), (I + 1) * tile_edge);
     for (PatchIndex j = sources.begin; j < sources.end; ++j) {
       const PatchIndex J = j / tile_edge;
-      const std::span<const float> tile = I <= J ? S_.tile(I, J) : S_.tile(J, I);
+      const std::span<const float> tile = I <= J ? Tiles::of(S_, I, J) : Tiles::of(S_, J, I);
       const std::size_t first = I <= J ? j % tile_edge : static_cast<std::size_t>(j % tile_edge) * tile_edge;
       const std::size_t step = I <= J ? tile_edge : 1;
       for (PatchIndex i = I * tile_edge; i < end; ++i) {

@@ -1,7 +1,7 @@
 #include "transport/tile_kernel.h"
 
 #include "base/target_clones.h"
-#include "transport/tile_edge.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,8 @@
 
 #include "patchlight/base/field.h"
 #include "patchlight/base/large_array.h"
-#include "patchlight/transport/exchange_areas.h"
+
+#include "transport/tiles.h"
 
 #include <cstddef>
 
@@ -24,7 +25,7 @@ struct PackedField {
   void set_rows(Eigen::Index begin, const FieldView& field);
 
  private:
-  std::size_t offset(PatchIndex I) const { return static_cast<std::size_t>(I) * ExchangeAreas::edge * bands; }
+  std::size_t offset(PatchIndex I) const { return static_cast<std::size_t>(I) * tile_edge * bands; }
 };
 
 /// Sums over the tiles of a block row, kept apart in eight lanes for each patch and band until the row is done.

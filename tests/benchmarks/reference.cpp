@@ -3,6 +3,8 @@
 #include "patchlight/base/error.h"
 #include "patchlight/transport/assemble.h"
 
+#include "transport/tiles.h"
+
 #include <fstream>
 
 namespace patchlight::benchmarks {
@@ -18,9 +20,9 @@ ExchangeAreas read_matrix(const std::filesystem::path& file, PatchIndex size) {
   }
   ExchangeAreas S(size);
   std::ifstream in(file, std::ios::binary);
-  for (PatchIndex I = 0; I < S.blocks(); ++I) {
-    for (PatchIndex J = I; J < S.blocks(); ++J) {
-      const std::span<float> tile = S.tile(I, J);
+  for (PatchIndex I = 0; I < Tiles::blocks(S); ++I) {
+    for (PatchIndex J = I; J < Tiles::blocks(S); ++J) {
+      const std::span<float> tile = Tiles::of(S, I, J);
       in.read(reinterpret_cast<char*>(tile.data()), bytes(tile));
     }
   }
@@ -32,9 +34,9 @@ void write_matrix(const ExchangeAreas& S, const std::filesystem::path& file) {
   // Under another name first: what is there under its own is whole.
   const std::filesystem::path partial = file.string() + ".part";
   std::ofstream out(partial, std::ios::binary);
-  for (PatchIndex I = 0; I < S.blocks(); ++I) {
-    for (PatchIndex J = I; J < S.blocks(); ++J) {
-      const std::span<const float> tile = S.tile(I, J);
+  for (PatchIndex I = 0; I < Tiles::blocks(S); ++I) {
+    for (PatchIndex J = I; J < Tiles::blocks(S); ++J) {
+      const std::span<const float> tile = Tiles::of(S, I, J);
       out.write(reinterpret_cast<const char*>(tile.data()), bytes(tile));
     }
   }

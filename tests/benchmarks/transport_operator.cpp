@@ -2,6 +2,7 @@
 #include "base/parallel.h"
 #include "base/target_clones.h"
 #include "transport/dense.h"
+#include "transport/tiles.h"
 
 #include <array>
 #include <benchmark/benchmark.h>
@@ -19,10 +20,10 @@ constexpr int bands = 3;
 // A closed made-up scene: what is in the entries does not matter for their speed.
 ExchangeAreas made_up() {
   ExchangeAreas S(size);
-  parallel_for(S.blocks(), [&](std::size_t row) {
+  parallel_for(Tiles::blocks(S), [&](std::size_t row) {
     const auto I = static_cast<PatchIndex>(row);
-    for (PatchIndex J = I; J < S.blocks(); ++J) {
-      std::span<float> tile = S.tile(I, J);
+    for (PatchIndex J = I; J < Tiles::blocks(S); ++J) {
+      std::span<float> tile = Tiles::of(S, I, J);
       for (std::size_t k = 0; k < tile.size(); ++k) {
         tile[k] = static_cast<float>(1 + (k * 2654435761U + J) % 1024) / (1024.0F * size);
       }
@@ -43,7 +44,7 @@ float sum_of(const float* values, std::size_t count) {
 void stream(benchmark::State& state) {
   const ExchangeAreas S = made_up();
   // The tiles lie one after the other.
-  const float* const first = S.tile(0, 0).data();
+  const float* const first = Tiles::of(S, 0, 0).data();
   const std::size_t count = ExchangeAreas::bytes(size) / sizeof(float);
   constexpr std::size_t pieces = 64;
   std::array<float, pieces> sums{};

@@ -126,7 +126,9 @@ TEST(OpenScene, ClosureMendsEntriesByAWellKnownLostShare) {
   const PatchMesh mesh = fronts(scene, 0.5001);
   ExchangeAreas raw = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
   const Eigen::ArrayXd exact = row_sums(raw).array() / areas(mesh).array();
-  for (float& entry : raw.tile(0, 0)) entry *= 1.1F;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (PatchIndex j = i; j < mesh.size(); ++j) raw.set(i, j, 1.1F * raw.at(i, j));
+  }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(mesh.size());
   const ClosedExchangeAreas closed =
       close_exchange_areas(raw, areas(mesh), {(1 - exact).matrix(), zero, zero, 1 << 20});

@@ -21,12 +21,7 @@ inline Room made_up(PatchIndex n, double reflectance, double openness = 1) {
   for (PatchIndex i = 0; i < n; ++i) {
     for (PatchIndex j = i + 1; j < n; ++j) {
       const auto entry = static_cast<float>(0.1 + 0.9 * std::abs(std::sin(1.7 * i + 0.3 * j * j)));
-      const PatchIndex I = i / ExchangeAreas::edge;
-      const PatchIndex J = j / ExchangeAreas::edge;
-      const std::size_t r = i % ExchangeAreas::edge;
-      const std::size_t c = j % ExchangeAreas::edge;
-      S.tile(I, J)[r * ExchangeAreas::edge + c] = entry;
-      if (I == J) S.tile(I, J)[c * ExchangeAreas::edge + r] = entry;
+      S.set(i, j, entry);
     }
   }
   const Eigen::VectorXd area = openness * row_sums(S);

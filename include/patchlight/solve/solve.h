@@ -34,6 +34,9 @@ const char* name_of(Solver solver);
 /// True for the two that shoot: they take single rows of the transport, never all at once.
 bool is_shooting(Solver solver);
 
+/// True for those that sweep or shoot: they take a RowTransport. The others need no more than H = F B.
+bool takes_rows(Solver solver);
+
 /// Which solver, and when it stops.
 struct SolverOptions {
   Solver solver = Solver::cg;
@@ -55,8 +58,9 @@ struct SolverOptions {
 /// the largest row sum of F, of docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of
 /// the same section; where that is not known either, by the relative residual, with an infinite error_bound in the
 /// history. What cannot converge ends after max_iterations with converged = false and its history; a singular system at
-/// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled.
-Solution solve(const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
+/// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled; InputError, before
+/// any work, when takes_rows() and the transport is no RowTransport.
+Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 
 }  // namespace patchlight

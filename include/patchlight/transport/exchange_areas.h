@@ -5,25 +5,17 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <span>
 
 namespace patchlight {
 
-/// The symmetric matrix S_ij = A_i F_ij in m^2 of all pairs of patches, in single precision. Stored once: square tiles
-/// of `edge` x `edge` entries for block rows I <= J, row by row; a diagonal tile holds both of its halves. Rows and
-/// columns beyond size() are zero. Memory is 2 size()^2 bytes.
+/// The symmetric matrix S_ij = A_i F_ij in m^2 of all pairs of patches, in single precision: Storage::tiles. Every pair
+/// is stored once. Memory is 2 size()^2 bytes.
 class ExchangeAreas {
  public:
-  static constexpr PatchIndex edge = 64;
-
   explicit ExchangeAreas(PatchIndex size);
 
   PatchIndex size() const { return size_; }
-  /// Number of block rows.
-  PatchIndex blocks() const { return (size_ + edge - 1) / edge; }
-  /// The edge * edge entries of the tile in block row I and block column J >= I.
-  std::span<float> tile(PatchIndex I, PatchIndex J);
-  std::span<const float> tile(PatchIndex I, PatchIndex J) const;
+  /// S_ij = S_ji.
   float at(PatchIndex i, PatchIndex j) const;
   /// Sets S_ij = S_ji. Different pairs may be set by different threads at once.
   void set(PatchIndex i, PatchIndex j, float value);
@@ -32,7 +24,7 @@ class ExchangeAreas {
   static std::size_t bytes(PatchIndex size);
 
  private:
-  std::size_t offset(PatchIndex I, PatchIndex J) const;
+  friend struct Tiles;
 
   PatchIndex size_;
   LargeArray<float> entries_;

@@ -16,9 +16,7 @@ std::unique_ptr<RowTransport> closed_transport() {
   S << 0, 0.5, 0.25, 0.25, 0.5, 0, 0.5, 0.5, 0.25, 0.5, 0, 0.25, 0.25, 0.5, 0.25, 0;
   ExchangeAreas areas(4);
   for (PatchIndex i = 0; i < 4; ++i) {
-    for (PatchIndex j = 0; j < 4; ++j) {
-      areas.tile(0, 0)[static_cast<std::size_t>(i) * ExchangeAreas::edge + j] = static_cast<float>(S(i, j));
-    }
+    for (PatchIndex j = i; j < 4; ++j) areas.set(i, j, static_cast<float>(S(i, j)));
   }
   return dense_transport({std::move(areas), Eigen::VectorXd::Zero(4), "none"}, S.rowwise().sum());
 }

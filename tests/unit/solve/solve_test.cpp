@@ -234,6 +234,28 @@ TEST_P(EverySolver, StopsWhenTheObserverSaysSo) {
   EXPECT_THROW(solve(*room.transport, room.problem, {.solver = GetParam()}, observer), Cancelled);
 }
 
+// H = F B and nothing else.
+class Applied : public TransportOperator {
+ public:
+  explicit Applied(const RowTransport& transport) : transport_(transport) {}
+  PatchIndex size() const override { return transport_.size(); }
+  Field apply(const FieldView& radiosity) const override { return transport_.apply(radiosity); }
+
+ private:
+  const RowTransport& transport_;
+};
+
+TEST_P(EverySolver, TakesAnyTransportUnlessItTakesRows) {
+  const Room room = made_up(60, 0.7);
+  const Applied applied(*room.transport);
+  if (takes_rows(GetParam())) {
+    EXPECT_THROW(solve(applied, room.problem, {.solver = GetParam()}), InputError);
+    return;
+  }
+  const Solution expected = solve(*room.transport, room.problem, {.solver = GetParam()});
+  EXPECT_TRUE((solve(applied, room.problem, {.solver = GetParam()}).radiosity == expected.radiosity).all());
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver, testing::ValuesIn(all_solvers()), [](const auto& parameter) {
   std::string name = name_of(parameter.param);
   std::replace(name.begin(), name.end(), '-', '_');

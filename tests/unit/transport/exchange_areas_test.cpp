@@ -1,5 +1,6 @@
 #include "patchlight/transport/exchange_areas.h"
 
+#include "transport/entries.h"
 #include "transport/narrow.h"
 
 #include <cmath>
@@ -7,8 +8,6 @@
 
 namespace patchlight::exchange_areas_test {
 namespace {
-
-constexpr PatchIndex edge = ExchangeAreas::edge;
 
 double entry(PatchIndex i, PatchIndex j) { return i == j ? 0 : std::abs(std::sin(static_cast<double>(i * j + i + j))); }
 
@@ -18,11 +17,7 @@ constexpr PatchIndex size = 150;
 ExchangeAreas filled() {
   ExchangeAreas S(size);
   for (PatchIndex i = 0; i < size; ++i) {
-    for (PatchIndex j = 0; j < size; ++j) {
-      if (i / edge > j / edge) continue;
-      const std::size_t slot = static_cast<std::size_t>(i % edge) * edge + j % edge;
-      S.tile(i / edge, j / edge)[slot] = static_cast<float>(entry(i, j));
-    }
+    for (PatchIndex j = i; j < size; ++j) S.set(i, j, static_cast<float>(entry(i, j)));
   }
   return S;
 }
@@ -57,6 +52,30 @@ TEST(ExchangeAreas, AreReadBackSymmetrically) {
   EXPECT_EQ(S.at(3, 140), static_cast<float>(entry(3, 140)));
   EXPECT_EQ(S.at(140, 3), S.at(3, 140));
   EXPECT_EQ(ExchangeAreas::bytes(size), 6 * 64 * 64 * sizeof(float));
+}
+
+// Every pair that has an entry is in one part, once.
+TEST(ExchangeAreas, AreGoneThroughEntryByEntry) {
+  const ExchangeAreas S = filled();
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(size, size);
+  for (PatchIndex part = 0; part < entry_parts(S); ++part) {
+    for_entries(S, part, [&](PatchIndex i, PatchIndex j, double value) {
+      EXPECT_LT(i, j);
+      EXPECT_EQ(found(i, j), 0);
+      found(i, j) = value;
+    });
+  }
+  const Eigen::MatrixXd both = found + found.transpose();
+  EXPECT_EQ(both, full_matrix());
+}
+
+TEST(ExchangeAreas, AreChangedEntryByEntry) {
+  const ExchangeAreas before = filled();
+  const ExchangeAreas S = changed(before, [](PatchIndex i, PatchIndex j, double value) { return value * (i + j); });
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = 0; j < size; ++j)
+      EXPECT_EQ(S.at(i, j), narrow_toward_zero(static_cast<double>(before.at(i, j)) * (i + j)));
+  }
 }
 
 TEST(NarrowTowardZero, NeverGrows) {

@@ -6,17 +6,11 @@
 namespace patchlight::group_exchange_test {
 namespace {
 
-// More than one tile; entries are small whole numbers, so that all sums are exact.
+// Entries are small whole numbers, so that all sums are exact.
 ExchangeAreas numbered(PatchIndex size) {
   ExchangeAreas S(size);
-  constexpr PatchIndex edge = ExchangeAreas::edge;
   for (PatchIndex i = 0; i < size; ++i) {
-    for (PatchIndex j = i + 1; j < size; ++j) {
-      const auto entry = static_cast<float>((i * 7 + j * 13) % 11);
-      S.tile(i / edge, j / edge)[static_cast<std::size_t>(i % edge) * edge + j % edge] = entry;
-      if (i / edge == j / edge)
-        S.tile(i / edge, j / edge)[static_cast<std::size_t>(j % edge) * edge + i % edge] = entry;
-    }
+    for (PatchIndex j = i + 1; j < size; ++j) S.set(i, j, static_cast<float>((i * 7 + j * 13) % 11));
   }
   return S;
 }
