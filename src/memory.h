@@ -18,7 +18,7 @@ double usable_memory(const Request& request);
 /// The largest number of patches for which memory_needed() is usable.
 double patches_that_fit(const Request& request);
 
-/// For messages: "1.25 GB".
+/// A number of bytes as messages have it: "1.25 GB".
 std::string gigabytes(double bytes);
 
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that

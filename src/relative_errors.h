@@ -7,7 +7,7 @@
 
 namespace patchlight {
 
-/// Of a simulation with error bars; empty where shells with openings do not divide what is of interest.
+/// The errors inside and outside, by the error bars; empty where no shells with openings divide what is of interest.
 std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation);
 
 /// The relative errors of the patches that `weight` counts.

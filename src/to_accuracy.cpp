@@ -78,7 +78,7 @@ double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double 
   return allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver, beside));
 }
 
-// By what factor it has to fall.
+// The factor by which the error has to fall.
 double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
   return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
 }

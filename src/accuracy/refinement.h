@@ -43,7 +43,7 @@ Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& 
 /// What is left of the squared mesh error of a parent that is cut: halving the patches' size gains 2^mesh_order.
 inline const double mesh_error_left = std::pow(2.0, -2 * mesh_order);
 
-/// And of its squared sampling error, with four times the samples.
+/// What is left of a squared sampling error with four times the samples.
 inline constexpr double noise_left = 0.25;
 
 /// What cutting parents is to achieve.

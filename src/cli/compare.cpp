@@ -1,6 +1,5 @@
 #include "cli/compare.h"
 
-#include "patchlight/base/error.h"
 #include "patchlight/render/tone_map.h"
 
 #include "base/parallel.h"
@@ -66,14 +65,10 @@ ExitCode compare(const CompareArguments& arguments) {
   check_comparison_writable(arguments.output);
   const ThreadLimit limit(arguments.request.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
-  const Observer observer = [&line](const Progress& progress) {
-    line.show(progress);
-    return !interrupted();
-  };
+  const Observer observer = observer_on(line);
 
   // 1. Read the model, run the solvers
-  if (!observer({.stage = Stage::read})) throw Cancelled();
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read_from({"-o", arguments.output}, scene.inputs);
   const Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
   const Simulation& simulation = comparison.simulation;

@@ -1,7 +1,5 @@
 #include "cli/form_factors.h"
 
-#include "patchlight/base/error.h"
-
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -74,14 +72,10 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   }
   const ThreadLimit limit(arguments.request.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
-  const Observer observer = [&line](const Progress& progress) {
-    line.show(progress);
-    return !interrupted();
-  };
+  const Observer observer = observer_on(line);
 
   // 1. Read the model, find the form factors
-  if (!observer({.stage = Stage::read})) throw Cancelled();
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = read_models(arguments.models, arguments.read, observer);
   if (is_one_file(arguments)) {
     require_not_read({{"-o", arguments.output}}, scene.inputs);
   } else {

@@ -3,8 +3,8 @@
 namespace patchlight::cli {
 
 /// From now on SIGINT, SIGTERM and SIGHUP, unless the caller ignores them, ask the run to stop: interrupted() becomes
-/// true. A stage that does not ask in time is
-/// ended half a second later, which loses nothing as long as no result is being written.
+/// true. A stage that does not ask in time is ended half a second later, which loses nothing as long as no result is
+/// being written.
 void watch_interrupts();
 
 /// True once the run was asked to stop.

@@ -1,6 +1,9 @@
 #include "cli/progress.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/parallel.h"
+#include "cli/interrupt.h"
 
 #include <cmath>
 #include <iostream>
@@ -49,5 +52,17 @@ void ProgressLine::show(const Progress& progress) {
 }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
+
+Observer observer_on(ProgressLine& line) {
+  return [&line](const Progress& progress) {
+    line.show(progress);
+    return !interrupted();
+  };
+}
+
+Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer) {
+  if (!observer({.stage = Stage::read})) throw Cancelled();
+  return read_scene(models, options);
+}
 
 }  // namespace patchlight::cli

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "patchlight/base/progress.h"
+#include "patchlight/input/read_scene.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <span>
 
 namespace patchlight::cli {
 
@@ -29,5 +32,11 @@ class ProgressLine {
 
 /// True when stderr is a terminal.
 bool stderr_is_terminal();
+
+/// Shows progress on the line, which must outlive it, and lets the work go on until the run is interrupted.
+Observer observer_on(ProgressLine& line);
+
+/// Reads what a sub-command is given. \throws Cancelled when the run was interrupted before; else as read_scene().
+Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer);
 
 }  // namespace patchlight::cli

@@ -177,10 +177,7 @@ ExitCode solve(const SolveArguments& arguments) {
   const bool quiet = arguments.verbosity == Verbosity::quiet;
   const Results results = [&] {
     ProgressLine line(!quiet && stderr_is_terminal());
-    return compute(arguments, [&line](const Progress& progress) {
-      line.show(progress);
-      return !interrupted();
-    });
+    return compute(arguments, observer_on(line));
   }();
   const std::vector<std::filesystem::path> written = write(arguments, results);
 

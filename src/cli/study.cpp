@@ -1,7 +1,5 @@
 #include "cli/study.h"
 
-#include "patchlight/base/error.h"
-
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -61,14 +59,10 @@ ExitCode study(const StudyArguments& arguments) {
   check_study_writable(arguments.output);
   const ThreadLimit limit(arguments.request.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
-  const Observer observer = [&line](const Progress& progress) {
-    line.show(progress);
-    return !interrupted();
-  };
+  const Observer observer = observer_on(line);
 
   // 1. Read the model, solve it in many ways
-  if (!observer({.stage = Stage::read})) throw Cancelled();
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read_from({"-o", arguments.output}, scene.inputs);
   const Study study = patchlight::study(scene, arguments.request, arguments.options, observer);
   line.hide();

@@ -43,10 +43,7 @@ ExitCode validate(const ValidateArguments& arguments, std::span<const Validation
   const double begin = wall_seconds();
   const std::vector<ValidationResult> results = [&] {
     ProgressLine line(stderr_is_terminal());
-    return patchlight::validate(cases, [&line](const Progress& progress) {
-      line.show(progress);
-      return !interrupted();
-    });
+    return patchlight::validate(cases, observer_on(line));
   }();
   const double seconds = wall_seconds() - begin;
 

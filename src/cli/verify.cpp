@@ -1,7 +1,5 @@
 #include "cli/verify.h"
 
-#include "patchlight/base/error.h"
-
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -141,14 +139,10 @@ ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.threads);
   ProgressLine line(stderr_is_terminal());
-  const Observer observer = [&line](const Progress& progress) {
-    line.show(progress);
-    return !interrupted();
-  };
+  const Observer observer = observer_on(line);
 
   // 1. Solve
-  if (!observer({.stage = Stage::read})) throw Cancelled();
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   const Simulation simulation = simulate(scene, arguments.request, observer);
   if (!simulation.solution.converged) {

@@ -36,7 +36,7 @@ enum class Orientation {
   straddling  ///< facing in part: one crosses the other's plane
 };
 
-/// How the two stand to each other; symmetric.
+/// Tells how the two stand to each other, in whichever order they are given.
 Orientation orientation(const PatchShape& first, const PatchShape& second);
 
 /// Closer than two diameters of the larger patch: the geometry term varies too much for quadrature or area sampling.

@@ -14,7 +14,7 @@ namespace patchlight {
 /// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded.
 std::vector<Material> gltf_materials(const GltfModel& gltf);
 
-/// Those that are metallic or transparent, counted.
+/// The numbers of materials that are metallic or transparent.
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf);
 
 /// One sentence per property that the materials have and the simulation ignores or simplifies.

@@ -30,7 +30,7 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
 /// One sentence per property that these materials have and the simulation ignores.
 std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials);
 
-/// Those of these properties that have a place in the plan, counted.
+/// The numbers of materials with properties that have a place in the plan.
 std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials);
 
 }  // namespace patchlight

@@ -58,7 +58,7 @@ struct SurfacePoint {
 /// square is the irradiance.
 Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at, const Eigen::Vector2d& uv);
 
-/// From the sun, which must be there.
+/// What arrives from the sun, which must be there.
 Arrival from_sun(const Lighting& lighting, const SurfacePoint& at);
 
 }  // namespace patchlight

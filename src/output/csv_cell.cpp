@@ -1,5 +1,8 @@
 #include "output/csv_cell.h"
 
+#include <cmath>
+#include <sstream>
+
 namespace patchlight {
 
 std::string csv_cell(const std::string& name) {
@@ -9,6 +12,14 @@ std::string csv_cell(const std::string& name) {
   std::string quoted(1, '"');
   for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
   return quoted + '"';
+}
+
+std::string csv_cell(double number) {
+  if (!std::isfinite(number)) return {};
+  std::ostringstream text;
+  text.precision(9);
+  text << number;
+  return text.str();
 }
 
 }  // namespace patchlight

@@ -9,4 +9,7 @@ namespace patchlight {
 /// apostrophe, so that it is text.
 std::string csv_cell(const std::string& name);
 
+/// A number as a cell, with nine digits; an empty cell stands for one that is not finite.
+std::string csv_cell(double number);
+
 }  // namespace patchlight

@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <sys/file.h>
 #include <system_error>
@@ -60,6 +62,16 @@ void check_folder_writable(const fs::path& folder, const MayReplace& may_replace
   } catch (const fs::filesystem_error& error) {
     throw OutputError(folder.string(), error.code().message());
   }
+}
+
+bool holds_result(const fs::path& folder, const FolderResult& result) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(result.names.begin(), result.names.end(), name) == result.names.end()) return false;
+  }
+  std::ifstream stream(folder / result.facts_file);
+  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  return json.is_object() && json.value("kind", nlohmann::json()) == result.kind;
 }
 
 void write_whole_folder(const fs::path& folder, const MayReplace& may_replace,

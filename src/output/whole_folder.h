@@ -2,11 +2,23 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace patchlight {
 
 /// True for a folder that may be replaced: one with an earlier result.
 using MayReplace = std::function<bool(const std::filesystem::path& folder)>;
+
+/// What is written into a folder of its own.
+struct FolderResult {
+  std::string facts_file;          ///< JSON
+  std::string kind;                ///< what stands in it as "kind"
+  std::vector<std::string> names;  ///< of all that may be there
+};
+
+/// True for a folder that holds such a result, and nothing that was not written with it.
+bool holds_result(const std::filesystem::path& folder, const FolderResult& result);
 
 /// Lets `write` fill a temporary folder beside `folder` and renames it to `folder`: whoever looks sees the old folder
 /// or the whole new one. When `write` throws, the temporary folder is removed and `folder` stays as it was. \throws

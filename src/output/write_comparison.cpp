@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "output/csv_cell.h"
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_plot.h"
@@ -9,11 +10,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,15 +45,6 @@ std::vector<Abscissa> abscissas(PatchIndex patches) {
       {"error_by_second", "seconds; without assembly, on demand with the rows", seconds_of}};
 }
 
-// An empty field stands for a number that is not finite.
-std::string field(double value) {
-  if (!std::isfinite(value)) return {};
-  std::ostringstream text;
-  text.precision(9);
-  text << value;
-  return text.str();
-}
-
 std::string row(const std::vector<std::string>& fields) {
   std::string line;
   for (const std::string& text : fields) line += (&text == &fields.front() ? "" : ",") + text;
@@ -68,9 +57,9 @@ std::string table(const Comparison& comparison) {
   for (const SolverRun& run : comparison.runs) {
     const Iteration& last = run.solution.history.back();
     text += row({name_of(run.contestant), run.solution.converged ? "1" : "0",
-                 field(iterations_of(run, last, comparison.simulation.mesh.size())), field(last.work),
-                 field(run.seconds), field(run.seconds + run.assembly_seconds), field(run.cpu_seconds),
-                 field(last.true_error), field(last.error_bound), field(run.rate)});
+                 csv_cell(iterations_of(run, last, comparison.simulation.mesh.size())), csv_cell(last.work),
+                 csv_cell(run.seconds), csv_cell(run.seconds + run.assembly_seconds), csv_cell(run.cpu_seconds),
+                 csv_cell(last.true_error), csv_cell(last.error_bound), csv_cell(run.rate)});
   }
   return text;
 }
@@ -79,9 +68,10 @@ std::string histories(const Comparison& comparison) {
   std::string text = "solver,iteration,applications,seconds,relative_residual,error_bound,true_error\n";
   for (const SolverRun& run : comparison.runs) {
     for (const Iteration& iteration : run.solution.history) {
-      text += row({name_of(run.contestant), field(iterations_of(run, iteration, comparison.simulation.mesh.size())),
-                   field(iteration.work), field(seconds_of(run, iteration)), field(iteration.relative_residual),
-                   field(iteration.error_bound), field(iteration.true_error)});
+      text +=
+          row({name_of(run.contestant), csv_cell(iterations_of(run, iteration, comparison.simulation.mesh.size())),
+               csv_cell(iteration.work), csv_cell(seconds_of(run, iteration)), csv_cell(iteration.relative_residual),
+               csv_cell(iteration.error_bound), csv_cell(iteration.true_error)});
     }
   }
   return text;
@@ -174,7 +164,6 @@ void write_frames(const fs::path& pvd, const Scene& scene, Simulation simulation
   write_series(pvd, scene, simulation, iterates, provenance, observer);
 }
 
-// An earlier result holds compare.json with the right kind, and nothing that was not written with it.
 bool is_earlier_comparison(const fs::path& folder) {
   std::vector<std::string> names = {comparison_facts_file, comparison_table_file, history_file};
   for (const Abscissa& abscissa : abscissas(1)) {
@@ -184,12 +173,7 @@ bool is_earlier_comparison(const fs::path& folder) {
     names.push_back(name_of(contestant) + ".pvd");
     names.push_back(name_of(contestant) + "_series");
   }
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (std::find(names.begin(), names.end(), entry.path().filename().string()) == names.end()) return false;
-  }
-  std::ifstream stream(folder / comparison_facts_file);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("kind", Json()) == comparison_kind;
+  return holds_result(folder, {comparison_facts_file, comparison_kind, names});
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 #include "output/write_study.h"
 
+#include "output/csv_cell.h"
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_plot.h"
 #include "study/price.h"
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,16 +64,10 @@ Json row_of(const StudySweep& sweep, const StudySetting& setting) {
   return row;
 }
 
-// An empty field stands for a number that is not finite.
-std::string field(const Json& value) {
+std::string cell_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
-  const double number = value.get<double>();
-  if (!std::isfinite(number)) return {};
-  std::ostringstream text;
-  text.precision(9);
-  text << number;
-  return text.str();
+  return csv_cell(value.get<double>());
 }
 
 std::string table(const Study& study) {
@@ -86,7 +78,7 @@ std::string table(const Study& study) {
       const Json row = row_of(sweep, setting);
       for (const auto& [name, value] : row.items()) {
         names.append(names.empty() ? 0 : 1, ',').append(name);
-        values.append(values.empty() ? 0 : 1, ',').append(field(value));
+        values.append(values.empty() ? 0 : 1, ',').append(cell_of(value));
       }
       lines.front() = names;
       lines.push_back(values);
@@ -203,18 +195,12 @@ void draw(const fs::path& folder, const Scene& scene, const Study& study, const 
   for (const char* extension : {".svg", ".png"}) write_plot(folder / (std::string(picture.file) + extension), plot);
 }
 
-// An earlier result holds study.json with the right kind, and nothing that was not written with it.
 bool is_earlier_study(const fs::path& folder) {
   std::vector<std::string> names = {study_facts_file, study_table_file};
   for (const Picture& picture : pictures()) {
     for (const char* extension : {".svg", ".png"}) names.push_back(std::string(picture.file) + extension);
   }
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (std::find(names.begin(), names.end(), entry.path().filename().string()) == names.end()) return false;
-  }
-  std::ifstream stream(folder / study_facts_file);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("kind", Json()) == study_kind;
+  return holds_result(folder, {study_facts_file, study_kind, names});
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct LampShape {
   Box box;
 };
 
-/// Those of every side that emits and of every luminaire.
+/// The shapes of every side that emits and of every luminaire.
 std::vector<LampShape> lamp_shapes(const Scene& scene, double extent);
 
 /// Where a lamp lies with respect to a closed solid: both when it crosses the surface, or comes so near to it that

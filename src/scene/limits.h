@@ -16,7 +16,7 @@ struct Reach {
   double distance = 0;  ///< m
 };
 
-/// Of a scene with faces.
+/// How far a scene reaches, which must have faces.
 Reach reach_of(const Scene& scene);
 
 /// \throws InputError at `where` when a position in metres is out of reach; the message calls it `what`.

@@ -18,7 +18,7 @@ class CoarseTransport {
   void learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving);
 
   /// The patch that shoots next when `waiting` is to be shot, W/m^2: the one with the most flux, summed over the bands.
-  /// Before that each group that has any shoots once, the one with the most flux first.
+  /// Before that, each group that has any shoots once, the one with the most flux first.
   Eigen::Index next_source(const Field& waiting) const;
 
   /// The irradiance that unshot radiosity and all its reflections are going to add, one row per patch. A group's light

@@ -51,7 +51,7 @@ double late_rate(const SolverRun& run, PatchIndex patches) {
 }
 
 // One solver against the reference.
-struct Race {
+struct ConvergenceTest {
   const CompareOptions& options;
   const Field& reference;
 
@@ -59,8 +59,9 @@ struct Race {
                 const SolverOptions& usual, const Observer& observer) const;
 };
 
-SolverRun Race::run(const Contestant& contestant, const RowTransport& transport, const RadiosityProblem& problem,
-                    const SolverOptions& usual, const Observer& observer) const {
+SolverRun ConvergenceTest::run(const Contestant& contestant, const RowTransport& transport,
+                               const RadiosityProblem& problem, const SolverOptions& usual,
+                               const Observer& observer) const {
   SolverOptions of_run = usual;
   of_run.solver = contestant.solver;
   of_run.relative_error = options.relative_error;
@@ -92,8 +93,8 @@ double assembly_seconds(const Simulation& simulation) {
   return seconds;
 }
 
-SolverRun run_on_demand(const Scene& scene, const Request& request, const Contestant& contestant, const Race& race,
-                        const Observer& observer) {
+SolverRun run_on_demand(const Scene& scene, const Request& request, const Contestant& contestant,
+                        const ConvergenceTest& test, const Observer& observer) {
   Request asked = request;
   asked.storage = contestant.storage;
   std::erase(asked.force, Effect::closure);
@@ -101,7 +102,7 @@ SolverRun run_on_demand(const Scene& scene, const Request& request, const Contes
   SolverRun run;
   const SolveWith solve_it = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                  const SolverOptions& usual, const Observer& watch) {
-    run = race.run(contestant, transport, problem, usual, watch);
+    run = test.run(contestant, transport, problem, usual, watch);
     return run.solution;
   };
   run.assembly_seconds = assembly_seconds(simulate(scene, asked, observer, {.solve = solve_it}));
@@ -139,10 +140,10 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     constexpr int steps = 60;
     const Eigen::ArrayXd strongest_lamp = highest(problem.exitance);
     comparison.spectral_radius = largest((strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0));
-    const Race race{options, reference.radiosity};
+    const ConvergenceTest test{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
       if (keeps_entries(contestant.storage))
-        comparison.runs.push_back(race.run(contestant, transport, problem, usual, watch));
+        comparison.runs.push_back(test.run(contestant, transport, problem, usual, watch));
     }
     return reference;
   };
@@ -152,10 +153,10 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
   if (!comparison.simulation.solution.trapped.empty()) return comparison;
 
   // 2. Those that compute their rows.
-  const Race race{options, comparison.simulation.solution.radiosity};
+  const ConvergenceTest test{options, comparison.simulation.solution.radiosity};
   for (const Contestant& contestant : options.contestants) {
     if (!keeps_entries(contestant.storage)) {
-      comparison.runs.push_back(run_on_demand(scene, with_matrix, contestant, race, observer));
+      comparison.runs.push_back(run_on_demand(scene, with_matrix, contestant, test, observer));
     }
   }
   return comparison;

@@ -2,8 +2,8 @@
 
 #include "base/parallel.h"
 #include "memory.h"
-#include "study/bench.h"
 #include "study/error_parts.h"
+#include "study/experiment.h"
 #include "study/price.h"
 #include "study/reference.h"
 #include "study/sweeps.h"
@@ -16,18 +16,18 @@ namespace patchlight {
 namespace {
 
 // What the settings are compared with, and what is told about it.
-struct Judge {
+struct ReferenceSolution {
   Reference reference;
   StudyReference facts;
 };
 
 // A quarter of the patches' area of the finest size and of every adaptive mesh, so that means over the patches of all
 // can be taken of it. Adaptive meshes for which it would not fit into memory are given up, the finest first.
-SizedMesh mesh_of_reference(const Bench& bench, std::vector<Simulation>& adaptive) {
-  SizedMesh reference = bench.meshes.finer;
+SizedMesh mesh_of_reference(const Experiment& experiment, std::vector<Simulation>& adaptive) {
+  SizedMesh reference = experiment.meshes.finer;
   for (std::size_t k = 0; k < adaptive.size(); ++k) {
     PatchMesh finer = finer_than(reference.mesh, adaptive[k].mesh);
-    if (static_cast<double>(memory_needed(finer.size(), bench.request)) > usable_memory(bench.request)) {
+    if (static_cast<double>(memory_needed(finer.size(), experiment.request)) > usable_memory(experiment.request)) {
       adaptive.resize(k);
       break;
     }
@@ -36,23 +36,24 @@ SizedMesh mesh_of_reference(const Bench& bench, std::vector<Simulation>& adaptiv
   return reference;
 }
 
-Judge judge_for(const Bench& bench, const Simulation& finest, std::vector<Simulation>& adaptive) {
-  Judge judge;
-  judge.reference.uniform = furnace_radiosity(finest.problem);
-  judge.facts.closed_form = judge.reference.uniform && finest.transport.lost.closed();
-  if (judge.facts.closed_form) return judge;
-  Request asked = bench.request;
+ReferenceSolution reference_solution(const Experiment& experiment, const Simulation& finest,
+                                     std::vector<Simulation>& adaptive) {
+  ReferenceSolution found;
+  found.reference.uniform = furnace_radiosity(finest.problem);
+  found.facts.closed_form = found.reference.uniform && finest.transport.lost.closed();
+  if (found.facts.closed_form) return found;
+  Request asked = experiment.request;
   asked.samples *= 4;
   asked.tolerance = std::max(1e-12, 0.01 * asked.tolerance.value_or(default_tolerance));
-  const Simulation finer = bench.run(mesh_of_reference(bench, adaptive), asked);
-  judge.reference = reference_from(finer);
+  const Simulation finer = experiment.run(mesh_of_reference(experiment, adaptive), asked);
+  found.reference = reference_from(finer);
   const StudySetting setting = setting_of(finer);
-  judge.facts.patches = setting.patches;
-  judge.facts.uniform_patches = bench.meshes.finer.mesh.size();
-  judge.facts.samples = setting.samples;
-  judge.facts.cpu_seconds = cpu_seconds_of(setting);
-  judge.facts.converged = finer.solution.converged;
-  return judge;
+  found.facts.patches = setting.patches;
+  found.facts.uniform_patches = experiment.meshes.finer.mesh.size();
+  found.facts.samples = setting.samples;
+  found.facts.cpu_seconds = cpu_seconds_of(setting);
+  found.facts.converged = finer.solution.converged;
+  return found;
 }
 
 }  // namespace
@@ -72,31 +73,31 @@ double cpu_seconds_of(const StudySetting& setting) {
 Study study(const Scene& scene, const Request& request, const StudyOptions& options, const Observer& observer) {
   const ThreadLimit threads(request.threads);
   // 1. The finest setting of the sweeps, and what all are judged by.
-  const Bench bench = bench_for(scene, request, options.sizes, observer);
-  const Tolerances tolerances = solve_to_tolerances(bench);
+  const Experiment experiment = experiment_for(scene, request, options.sizes, observer);
+  const Tolerances tolerances = solve_to_tolerances(experiment);
   const Simulation& finest = tolerances.runs.back();
   Study result;
   result.plan = finest.plan;
   result.trapped = finest.solution.trapped;
   if (!result.trapped.empty()) return result;
   std::vector<Simulation> adaptive;
-  if (options.adaptive) adaptive = solve_to_accuracies(bench);
-  const Judge judge = judge_for(bench, finest, adaptive);
-  const Reference& reference = judge.reference;
-  result.reference = judge.facts;
+  if (options.adaptive) adaptive = solve_to_accuracies(experiment);
+  const ReferenceSolution solution = reference_solution(experiment, finest, adaptive);
+  const Reference& reference = solution.reference;
+  result.reference = solution.facts;
 
   // 2. One quantity at a time, all together, and the estimators.
-  result.sweeps = competing_sweeps(bench, reference, tolerances);
+  result.sweeps = competing_sweeps(experiment, reference, tolerances);
   if (options.adaptive) result.sweeps.push_back(adaptive_sweep(adaptive, reference));
   if (options.estimators) {
-    for (StudySweep& sweep : estimator_sweeps(bench, reference)) result.sweeps.push_back(std::move(sweep));
+    for (StudySweep& sweep : estimator_sweeps(experiment, reference)) result.sweeps.push_back(std::move(sweep));
   }
 
   // 3. Orders, the reference's own error, the Pareto front, and what limits the finest setting.
-  const double patches = patches_of(judge.facts);
+  const double patches = patches_of(solution.facts);
   for (StudySweep& sweep : result.sweeps) sweep = with_orders(std::move(sweep), patches);
   const StudySweep& by_size = result.sweeps[1];
-  result.reference.bar = judge.facts.closed_form ? 0 : richardson_bar(by_size, patches);
+  result.reference.bar = solution.facts.closed_form ? 0 : richardson_bar(by_size, patches);
   result.parts = error_parts(scene, finest, discrepancy(finest, reference), result.sweeps);
   return with_fronts(std::move(result));
 }

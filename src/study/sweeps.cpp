@@ -28,13 +28,13 @@ std::vector<double> tolerances_for(double finest) {
 }
 
 // Sizes of patches with as many samples as the finest one has, which is known already.
-StudySweep sweep_sizes(const Bench& bench, const Reference& reference, StudySetting finest) {
+StudySweep sweep_sizes(const Experiment& experiment, const Reference& reference, StudySetting finest) {
   StudySweep sweep{"patch size at " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
-  Request asked = bench.request;
+  Request asked = experiment.request;
   asked.samples = finest.samples;
-  const std::vector<SizedMesh>& sizes = bench.meshes.sizes;
+  const std::vector<SizedMesh>& sizes = experiment.meshes.sizes;
   for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
-    sweep.settings.push_back(judged(bench.run(sizes[k], asked), reference));
+    sweep.settings.push_back(judged(experiment.run(sizes[k], asked), reference));
   }
   finest.own_error = finest.error;
   sweep.settings.push_back(std::move(finest));
@@ -42,18 +42,18 @@ StudySweep sweep_sizes(const Bench& bench, const Reference& reference, StudySett
 }
 
 // Half, once, twice and four times the samples asked for.
-StudySweep sweep_samples(const Bench& bench, const Reference& reference, const Simulation& finest) {
-  Request asked = bench.request;
+StudySweep sweep_samples(const Experiment& experiment, const Reference& reference, const Simulation& finest) {
+  Request asked = experiment.request;
   const int usual = asked.samples;
   asked.samples = 4 * finer_samples * usual;
-  const Field own = bench.run(bench.finest(), asked).solution.radiosity;
+  const Field own = experiment.run(experiment.finest(), asked).solution.radiosity;
   StudySweep sweep{"samples", Swept::samples, {}};
   for (const int samples : {std::max(1, usual / 2), usual, 2 * usual, 4 * usual}) {
     asked.samples = samples;
-    const int used = make_plan(bench.scene, asked).samples;
+    const int used = make_plan(experiment.scene, asked).samples;
     if (!sweep.settings.empty() && used == sweep.settings.back().samples) continue;
     const bool known = used == finest.plan.samples;
-    sweep.settings.push_back(judged(known ? finest : bench.run(bench.finest(), asked), reference, own));
+    sweep.settings.push_back(judged(known ? finest : experiment.run(experiment.finest(), asked), reference, own));
   }
   return sweep;
 }
@@ -66,7 +66,7 @@ StudySweep sweep_tolerances(const Tolerances& tolerances, const Reference& refer
 
 }  // namespace
 
-Tolerances solve_to_tolerances(const Bench& bench) {
+Tolerances solve_to_tolerances(const Experiment& experiment) {
   struct Run {
     double tolerance;
     Solution solution;
@@ -88,7 +88,7 @@ Tolerances solve_to_tolerances(const Bench& bench) {
     result.exact = solve(transport, problem, options, watch).radiosity;
     return runs.back().solution;
   };
-  Simulation simulation = bench.run(bench.finest(), bench.request, solve_all);
+  Simulation simulation = experiment.run(experiment.finest(), experiment.request, solve_all);
   for (Run& run : runs) {
     simulation.plan.solver.relative_error = run.tolerance;
     simulation.solution = std::move(run.solution);
@@ -100,26 +100,27 @@ Tolerances solve_to_tolerances(const Bench& bench) {
   return result;
 }
 
-std::vector<StudySweep> competing_sweeps(const Bench& bench, const Reference& reference, const Tolerances& tolerances) {
+std::vector<StudySweep> competing_sweeps(const Experiment& experiment, const Reference& reference,
+                                         const Tolerances& tolerances) {
   const Simulation& finest = tolerances.runs.back();
-  StudySweep by_samples = sweep_samples(bench, reference, finest);
-  StudySweep usual = sweep_sizes(bench, reference, judged(finest, reference));
-  StudySweep more = sweep_sizes(bench, reference, by_samples.settings.back());
+  StudySweep by_samples = sweep_samples(experiment, reference, finest);
+  StudySweep usual = sweep_sizes(experiment, reference, judged(finest, reference));
+  StudySweep more = sweep_sizes(experiment, reference, by_samples.settings.back());
   return {std::move(usual), std::move(more), std::move(by_samples), sweep_tolerances(tolerances, reference)};
 }
 
-std::vector<Simulation> solve_to_accuracies(const Bench& bench) {
+std::vector<Simulation> solve_to_accuracies(const Experiment& experiment) {
   std::vector<Simulation> solved;
-  Request asked = bench.request;
+  Request asked = experiment.request;
   asked.patches.reset();
-  asked.max_edge = bench.meshes.coarsest_edge / 2;
+  asked.max_edge = experiment.meshes.coarsest_edge / 2;
   asked.error_bars = true;
-  const std::size_t most = bench.finest().mesh.size();
+  const std::size_t most = experiment.finest().mesh.size();
   for (const double accuracy : {0.1, 0.03, 0.01, 0.003}) {
     asked.accuracy = accuracy;
-    asked.memory = std::min(usable_memory(bench.request), memory_needed(most, asked));
+    asked.memory = std::min(usable_memory(experiment.request), memory_needed(most, asked));
     try {
-      Simulation simulation = simulate(bench.scene, asked, bench.observer);
+      Simulation simulation = simulate(experiment.scene, asked, experiment.observer);
       const bool new_one = solved.empty() || simulation.mesh.size() != solved.back().mesh.size() ||
                            simulation.plan.samples != solved.back().plan.samples;
       if (new_one) solved.push_back(std::move(simulation));
@@ -136,13 +137,13 @@ StudySweep adaptive_sweep(const std::vector<Simulation>& solved, const Reference
   return sweep;
 }
 
-std::vector<StudySweep> estimator_sweeps(const Bench& bench, const Reference& reference) {
-  const std::vector<SizedMesh>& sizes = bench.meshes.sizes;
+std::vector<StudySweep> estimator_sweeps(const Experiment& experiment, const Reference& reference) {
+  const std::vector<SizedMesh>& sizes = experiment.meshes.sizes;
   const SizedMesh& mesh = sizes[sizes.size() - 1 - std::min(coarser_sizes, sizes.size() - 1)];
-  Request asked = bench.request;
+  Request asked = experiment.request;
   const int usual = asked.samples;
   asked.samples = finer_samples * 16 * usual;
-  const Field own = bench.run(mesh, asked).solution.radiosity;
+  const Field own = experiment.run(mesh, asked).solution.radiosity;
   std::vector<StudySweep> sweeps;
   for (const Estimator estimator :
        {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
@@ -150,7 +151,7 @@ std::vector<StudySweep> estimator_sweeps(const Bench& bench, const Reference& re
     asked.estimator = estimator;
     for (const int factor : {1, 4, 16}) {
       asked.samples = factor * usual * (estimator == Estimator::hemisphere ? hemisphere_factor : 1);
-      sweep.settings.push_back(judged(bench.run(mesh, asked), reference, own));
+      sweep.settings.push_back(judged(experiment.run(mesh, asked), reference, own));
     }
     sweeps.push_back(std::move(sweep));
   }

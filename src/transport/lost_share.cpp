@@ -42,7 +42,7 @@ struct Shares {
   double dark = 0;
 };
 
-struct Observatory {
+struct HemisphereSampler {
   const PatchMesh& mesh;
   const Occluder& occluder;
   double extent;
@@ -80,7 +80,7 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-std::vector<Seen> Observatory::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
+std::vector<Seen> HemisphereSampler::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
   const auto seen_at = [&](const Hit& hit) -> Seen {
     const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
     return {range.begin == range.end ? Sight::back : Sight::patch, hit};
@@ -116,7 +116,7 @@ std::vector<Seen> Observatory::look(PatchIndex patch, std::vector<Ray> rays, std
 }
 
 // Does another face lie against the one that was hit, where it was?
-bool Observatory::is_in_contact(const Hit& hit) const {
+bool HemisphereSampler::is_in_contact(const Hit& hit) const {
   const Vector& normal = mesh.normal[mesh.patches_on(hit.polygon, hit.side).begin];
   const Ray through{hit.point - behind * extent * normal, normal, hit.polygon};
   const auto next = occluder.first_hits({&through, 1})[0];
@@ -132,7 +132,8 @@ int unseen(std::span<const Seen> seen) { return count(seen, Sight::back) + count
 
 // Rays that start together. Where some meet backs, and so may be inside a solid, a face is a back too where another
 // lies against it: of two faces in one place a ray meets either.
-std::vector<Seen> Observatory::look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::vector<Ray>& rays,
+                                                   std::uint32_t seed) const {
   std::vector<Seen> seen = look(patch, rays, seed);
   for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
     const auto group = std::span(seen).subspan(first, rays_per_point);
@@ -146,7 +147,7 @@ std::vector<Seen> Observatory::look_together(PatchIndex patch, const std::vector
 
 // What groups of rays from one point each tell. A point is covered when every ray from it meets a back or a face that
 // lies against the patch.
-Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   const std::vector<Seen> sights = look_together(patch, rays, seed);
   int covered = 0;
   int exposed = 0;
@@ -173,7 +174,7 @@ Shares Observatory::measure_groups(PatchIndex patch, const std::vector<Ray>& ray
           static_cast<double>(dark) / std::max(1, exposed)};
 }
 
-Shares Observatory::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
+Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
   const std::vector<Seen> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
   if (unseen(sights) == 0) return {static_cast<double>(count(sights, Sight::nothing)) / rays, 0, 0, 0};
@@ -203,7 +204,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const Observatory observatory{mesh, occluder, 1 / occluder.frame().scale};
+  const HemisphereSampler sampler{mesh, occluder, 1 / occluder.frame().scale};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
@@ -212,7 +213,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
     const auto i = static_cast<PatchIndex>(k);
     const PatchIndex b = known.place[i];
     const Shares shares = b == no_patch
-                              ? observatory.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
+                              ? sampler.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
                               : Shares{before.escaped[b], before.at_backs[b], before.covered[b], before.dark[b]};
     lost.escaped[i] = shares.escaped;
     lost.at_backs[i] = shares.at_backs;

@@ -17,7 +17,7 @@ constexpr double grazing_slope = 1e-3;
 // A face lies against the receiver when it is so near to it, as a share of the scene's extent.
 constexpr double contact = 1e-5;
 
-struct Lookout {
+struct VisibilityTest {
   const Occluder& occluder;
   const Surfaces& surfaces;
   const PathReceiver& receiver;
@@ -30,7 +30,7 @@ struct Lookout {
 };
 
 // True when the ray meets a kept side, or gets into the open.
-bool Lookout::looks_out(const Ray& ray) const {
+bool VisibilityTest::looks_out(const Ray& ray) const {
   const auto hit = occluder.first_hits({&ray, 1}).front();
   if (hit) return surfaces.at(hit->polygon, hit->side).kept;
   // What lies in the receiver's plane is met only from a little behind.
@@ -40,7 +40,7 @@ bool Lookout::looks_out(const Ray& ray) const {
   return !second || second->distance * ray.direction.dot(normal) >= 2 * reach;
 }
 
-std::vector<Ray> Lookout::rays_from(const Point& point, std::uint32_t seed) const {
+std::vector<Ray> VisibilityTest::rays_from(const Point& point, std::uint32_t seed) const {
   std::vector<Ray> rays;
   for (const auto& u : scrambled_sobol(rays_per_point, seed)) {
     rays.push_back({point, frame * square_to_cosine_hemisphere(u[0], u[1]), receiver.polygon});
@@ -58,12 +58,13 @@ std::vector<Ray> Lookout::rays_from(const Point& point, std::uint32_t seed) cons
 std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const PathReceiver& receiver,
                                   std::span<const Point> points, std::uint64_t seed) {
   const Vector normal = surfaces.at(receiver.polygon, receiver.side).normal;
-  const Lookout lookout{occluder, surfaces, receiver, normal, frame_around(normal), contact / occluder.frame().scale};
+  const VisibilityTest visibility{
+      occluder, surfaces, receiver, normal, frame_around(normal), contact / occluder.frame().scale};
   std::vector<std::uint8_t> result;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const bool under_another = occluder.is_covered(receiver.polygon, receiver.side, points[k]);
-    const std::vector<Ray> rays = lookout.rays_from(points[k], hash({seed, k}));
-    const auto looks_out = [&](const Ray& ray) { return lookout.looks_out(ray); };
+    const std::vector<Ray> rays = visibility.rays_from(points[k], hash({seed, k}));
+    const auto looks_out = [&](const Ray& ray) { return visibility.looks_out(ray); };
     result.push_back(!under_another && std::any_of(rays.begin(), rays.end(), looks_out) ? 1 : 0);
   }
   return result;

@@ -22,7 +22,7 @@ struct SensorPlace {
   Standing standing = Standing::free;
 };
 
-/// Of all sensors of the scene, group after group. A sensor nearer to a polygon than 1e-5 of the polygon's size (or
+/// Those of all sensors, group after group. A sensor nearer to a polygon than 1e-5 of the polygon's size (or
 /// 1e-6 of the scene's) lies on it: it is read just before the side to which it faces, whichever side rounding has left
 /// it on, and at that distance if it does not face along the normal. It is inside a wall when all of 64 rays in all
 /// directions meet sides that take no part, by `sides` or by Sides::automatic, or meet from behind the polygons of one

@@ -13,7 +13,7 @@ namespace patchlight {
 /// Agreement means that a right solution would differ by so much or more with at least this probability.
 inline constexpr double least_probability = 0.01;
 
-/// And says nothing where bars, or what the noise of the paths leaves of the mean, are a larger share of the light.
+/// A verdict says nothing where bars, or what the noise of paths leaves of the mean, are a larger share of the light.
 inline constexpr double widest_bar = 0.1;
 
 /// What a comparison with path tracing says.

@@ -26,13 +26,13 @@ class EntryErrors {
   EntryErrors() = default;
   /// All entries exact. `area` of each patch in m^2.
   explicit EntryErrors(std::span<const double> area);
-  /// From codes() of patches with these areas; there must be one for each pair.
+  /// Takes codes() of patches with these areas; there must be one for each pair.
   EntryErrors(std::span<const double> area, std::vector<std::uint8_t> codes);
 
   /// Number of patches; 0 when nothing is kept.
   PatchIndex size() const { return static_cast<PatchIndex>(root_of_area_.size()); }
   EntryKind kind(PatchIndex i, PatchIndex j) const;
-  /// Of the exchange area S_ij, m^2; 0 unless it is estimated.
+  /// That of the exchange area S_ij, m^2; 0 unless it is estimated.
   double standard_error(PatchIndex i, PatchIndex j) const;
   /// Different pairs may be set by different threads at once.
   void set(PatchIndex i, PatchIndex j, EntryKind kind, double standard_error = 0);

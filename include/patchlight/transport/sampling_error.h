@@ -57,7 +57,7 @@ std::uint32_t sampling_effort(double form_factor);
 /// Index of an effort among them: its binary logarithm.
 std::size_t effort_index(std::uint32_t effort);
 
-/// Of the pairs whose rays disagreed with about this visible share, whatever their effort.
+/// The pairs whose rays disagreed with about this visible share, whatever their effort.
 AuditedPairs with_visible_share(const SamplingError& error, std::size_t bin);
 
 /// Standard error of an entry whose rays disagreed, as a share of U, when it took `effort` times the usual number of

@@ -7,8 +7,8 @@
 
 namespace patchlight {
 
-/// Where a study's settings are tried.
-struct Bench {
+/// What the settings of a study have in common.
+struct Experiment {
   const Scene& scene;
   Request request;  ///< of the finest setting
   NestedSizes meshes;
@@ -20,15 +20,15 @@ struct Bench {
 };
 
 /// \throws MemoryError when the reference would not fit.
-Bench bench_for(const Scene& scene, const Request& request, int sizes, const Observer& observer);
+Experiment experiment_for(const Scene& scene, const Request& request, int sizes, const Observer& observer);
 
 /// What a solution has cost; its errors are left open.
 StudySetting setting_of(const Simulation& simulation);
 
-/// With its errors against the reference. Its own error is that of the patch means, too.
+/// The setting with its errors against the reference. Its own error is that of the patch means, too.
 StudySetting judged(const Simulation& simulation, const Reference& reference);
 
-/// With an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
+/// The setting with an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
 StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own);
 
 }  // namespace patchlight

@@ -1,8 +1,8 @@
-#include "study/bench.h"
+#include "study/experiment.h"
 
 namespace patchlight {
 
-Simulation Bench::run(const SizedMesh& on, const Request& asked, const SolveWith& solve) const {
+Simulation Experiment::run(const SizedMesh& on, const Request& asked, const SolveWith& solve) const {
   Request of_mesh = asked;
   of_mesh.force.push_back(Effect::interreflection);  // a matrix and a solver, even where no light is reflected
   of_mesh.patches.reset();
@@ -10,7 +10,7 @@ Simulation Bench::run(const SizedMesh& on, const Request& asked, const SolveWith
   return simulate(scene, of_mesh, observer, {.solve = solve, .mesh = [&on] { return on.mesh; }});
 }
 
-Bench bench_for(const Scene& scene, const Request& request, int sizes, const Observer& observer) {
+Experiment experiment_for(const Scene& scene, const Request& request, int sizes, const Observer& observer) {
   return {scene, request, nested_sizes(scene, request, sizes), observer};
 }
 
