@@ -1,10 +1,14 @@
 #include "patchlight/light/photometry.h"
 
+#include "light/bands.h"
+
 namespace patchlight {
 
 double luminance(const Spectrum& radiance) {
-  if (radiance.size() != 3) return luminous_efficacy * radiance.mean();
-  return luminous_efficacy * (0.2126 * radiance[0] + 0.7152 * radiance[1] + 0.0722 * radiance[2]);  // Rec. 709
+  const Bands bands{radiance.size()};
+  double visible = 0;
+  for (Eigen::Index band = 0; band < bands.number; ++band) visible += bands.luminous_weight(band) * radiance[band];
+  return luminous_efficacy * visible;
 }
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #include "patchlight/output/write_points.h"
 
+#include "light/bands.h"
 #include "output/csv_cell.h"
 #include "output/vtk_points.h"
 #include "output/write_bytes.h"
@@ -12,15 +13,14 @@ namespace patchlight {
 namespace {
 
 // ",E_r,E_g,E_b", or ",E_1,E_2" for other bands than three.
-std::string band_columns(const std::string& quantity, Eigen::Index bands) {
-  if (bands == 3) return "," + quantity + "_r," + quantity + "_g," + quantity + "_b";
+std::string band_columns(const std::string& quantity, const Bands& bands) {
   std::string names;
-  for (Eigen::Index band = 1; band <= bands; ++band) names += "," + quantity + "_" + std::to_string(band);
+  for (Eigen::Index band = 0; band < bands.number; ++band) names += "," + quantity + "_" + bands.name(band);
   return names;
 }
 
 std::string header(const Readings& readings) {
-  const Eigen::Index bands = readings.irradiance.cols();
+  const Bands bands{readings.irradiance.cols()};
   std::string names = "x,y,z,nx,ny,nz" + band_columns("E", bands) + band_columns("SE", bands);
   for (const auto& [name, part] : parts_of(readings.errors)) {
     if (part->size() > 0) names += band_columns(std::string("SE_") + name, bands);

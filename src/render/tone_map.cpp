@@ -2,6 +2,8 @@
 
 #include "patchlight/light/photometry.h"
 
+#include "light/bands.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -15,6 +17,17 @@ constexpr double shoulder = 0.8;          // luminances above this share of whit
 
 // Luminance in units in which a grey radiance of 1 has luminance 1.
 double display_luminance(const Spectrum& radiance) { return luminance(radiance) / luminous_efficacy; }
+
+// What a radiance is shown as.
+std::array<double, 3> linear_rgb(const Spectrum& radiance) {
+  const Bands bands{radiance.size()};
+  std::array<double, 3> sum{};
+  for (Eigen::Index band = 0; band < bands.number; ++band) {
+    const std::array<double, 3> colour = bands.rgb(band);
+    for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += colour[channel] * radiance[band];
+  }
+  return sum;
+}
 
 // The identity up to the shoulder, from there an exponential with the same slope that tends to 1.
 double roll_off(double value) {
@@ -57,10 +70,9 @@ std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, dou
     const double value = display_luminance(exposed);
     // One factor for all channels keeps the hue.
     const double scale = value > 0 ? roll_off(value) / value : 0;
+    const std::array<double, 3> linear = linear_rgb(exposed);
     auto& colour = colours[static_cast<std::size_t>(row)];
-    for (Eigen::Index channel = 0; channel < 3; ++channel) {
-      colour[static_cast<std::size_t>(channel)] = srgb(scale * (exposed.size() == 3 ? exposed[channel] : value));
-    }
+    for (std::size_t channel = 0; channel < 3; ++channel) colour[channel] = srgb(scale * linear[channel]);
   }
   return colours;
 }
