@@ -127,7 +127,7 @@ Scene scene_as_planned(Scene scene, const Plan& plan) {
 
 DirectIrradiance direct_irradiance_as_planned(const Setting& setting, const Plan& plan, const PatchMesh& mesh) {
   const auto trace = [&](const Scene& scene) {
-    return direct_irradiance(lighting_of(scene, setting.coverings), mesh, {.seed = plan.seed}, setting.observer);
+    return direct_irradiance(lighting_of(scene, *setting.tracing), mesh, {.seed = plan.seed}, setting.observer);
   };
   if (plan.lamp_colour.size() == 0) return trace(setting.scene);
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.

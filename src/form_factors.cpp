@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "memory.h"
+#include "visibility/tracing.h"
 
 #include <utility>
 
@@ -19,10 +20,10 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, const 
   PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
   require_memory(mesh.size(), used);
 
-  const Coverings coverings = find_coverings(scene, plan.sides);
-  for (const Problem& problem : problems_with_overlaps(scene, coverings)) plan.notes.push_back(problem.what);
-  const Occluder occluder(scene, Occluder::Blockers::inside_hull, coverings);
-  Exchange exchange = trace_exchange(mesh, occluder, assembly_options(plan), plan.lost_share_rays, observer);
+  const Tracing tracing(scene, find_coverings(scene, plan.sides));
+  for (const Problem& problem : problems_with_overlaps(scene, tracing.coverings())) plan.notes.push_back(problem.what);
+  Exchange exchange =
+      trace_exchange(mesh, tracing.between_patches(), assembly_options(plan), plan.lost_share_rays, observer);
   if (plan.close) {
     const EntryErrors none;
     const bool weighs = weighs_by_errors(exchange.lost, mesh.size());

@@ -1,7 +1,6 @@
 #include "patchlight/simulate.h"
 
 #include "patchlight/mesh/mesher.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/parallel.h"
 #include "check_request.h"
@@ -13,8 +12,10 @@
 #include "solve_mesh.h"
 #include "stage_clock.h"
 #include "to_accuracy.h"
+#include "visibility/tracing.h"
 
 #include <cassert>
+#include <memory>
 #include <utility>
 
 namespace patchlight {
@@ -36,18 +37,17 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::plan);
 
   // 2. What stands between patches, and what lies on them.
-  const Coverings coverings = find_coverings(scene, plan.sides);
-  for (const Problem& problem : problems_with_overlaps(scene, coverings)) plan.notes.push_back(problem.what);
-  const Occluder occluder(scene, blockers_of(plan), coverings);
+  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan));
+  for (const Problem& problem : problems_with_overlaps(scene, tracing->coverings())) plan.notes.push_back(problem.what);
   // Where patches are refined, error bars see a lamp that is close.
   if (!refines(request)) {
-    for (std::string& note : notes_on_close_lamps(scene, occluder, plan.max_edge))
+    for (std::string& note : notes_on_close_lamps(scene, tracing->between_patches(), plan.max_edge))
       plan.notes.push_back(std::move(note));
   }
 
   // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
   //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.
-  const Setting setting{lit, coverings, occluder, with, observer};
+  const Setting setting{lit, tracing, with, observer};
   Simulation result = refines(request) ? solve_to_accuracy(setting, planned, plan, clock).simulation
                                        : solve_mesh(setting, planned, plan, clock).simulation;
   result.spaces = errors_by_space(lit, result);

@@ -27,22 +27,26 @@ namespace {
 Assembly assembly_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
   const PatchMesh& mesh = to_solve.mesh.patches;
   const AssemblyOptions options = assembly_options(plan);
-  if (!to_solve.known) return assemble_exchange_areas(mesh, setting.occluder, options, setting.observer);
-  return assemble_exchange_areas(mesh, setting.occluder, options, {*to_solve.known, to_solve.place}, setting.observer);
+  if (!to_solve.known)
+    return assemble_exchange_areas(mesh, setting.tracing->between_patches(), options, setting.observer);
+  return assemble_exchange_areas(mesh, setting.tracing->between_patches(), options, {*to_solve.known, to_solve.place},
+                                 setting.observer);
 }
 
 LostShare lost_share_of(const Setting& setting, const Plan& plan, const MeshToSolve& to_solve) {
   const auto& [mesh, place, known, lost] = to_solve;
   if (!lost)
-    return measure_lost_share(mesh.patches, setting.occluder, plan.lost_share_rays, plan.seed, setting.observer);
-  return measure_lost_share(mesh.patches, setting.occluder, KnownShares{*lost, place}, plan.seed, setting.observer);
+    return measure_lost_share(mesh.patches, setting.tracing->between_patches(), plan.lost_share_rays, plan.seed,
+                              setting.observer);
+  return measure_lost_share(mesh.patches, setting.tracing->between_patches(), KnownShares{*lost, place}, plan.seed,
+                            setting.observer);
 }
 
 // Exchange areas by computation, unless they are known or computed on demand.
 Exchange exchange_on(const Setting& setting, const Plan& plan, const PatchMesh& mesh) {
   if (setting.with.exchange) return setting.with.exchange(mesh);
   const auto find = keeps_entries(plan.storage) ? trace_exchange : exchange_on_demand;
-  return find(mesh, setting.occluder, assembly_options(plan), plan.lost_share_rays, setting.observer);
+  return find(mesh, setting.tracing->between_patches(), assembly_options(plan), plan.lost_share_rays, setting.observer);
 }
 
 TransportFacts facts_of(const Exchange& exchange) {
@@ -62,12 +66,14 @@ ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& 
 }  // namespace
 
 SolvedMesh solve_mesh(const Setting& setting, const Plan& plan, MeshToSolve to_solve, StageClock& clock) {
-  const auto& [scene, coverings, occluder, with, observer] = setting;
+  const auto& [scene, tracing, with, observer] = setting;
+  const Occluder& occluder = tracing->between_patches();
   SolvedMesh result;
   result.mesh = to_solve.mesh;
   Simulation& simulation = result.simulation;
   TransportFacts& facts = simulation.transport;
   simulation.plan = plan;
+  simulation.tracing = tracing;
   simulation.mesh = to_solve.mesh.patches;
   const PatchMesh& mesh = simulation.mesh;
 

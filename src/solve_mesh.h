@@ -3,9 +3,9 @@
 #include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "stage_clock.h"
+#include "visibility/tracing.h"
 
 #include <memory>
 #include <optional>
@@ -15,8 +15,7 @@ namespace patchlight {
 /// What a scene is solved with, on one mesh after the other.
 struct Setting {
   const Scene& scene;
-  const Coverings& coverings;
-  const Occluder& occluder;
+  std::shared_ptr<const Tracing> tracing;
   const Steps& with;
   const Observer& observer;
 };

@@ -30,7 +30,7 @@ Field direct_difference(const Setting& setting, const Simulation& simulation, co
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = assembly_options(simulation.plan);
   again.seed = hash({simulation.plan.seed, 1});
-  const auto transport = on_demand_transport(simulation.mesh, setting.occluder, again, area);
+  const auto transport = on_demand_transport(simulation.mesh, setting.tracing->between_patches(), again, area);
   const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, setting.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }

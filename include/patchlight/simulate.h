@@ -9,6 +9,7 @@
 #include "patchlight/transport/exchange.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ struct SpaceErrors {
   AccuracyStep errors;  ///< with the number of patches; no seconds
 };
 
+class Tracing;
+
 /// A solved scene.
 struct Simulation {
   Plan plan;
@@ -67,7 +70,8 @@ struct Simulation {
   std::vector<SpaceErrors> spaces = {};  ///< with error bars, where closed shells with openings divide the patches of
                                          ///< interest: inside and outside; else empty
   std::vector<StageCost> costs;
-  Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  Field direct_standard_error = {};             ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of the solution
 };
 
 /// The exchange between the patches of a mesh where it is known already.

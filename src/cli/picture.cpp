@@ -28,9 +28,9 @@ std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& s
 }
 
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Occluder& occluder, const Observer& observer) {
+                          const Observer& observer) {
   const PictureOptions options{.camera = camera_for(arguments, scene), .colors = arguments.colors};
-  const Picture picture = take_picture(scene, simulation, occluder, options, observer);
+  const Picture picture = take_picture(scene, simulation, options, observer);
   return picture.brightest ? with_legend(picture.image, 0, *picture.brightest, "luminance, cd/m^2") : picture.image;
 }
 

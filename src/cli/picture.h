@@ -2,7 +2,6 @@
 
 #include "patchlight/render/image.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "cli/arguments.h"
 
@@ -16,6 +15,6 @@ std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& s
 
 /// The picture that the arguments ask for, with a legend where its colours are false. \throws Cancelled.
 DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Occluder& occluder, const Observer& observer);
+                          const Observer& observer);
 
 }  // namespace patchlight::cli

@@ -83,14 +83,13 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   Simulation& simulation = results.simulation;
   if (scene.sensors.empty() && arguments.picture.empty()) return results;
   StageClock looking;
-  const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));
   if (!scene.sensors.empty()) {
     results.points_outputs = points_outputs(arguments, scene);
-    results.sensors = read_sensors(scene, simulation, occluder, observer);
+    results.sensors = read_sensors(scene, simulation, observer);
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
-    results.picture = make_picture(arguments, scene, simulation, occluder, observer);
+    results.picture = make_picture(arguments, scene, simulation, observer);
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());

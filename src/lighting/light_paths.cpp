@@ -5,13 +5,6 @@
 namespace patchlight {
 namespace {
 
-bool has_openings(const Scene& scene) {
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_opening(scene, p)) return true;
-  }
-  return false;
-}
-
 Spectrum transmittance_of(const Scene& scene, PolygonIndex polygon, Side side) {
   const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
   if (material.transmittance.size() > 0) return material.transmittance;
@@ -20,12 +13,12 @@ Spectrum transmittance_of(const Scene& scene, PolygonIndex polygon, Side side) {
 
 }  // namespace
 
-LightPaths::LightPaths(const Scene& scene, const Coverings& coverings)
+LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
     : bounds_(bounds(scene)),
-      opaque_(scene, Occluder::Blockers::opaque, coverings),
+      opaque_(tracing.opaque_faces(scene)),
+      clear_(tracing.clear_faces(scene)),
       bands_(scene.materials.front().reflectance.size()) {
-  if (!has_openings(scene)) return;
-  clear_.emplace(scene, Occluder::Blockers::clear);
+  if (!clear_) return;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     openings_.push_back({transmittance_of(scene, p, Side::front), transmittance_of(scene, p, Side::back)});
 }
@@ -38,7 +31,7 @@ Field LightPaths::transmittance(std::span<const Segment> segments) const {
 }
 
 std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) const {
-  const auto blocked = opaque_.occluded(segments);
+  const auto blocked = opaque_->occluded(segments);
   const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
   std::vector<Passage> found(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k) {
@@ -76,11 +69,11 @@ Point LightPaths::beyond(const Point& from, const Vector& direction) const {
 }
 
 bool LightPaths::is_covered_in_part(PolygonIndex polygon, Side side) const {
-  return opaque_.is_covered_in_part(polygon, side);
+  return opaque_->is_covered_in_part(polygon, side);
 }
 
 bool LightPaths::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
-  return opaque_.is_covered_in_part(polygon, side) && opaque_.is_covered(polygon, side, place);
+  return opaque_->is_covered_in_part(polygon, side) && opaque_->is_covered(polygon, side, place);
 }
 
 }  // namespace patchlight

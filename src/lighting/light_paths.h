@@ -1,9 +1,10 @@
 #pragma once
 
 #include "patchlight/base/field.h"
-#include "patchlight/visibility/occluder.h"
 
-#include <optional>
+#include "visibility/tracing.h"
+
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct Passage {
 /// outside the scene.
 class LightPaths {
  public:
-  explicit LightPaths(const Scene& scene, const Coverings& coverings = {});
+  LightPaths(const Scene& scene, const Tracing& tracing);
 
   /// Per segment (row) and band (column).
   Field transmittance(std::span<const Segment> segments) const;
@@ -46,8 +47,8 @@ class LightPaths {
   Passage through_openings(const Segment& segment) const;
 
   Box bounds_;
-  Occluder opaque_;
-  std::optional<Occluder> clear_;                  // where there are openings
+  std::shared_ptr<const Occluder> opaque_;
+  std::shared_ptr<const Occluder> clear_;          // null where there are no openings
   std::vector<std::array<Spectrum, 2>> openings_;  // per polygon and side, where there are any
   Eigen::Index bands_;
 };

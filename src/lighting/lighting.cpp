@@ -81,17 +81,18 @@ Opening opening_of(const Scene& scene, PolygonIndex polygon) {
 
 }  // namespace
 
-Lighting lighting_of(const Scene& scene, const Coverings& coverings) {
+Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
   Lighting lighting{.luminaires = scene.luminaires,
                     .sun = {},
                     .sky = {},
                     .openings = {},
                     .up = scene.up,
                     .bands = scene.materials.front().reflectance.size(),
-                    .paths = LightPaths(scene, coverings),
+                    .paths = LightPaths(scene, tracing),
                     .shades = {}};
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
-  if (lighting.sun || !scene.luminaires.empty()) lighting.shades = std::make_shared<const Shades>(scene, coverings);
+  if (lighting.sun || !scene.luminaires.empty())
+    lighting.shades = std::make_shared<const Shades>(scene, tracing.coverings());
   if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));

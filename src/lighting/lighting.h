@@ -36,8 +36,8 @@ struct Lighting {
   std::shared_ptr<const Shades> shades;  ///< of sun and luminaires; null without them
 };
 
-/// Of a scene that check() has passed. With `coverings` places over which another polygon lies get no light.
-Lighting lighting_of(const Scene& scene, const Coverings& coverings = {});
+/// Of a scene that check() has passed. Places over which another polygon lies get no light.
+Lighting lighting_of(const Scene& scene, const Tracing& tracing);
 
 /// Light that arrives at a point from one direction.
 struct Arrival {

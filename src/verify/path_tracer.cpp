@@ -1,7 +1,6 @@
 #include "patchlight/verify/path_tracer.h"
 
 #include "patchlight/scene/coverings.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
@@ -9,9 +8,11 @@
 #include "verify/lamps.h"
 #include "verify/lights.h"
 #include "verify/surfaces.h"
+#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -78,7 +79,8 @@ Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
 double uniform(std::initializer_list<std::uint64_t> counters) { return (hash(counters) + 0.5) * 0x1p-32; }
 
 struct PathTracer {
-  Occluder occluder;
+  std::shared_ptr<const Tracing> tracing;
+  const Occluder& occluder;
   Surfaces surfaces;
   Lamps lamps;
   std::optional<Lighting> lights;   // where there are luminaires, sun or sky
@@ -279,15 +281,10 @@ Field mean_and_error(std::span<const Batch> batches) {
 
 PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
   const Surfaces surfaces = surfaces_of(scene, sides);
-  const Coverings coverings = find_coverings(scene, sides);
-  PathTracer tracer{Occluder(scene, Occluder::Blockers::all, coverings),
-                    surfaces,
-                    lamps_of(scene, surfaces),
-                    {},
-                    LightPaths(scene, coverings),
-                    {},
-                    scene.materials.front().reflectance.size()};
-  if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, coverings);
+  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, sides), Occluder::Blockers::all);
+  PathTracer tracer{tracing, tracing->all_faces(scene),   surfaces, lamps_of(scene, surfaces),
+                    {},      LightPaths(scene, *tracing), {},       scene.materials.front().reflectance.size()};
+  if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, *tracing);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);
   return tracer;
 }

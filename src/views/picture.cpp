@@ -4,6 +4,8 @@
 #include "patchlight/render/render.h"
 #include "patchlight/render/tone_map.h"
 
+#include "visibility/tracing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -51,8 +53,9 @@ Field display_radiance(const Simulation& simulation) {
   return radiosity / std::numbers::pi;  // L = B / pi
 }
 
-Picture take_picture(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
-                     const PictureOptions& options, const Observer& observer) {
+Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options,
+                     const Observer& observer) {
+  const Occluder& occluder = simulation.tracing->all_faces(scene);
   const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);

@@ -7,6 +7,7 @@
 #include "effects.h"
 #include "gather/doubtful_sensors.h"
 #include "lighting/direct_irradiance.h"
+#include "visibility/tracing.h"
 
 #include <limits>
 #include <numbers>
@@ -59,15 +60,14 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.seed;
-  const Coverings coverings = find_coverings(scene, simulation.plan.sides);
-  const Occluder occluder(scene, Occluder::Blockers::all, coverings);
-  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, occluder, sensors,
+  const Tracing& tracing = *simulation.tracing;
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, tracing.all_faces(whole), sensors,
                                                   {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
   SensorErrors& errors = gathered.errors;
   if (has_point_or_daylight(scene)) {
     std::vector<SurfacePoint> points;
     for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, coverings), points, {.seed = seed}, observer);
+    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, tracing), points, {.seed = seed}, observer);
     gathered.irradiance += direct.irradiance;
     errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
   }
@@ -85,9 +85,9 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
 
 }  // namespace
 
-SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
-                        const Observer& observer) {
-  const std::vector<SensorPlace> places = place_sensors(scene, simulation.plan.sides, occluder);
+SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
+  const std::vector<SensorPlace> places =
+      place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
   return {readings_at(places, scene, simulation, observer), doubtful_sensors(scene, places)};
 }
 

@@ -1,7 +1,8 @@
 #include "patchlight/views/surface.h"
 
 #include "patchlight/render/smooth.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/tracing.h"
 
 #include <numbers>
 
@@ -9,7 +10,8 @@ namespace patchlight {
 
 SolvedSurface surface_of(const Scene& scene, const Simulation& simulation) {
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
-  return {scene, simulation, smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(scene)).at_vertices};
+  const Occluder& occluder = simulation.tracing->all_faces(scene);
+  return {scene, simulation, smooth(simulation.mesh, radiance, simulation.problem.area, occluder).at_vertices};
 }
 
 }  // namespace patchlight

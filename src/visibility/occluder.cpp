@@ -94,52 +94,32 @@ struct TriangleScene {
   }
 };
 
-bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
-  return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
-}
-
-}  // namespace
-
-struct Occluder::Tracer {
-  RTCDevice device = nullptr;
-  Point centre = Point::Zero();
-  double scale = 1;  // 1 / extent: rays are traced in a scene of about unit size
-  TriangleScene everything;
-  TriangleScene blockers;             // those that can block a segment
-  TriangleScene panes;                // those that can weaken it
-  std::vector<double> transmittance;  // per polygon; none where none is clear
-  std::vector<std::uint8_t> left_out;
-  ShaftCuller shafts;
+// All polygons of a scene, which rays meet, in a scene of about unit size.
+struct Faces {
+  RTCDevice device = rtcNewDevice(nullptr);
+  Point centre;
+  double scale;  // 1 / extent
+  TriangleScene triangles;
   CoveredPlaces covered_places;
 
-  Tracer(const Scene& scene, Blockers blockers, Coverings coverings);
-  ~Tracer() { rtcReleaseDevice(device); }
-  Tracer(const Tracer&) = delete;
-  Tracer& operator=(const Tracer&) = delete;
+  Faces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings);
+  ~Faces() { rtcReleaseDevice(device); }
+  Faces(const Faces&) = delete;
+  Faces& operator=(const Faces&) = delete;
 
   Point recentred(const Point& point) const { return scale * (point - centre); }
   void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
              RTCFilterFunctionN filter = keep_separating_hits) const;
-  float transmittance_of(Crossed crossed) const;
-  std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
-  void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings)
-    : device(rtcNewDevice(nullptr)),
-      transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
-      left_out(left_out_by(which, scene)),
-      shafts(scene, left_out) {
+Faces::Faces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings) {
   // The memory may not do for its threads.
   if (device == nullptr) throw std::bad_alloc();
   rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
   const Box box = main_bounds(scene);
   centre = box.center();
   scale = 1 / box.diagonal().norm();
-  const bool some_meet_rays_alone = which == Blockers::inside_hull || which == Blockers::none;
-  build(everything, scene, some_meet_rays_alone ? none_of(scene) : left_out);
-  build(blockers, scene, without_kind(left_out, transmittance, true));
-  if (!transmittance.empty()) build(panes, scene, without_kind(left_out, transmittance, false), list_crossed);
+  build(triangles, scene, without);
   covered_places.coverings = std::move(coverings);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     std::vector<Point> points = corner_points(scene, p);
@@ -148,8 +128,8 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, Coverings coverings
   }
 }
 
-void Occluder::Tracer::build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
-                             RTCFilterFunctionN filter) const {
+void Faces::build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
+                  RTCFilterFunctionN filter) const {
   std::vector<Eigen::Vector3f> corners;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (without[p]) continue;
@@ -186,6 +166,48 @@ void Occluder::Tracer::build(TriangleScene& target, const Scene& scene, const st
   rtcCommitScene(target.scene);
 }
 
+bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
+  return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
+}
+
+// Polygons that rays do not meet: those of the other kind, where only one kind is asked for.
+std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
+  return lets_through(which) ? none_of(scene) : left_out_by(which, scene);
+}
+
+}  // namespace
+
+struct Occluder::Tracer {
+  std::shared_ptr<const Faces> faces;
+  const TriangleScene* blockers = nullptr;  // those that can block a segment
+  TriangleScene own_blockers;               // unless these are all faces
+  TriangleScene panes;                      // those that can weaken it
+  std::vector<double> transmittance;        // per polygon; none where none is clear
+  std::vector<std::uint8_t> left_out;
+  ShaftCuller shafts;
+
+  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const Faces> met);
+
+  Point recentred(const Point& point) const { return faces->recentred(point); }
+  float transmittance_of(Crossed crossed) const;
+  std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
+  void trace_packet(std::span<const Segment> segments, float* arriving) const;
+};
+
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const Faces> met)
+    : faces(std::move(met)),
+      blockers(&faces->triangles),
+      transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
+      left_out(left_out_by(which, scene)),
+      shafts(scene, left_out) {
+  const std::vector<std::uint8_t> not_blocking = without_kind(left_out, transmittance, true);
+  if (not_blocking != never_met(which, scene)) {
+    faces->build(own_blockers, scene, not_blocking);
+    blockers = &own_blockers;
+  }
+  if (!transmittance.empty()) faces->build(panes, scene, without_kind(left_out, transmittance, false), list_crossed);
+}
+
 // The product over the polygons in their order in the scene: the same bits in whichever order they were met.
 float Occluder::Tracer::transmittance_of(Crossed crossed) const {
   std::sort(crossed.polygons.begin(), crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count));
@@ -196,6 +218,7 @@ float Occluder::Tracer::transmittance_of(Crossed crossed) const {
 
 // What arrives along segments: 0 for one that is blocked, else the product of the transmittances on its way.
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* arriving) const {
+  const CoveredPlaces& covered_places = faces->covered_places;
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[packet_size];
   ExactRay exact[packet_size];
@@ -223,7 +246,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
   }
   Context context{new_context(), exact, nullptr, covered_places.any() ? &covered_places : nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, blockers.scene, &context.embree, &rays);
+  rtcOccluded16(valid, blockers->scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const bool blocked = valid[k] == 0 || rays.tfar[k] < 0;
     arriving[k] = blocked ? 0.0F : 1.0F;
@@ -267,13 +290,14 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
   unsigned blocked = 0;
   for (unsigned k = 0; k < ShadowPacket::size; ++k) {
-    const bool covered = tracer_->covered_places.any() && covers_end(tracer_->covered_places, exact_ray(packet, k));
+    const bool covered =
+        tracer_->faces->covered_places.any() && covers_end(tracer_->faces->covered_places, exact_ray(packet, k));
     blocked |= static_cast<unsigned>(covered) << k;
     valid[k] = covered ? 0 : -1;
   }
   Context context{new_context(), nullptr, &packet, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, tracer_->blockers.scene, &context.embree, &rays);
+  rtcOccluded16(valid, tracer_->blockers->scene, &context.embree, &rays);
   for (unsigned k = 0; k < ShadowPacket::size; ++k) blocked |= static_cast<unsigned>(rays.tfar[k] < 0) << k;
   return static_cast<std::uint16_t>(blocked);
 }
@@ -300,9 +324,9 @@ std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, c
   RTCRayHit query = new_query(from, to - from, 1);
   const ExactRay exact{from, to, no_polygon, no_polygon};
   Context context{new_context(), &exact, nullptr, nullptr};
-  rtcIntersect1(blockers.scene, &context.embree, &query);
+  rtcIntersect1(blockers->scene, &context.embree, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return blockers.planes[query.hit.primID].polygon;
+  return blockers->planes[query.hit.primID].polygon;
 }
 
 bool Occluder::hides(std::span<const Point> first, std::span<const Point> second) const {
@@ -316,7 +340,7 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
   };
   const auto met = tracer_->first_polygon(middle(from), middle(to));
   if (!met) return false;
-  const std::vector<FlatPolygon>& polygons = tracer_->covered_places.polygons;
+  const std::vector<FlatPolygon>& polygons = tracer_->faces->covered_places.polygons;
   if (cuts_all(polygons[*met], from, to, in_plane_tolerance)) return true;
   const auto other = tracer_->first_polygon(middle(to), middle(from));
   return other && *other != *met && cuts_all(polygons[*other], from, to, in_plane_tolerance);
@@ -324,16 +348,22 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
 
 const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }
 
-TracingFrame Occluder::frame() const { return {tracer_->centre, tracer_->scale}; }
+TracingFrame Occluder::frame() const { return {tracer_->faces->centre, tracer_->faces->scale}; }
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings)
-    : tracer_(std::make_unique<Tracer>(scene, blockers, std::move(coverings))) {}
+    : tracer_(std::make_unique<Tracer>(
+          scene, blockers, std::make_shared<const Faces>(scene, never_met(blockers, scene), std::move(coverings)))) {}
+
+Occluder::Occluder(const Scene& scene, Blockers blockers, const Occluder& like)
+    : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces)) {
+  assert(lets_through(blockers));
+}
 Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
 bool Occluder::can_occlude() const {
-  return !tracer_->blockers.planes.empty() || !tracer_->panes.planes.empty() || tracer_->covered_places.any();
+  return !tracer_->blockers->planes.empty() || !tracer_->panes.planes.empty() || tracer_->faces->covered_places.any();
 }
 
 double Occluder::transmittance(PolygonIndex polygon) const {
@@ -343,11 +373,11 @@ double Occluder::transmittance(PolygonIndex polygon) const {
 double Occluder::held_share(PolygonIndex polygon) const { return held_of(transmittance(polygon)); }
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
-  return tracer_->covered_places.covers(polygon, side, tracer_->recentred(place));
+  return tracer_->faces->covered_places.covers(polygon, side, tracer_->recentred(place));
 }
 
 bool Occluder::is_covered_in_part(PolygonIndex polygon, Side side) const {
-  return !tracer_->covered_places.coverings.over_side(polygon, side).empty();
+  return !tracer_->faces->covered_places.coverings.over_side(polygon, side).empty();
 }
 
 std::vector<float> Occluder::transmittance(std::span<const Segment> segments) const {
@@ -375,16 +405,17 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
-    Context context{new_context(), &exact, nullptr, tracer_->covered_places.any() ? &tracer_->covered_places : nullptr};
-    rtcIntersect1(tracer_->everything.scene, &context.embree, &query);
+    Context context{new_context(), &exact, nullptr,
+                    tracer_->faces->covered_places.any() ? &tracer_->faces->covered_places : nullptr};
+    rtcIntersect1(tracer_->faces->triangles.scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 
     // The hit in double: where the ray meets the triangle's plane, unless it grazes.
-    const TrianglePlane& plane = tracer_->everything.planes[query.hit.primID];
+    const TrianglePlane& plane = tracer_->faces->triangles.planes[query.hit.primID];
     const double cosine = plane.normal.dot(ray.direction);
     const bool grazes = std::abs(cosine) < 1e-3;
     const double distance =
-        (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->scale;
+        (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->faces->scale;
     hits[k] =
         Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance};
   }

@@ -32,7 +32,7 @@ Scene floor_of(double half_width, double reflectance = 0) {
 }
 
 double illuminance(const Scene& scene, const SurfacePoint& point) {
-  return luminance(direct_irradiance(lighting_of(scene), {&point, 1}).irradiance.row(0));
+  return luminance(direct_irradiance(lighting_of(scene, Tracing(scene)), {&point, 1}).irradiance.row(0));
 }
 
 Luminaire isotropic(const Point& position, double lumens) {

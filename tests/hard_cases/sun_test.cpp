@@ -48,7 +48,7 @@ TEST_P(SunThroughASmallHole, IsTheFluxThatEnters) {
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.5 * unit);
   const double expected = 10 * edge * edge * unit * unit * 0.9 / std::sqrt(0.94);
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
-    const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh, {.seed = seed});
+    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.seed = seed});
     double flux = 0;
     for (PatchIndex i = 0; i < mesh.size(); ++i) flux += mesh.area[i] * direct.irradiance(i, 0);
     EXPECT_NEAR(flux, expected, 1e-9 * expected);

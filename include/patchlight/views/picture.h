@@ -4,7 +4,6 @@
 #include "patchlight/render/image.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
 #include <optional>
@@ -33,8 +32,8 @@ struct Picture {
 /// also an estimate of the light still under way.
 Field display_radiance(const Simulation& simulation);
 
-/// A picture of the smoothed radiance of a solved scene. `occluder` is one of all polygons. \throws Cancelled.
-Picture take_picture(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
-                     const PictureOptions& options = {}, const Observer& observer = {});
+/// A picture of the smoothed radiance of a solved scene. \throws Cancelled.
+Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options = {},
+                     const Observer& observer = {});
 
 }  // namespace patchlight

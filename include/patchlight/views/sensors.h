@@ -2,7 +2,6 @@
 
 #include "patchlight/gather/readings.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
 
 #include <string>
 #include <vector>
@@ -16,8 +15,7 @@ struct SensorView {
 };
 
 /// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from
-/// luminaires, sun and sky. `occluder` is one of all polygons. \throws Cancelled.
-SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Occluder& occluder,
-                        const Observer& observer = {});
+/// luminaires, sun and sky. \throws Cancelled.
+SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer = {});
 
 }  // namespace patchlight

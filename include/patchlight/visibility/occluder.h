@@ -74,6 +74,10 @@ class Occluder {
   };
 
   explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {});
+
+  /// Of the same scene as another one that rays meet all polygons of, and with its coverings, but with other blockers:
+  /// neither of the two may be `opaque` or `clear`. What both need is there once.
+  Occluder(const Scene& scene, Blockers blockers, const Occluder& like);
   ~Occluder();
   Occluder(Occluder&&) noexcept;
   Occluder& operator=(Occluder&&) noexcept;

@@ -42,7 +42,7 @@ PatchMesh fronts(const Scene& scene, double max_edge) {
 }
 
 DirectIrradiance at(const Scene& scene, const SurfacePoint& point, const LightingOptions& options = {}) {
-  return direct_irradiance(lighting_of(scene), {&point, 1}, options);
+  return direct_irradiance(lighting_of(scene, Tracing(scene)), {&point, 1}, options);
 }
 
 TEST(DirectIrradiance, OfASphereIsThatOfAPointWhereItIsAllAboveTheHorizon) {
@@ -83,7 +83,7 @@ Penumbra penumbra() {
   const Point centre(0, 0, 0.3);
   const double radius = 0.15;
   const Luminaire lamp = sphere(centre, radius, 1);
-  const LightPaths paths(scene);
+  const LightPaths paths(scene, Tracing(scene));
   const auto arriving = [&](const Point& from) {
     const Segment ray{Point(0, 0, 0), from};
     return paths.transmittance({&ray, 1})(0, 0);
@@ -142,7 +142,7 @@ TEST(DirectIrradiance, OfAUniformSkyIsPiTimesItsRadiance) {
   EXPECT_LT(direct.standard_error(0, 0), 1e-6);
   // And of a patch of the floor, to which nothing but the sky is seen.
   const PatchMesh mesh = fronts(scene, 10);
-  EXPECT_NEAR(direct_irradiance(lighting_of(scene), mesh).irradiance(0, 0), 3 * pi, 1e-10);
+  EXPECT_NEAR(direct_irradiance(lighting_of(scene, Tracing(scene)), mesh).irradiance(0, 0), 3 * pi, 1e-10);
 }
 
 TEST(DirectIrradiance, OfAFacadeUnderAnOvercastSkyIsFortyPercent) {
@@ -187,7 +187,7 @@ TEST(DirectIrradiance, OfTheSunIsItsCosine) {
   Scene scene = only_floor();
   scene.sun = Sun{Vector(0, 0.6, 0.8), one_band(10)};
   const PatchMesh mesh = fronts(scene, 5);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh);
   EXPECT_NEAR((direct.irradiance - 8).abs().maxCoeff(), 0, 1e-12);
   EXPECT_NEAR(direct.standard_error.maxCoeff(), 0, 1e-6);
   EXPECT_EQ(at(scene, {Point(0, 0, 1), -Vector::UnitZ()}).irradiance(0, 0), 0);
@@ -224,7 +224,7 @@ TEST(DirectIrradiance, OfALuminaireCloseToTheCeilingIsAllOfItsFlux) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     for (const int samples : {4, 64}) {
       const DirectIrradiance direct =
-          direct_irradiance(lighting_of(scene), mesh, {.lamp_samples = samples, .seed = seed});
+          direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.lamp_samples = samples, .seed = seed});
       EXPECT_NEAR(flux_onto(mesh, direct), 4 * pi, 1e-9);
       // The root of what rounding leaves of a variance.
       EXPECT_LT((direct.standard_error / direct.irradiance).maxCoeff(), 1e-6);
@@ -242,7 +242,7 @@ TEST(DirectIrradiance, OfALuminaireCloseToACoveredPatchIsOfThePartOverWhichNothi
   const PatchMesh mesh = tessellate(scene, sides, 10);
   ASSERT_EQ(mesh.size(), 7U);
   const DirectIrradiance direct =
-      direct_irradiance(lighting_of(scene, find_coverings(scene, sides)), mesh, {.lamp_samples = 1024});
+      direct_irradiance(lighting_of(scene, Tracing(scene, find_coverings(scene, sides))), mesh, {.lamp_samples = 1024});
   double flux = flux_onto(mesh, direct);
   for (PatchIndex i = 0; i < 6; ++i) {
     if (mesh.normal[i].z() < -0.5) flux -= 2 * direct.irradiance(i, 0);
@@ -254,7 +254,7 @@ TEST(DirectIrradiance, OfALuminaireInThePlaneOfAPatchIsNothing) {
   Scene scene = box_with_luminaire_at_the_ceiling();
   scene.luminaires[0].position.z() = 3;
   const PatchMesh mesh = fronts(scene, 0.7);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (mesh.normal[i].z() < -0.5) {
       EXPECT_EQ(direct.irradiance(i, 0), 0);
@@ -269,7 +269,8 @@ TEST(DirectIrradiance, OfThePartOverWhichNothingLies) {
   scene.sun = Sun{Vector::UnitZ(), one_band(10)};
   const KeptSides sides = kept_sides(scene, Sides::front);
   const PatchMesh mesh = tessellate(scene, sides, 5);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, find_coverings(scene, sides)), mesh);
+  const DirectIrradiance direct =
+      direct_irradiance(lighting_of(scene, Tracing(scene, find_coverings(scene, sides))), mesh);
   ASSERT_EQ(direct.irradiance.rows(), 2);
   EXPECT_NEAR(direct.irradiance(0, 0), 10, 1e-12);
   EXPECT_NEAR(direct.irradiance(1, 0), 10, 1e-12);
@@ -300,7 +301,7 @@ TEST(DirectIrradiance, OfTheSunThroughAWindowIsTheFluxThatEnters) {
   Scene scene = room_with_window(0.8);
   scene.sun = Sun{Vector(0.1, -0.7, 0.5).normalized(), one_band(10)};
   const PatchMesh mesh = fronts(scene, 0.125);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh);
   double flux = 0;
   double variance = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -349,7 +350,7 @@ struct Flux {
 
 Flux flux_of_sky(const Scene& scene, PolygonIndex polygons) {
   const PatchMesh mesh = fronts(scene, 1);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh);
   Flux flux;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (mesh.polygon[i] >= polygons) continue;
@@ -405,7 +406,7 @@ TEST(DirectIrradiance, HasTheSameBitsForAnyNumberOfThreads) {
   scene.sun = Sun{Vector(0.1, -0.7, 0.5).normalized(), one_band(10)};
   scene.luminaires = {sphere(Point(1, 2, 2), 0.1, 30)};
   const PatchMesh mesh = fronts(scene, 1);
-  const Lighting lighting = lighting_of(scene);
+  const Lighting lighting = lighting_of(scene, Tracing(scene));
   const auto with_threads = [&](int threads) {
     const ThreadLimit limit(threads);
     return direct_irradiance(lighting, mesh, {.sky_samples = 64});

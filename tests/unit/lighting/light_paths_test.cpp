@@ -24,7 +24,7 @@ Scene with_sheet(Scene scene, double z, MaterialIndex material) {
 Scene nothing() { return empty_scene({grey(0.5), glass(0.8), glass(0.5)}); }
 
 double share(const Scene& scene, const Segment& segment) {
-  return LightPaths(scene).transmittance({&segment, 1})(0, 0);
+  return LightPaths(scene, Tracing(scene)).transmittance({&segment, 1})(0, 0);
 }
 
 TEST(LightPaths, MultiplyTheOpeningsOnTheWay) {
@@ -57,7 +57,7 @@ TEST(LightPaths, GoFromTheOutsideOfAnEmptyWindow) {
 
 TEST(LightPaths, BeyondIsOutsideTheScene) {
   const Scene scene = with_box(nothing(), Point(0, 0, 0), Point(4, 3, 2), true);
-  const LightPaths paths(scene);
+  const LightPaths paths(scene, Tracing(scene));
   for (const Vector& direction : {Vector(1, 0, 0), Vector(-0.6, 0, 0.8), Vector(0, 1, 0)}) {
     EXPECT_FALSE(bounds(scene).contains(paths.beyond(Point(1, 1, 1), direction)));
     EXPECT_FALSE(bounds(scene).contains(paths.beyond(Point(-9, 1, 1), direction)));
@@ -69,7 +69,7 @@ TEST(LightPaths, KeepTheBandsApart) {
   scene.materials[1].transmittance = rgb(0.9, 0.5, 0);
   scene = with_sheet(with_sheet(std::move(scene), 0, 1), 1, 1);
   const Segment segment{Point(0, 0, -1), Point(0, 0, 3)};
-  const Field share = LightPaths(scene).transmittance({&segment, 1});
+  const Field share = LightPaths(scene, Tracing(scene)).transmittance({&segment, 1});
   EXPECT_EQ(share(0, 0), 0.9 * 0.9);
   EXPECT_EQ(share(0, 1), 0.25);
   EXPECT_EQ(share(0, 2), 0);

@@ -39,7 +39,7 @@ DirectIrradiance of_floor(const Scene& scene, double max_edge, std::uint64_t see
   Scene floor = scene;
   floor.polygons.resize(1);
   const PatchMesh mesh = tessellate(floor, kept_sides(floor, Sides::front), max_edge);
-  return direct_irradiance(lighting_of(scene), mesh, {.seed = seed});
+  return direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.seed = seed});
 }
 
 TEST(Shades, AreSampledWhereThereAreTooMany) {
@@ -137,7 +137,7 @@ TEST(Shades, OfAPaneAreItsTransmittancePerBand) {
   Scene floor = scene;
   floor.polygons.resize(1);
   const PatchMesh mesh = tessellate(floor, kept_sides(floor, Sides::front), 2);
-  const DirectIrradiance direct = direct_irradiance(lighting_of(scene), mesh);
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh);
   EXPECT_NEAR((direct.irradiance.row(0) - rgb(0.6, 0.75, 1)).abs().maxCoeff(), 0, 1e-14);
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "patchlight/visibility/occluder.h"
+
+#include <memory>
+
+namespace patchlight {
+
+/// What the rays of a run need, made once: which polygons lie over which, and an occluder for each set of blockers.
+/// That between patches is made at once, the others when they are first asked for. `scene` is always that of the
+/// constructor, of which only the polygons and what they let through count. Safe to use from several threads.
+class Tracing {
+ public:
+  explicit Tracing(const Scene& scene, Coverings coverings = {},
+                   Occluder::Blockers between_patches = Occluder::Blockers::inside_hull);
+  ~Tracing();
+
+  const Coverings& coverings() const { return coverings_; }
+
+  /// For rays between points of patches.
+  const Occluder& between_patches() const { return *between_patches_; }
+
+  /// For points that may lie anywhere: every polygon blocks.
+  const Occluder& all_faces(const Scene& scene) const;
+
+  /// Every polygon that lets no light through blocks, and the others count as not there.
+  std::shared_ptr<const Occluder> opaque_faces(const Scene& scene) const;
+
+  /// Every clear polygon blocks, and the others count as not there. Null where there are none.
+  std::shared_ptr<const Occluder> clear_faces(const Scene& scene) const;
+
+ private:
+  struct Later;
+
+  Coverings coverings_;
+  Occluder::Blockers kind_;
+  bool has_openings_;
+  std::shared_ptr<const Occluder> between_patches_;
+  std::unique_ptr<Later> later_;
+};
+
+}  // namespace patchlight
