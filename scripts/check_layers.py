@@ -34,9 +34,11 @@ def check_order(modules):
 
 
 def module_of(path):
-    """Module of a path below include/patchlight or src: its folder; the files at the top are the module simulate."""
+    """Module of a path below include/patchlight or src: its folder; of those at the top, headers are of the pipeline."""
     parts = pathlib.PurePosixPath(path).parts
-    return parts[0] if len(parts) > 1 else "simulate"
+    if len(parts) > 1:
+        return parts[0]
+    return "pipeline" if path.endswith(".h") else "simulate"
 
 
 def check_include(module, public, quoted, angled, layers):

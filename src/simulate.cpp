@@ -1,21 +1,21 @@
 #include "patchlight/simulate.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/parallel.h"
-#include "check_request.h"
-#include "effects.h"
-#include "memory.h"
-#include "plan/close_lamps.h"
-#include "problem_of.h"
-#include "relative_errors.h"
-#include "solve_mesh.h"
-#include "stage_clock.h"
-#include "to_accuracy.h"
-#include "visibility/tracing.h"
+#include "pipeline/lit_problem.h"
+#include "pipeline/mesh_transport.h"
+#include "pipeline/planned.h"
+#include "pipeline/problem_of.h"
+#include "pipeline/relative_errors.h"
+#include "pipeline/search.h"
+#include "pipeline/solved.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/with_error_bars.h"
+#include "plan/check_request.h"
+#include "plan/memory.h"
+#include "plan/planned_scene.h"
 
-#include <cassert>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -24,35 +24,54 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const ThreadLimit threads(request.threads);
   StageClock clock;
 
-  // 1. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
-  //    how form factors and radiosities are found.
+  // 1. Refuse what cannot be.
   check(request, scene);
-  Plan plan = make_plan(scene, request);
-  assert(!with.exchange || (keeps_entries(request.storage) && !plan.error_bars));
-  assert(!with.mesh || !plan.error_bars);
-  if (with.exchange) plan.storage = Storage::tiles;
-  const Request planned = as_planned(request, plan);
-  require_memory(scene, planned);
-  const Scene lit = scene_as_planned(scene, plan);
+
+  // 2. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
+  //    how form factors and radiosities are found.
+  const Plan chosen = planned(scene, request, with);
+  require_memory(scene, request, chosen);
+  const Scene lit = scene_as_planned(scene, chosen);
   clock.finish(Stage::plan);
 
-  // 2. What stands between patches, and what lies on them.
-  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan));
-  for (const Problem& problem : problems_with_overlaps(scene, tracing->coverings())) plan.notes.push_back(problem.what);
-  // Where patches are refined, error bars see a lamp that is close.
-  if (!refines(request)) {
-    for (std::string& note : notes_on_close_lamps(scene, tracing->between_patches(), plan.max_edge))
-      plan.notes.push_back(std::move(note));
-  }
+  // 3. What rays need: which polygons lie on others, and what stands between patches.
+  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, chosen.sides), blockers_of(chosen));
+  const Plan plan = with_notes_on(scene, *tracing, request, chosen);
+  const Run run{lit, request, plan, tracing, with, observer};
 
-  // 3. Subdivide the kept sides of the polygons into patches, find their form factors and solve
-  //    B = E + rho o (F B + H_direct); until an accuracy is reached where one is asked for.
-  const Setting setting{lit, tracing, with, observer};
-  Simulation result = refines(request) ? solve_to_accuracy(setting, planned, plan, clock).simulation
-                                       : solve_mesh(setting, planned, plan, clock).simulation;
-  result.spaces = errors_by_space(lit, result);
-  result.costs = clock.costs();
-  return of_whole_patches(std::move(result), lit);
+  Search search(run);
+  for (std::optional<MeshToSolve> next = search.first();;) {
+    // 4. Subdivide the kept sides of the polygons into patches.
+    const MeshToSolve& meshed = *next;
+    require_memory(meshed.mesh.patches.size(), request, plan);
+    clock.finish(Stage::mesh);
+
+    // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
+    RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::move(next->known));
+    clock.finish(Stage::form_factors);
+    MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
+    clock.finish(Stage::closure);
+
+    // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
+    LitProblem problem = lit_problem(run, meshed.plan, meshed.mesh.patches, transport.area);
+    if (has_point_or_daylight(lit)) clock.finish(Stage::direct_light);
+
+    // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
+    Simulation simulation = solved(run, meshed, transport, std::move(problem));
+    clock.finish(Stage::solve);
+
+    // 8. How far that may be off.
+    SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
+    clock.finish(Stage::error_bars);
+
+    // 9. Refine where that pays, or end.
+    result = search.noted(std::move(result));
+    next = search.next(result);
+    if (next) continue;
+    result.simulation.spaces = errors_by_space(lit, result.simulation);
+    result.simulation.costs = clock.costs();
+    return of_whole_patches(std::move(result.simulation), lit);
+  }
 }
 
 }  // namespace patchlight

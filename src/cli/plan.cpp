@@ -3,15 +3,15 @@
 #include "patchlight/expected_cost.h"
 
 #include "base/parallel.h"
-#include "check_request.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
-#include "memory.h"
 #include "output/whole_file.h"
 #include "output/write_plan.h"
-#include "solve_mesh.h"
+#include "pipeline/first_mesh.h"
+#include "plan/check_request.h"
+#include "plan/memory.h"
 
 #include <iomanip>
 #include <iostream>
@@ -59,10 +59,9 @@ ExitCode plan(const PlanArguments& arguments) {
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   check(arguments.request, scene);
   const Plan plan = make_plan(scene, arguments.request);
-  const Request planned = as_planned(arguments.request, plan);
-  require_memory(scene, planned);
+  require_memory(scene, arguments.request, plan);
   const NestedMesh mesh = first_mesh(scene, plan);
-  require_memory(mesh.patches.size(), planned);
+  require_memory(mesh.patches.size(), arguments.request, plan);
   const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh.patches);
 
   const WritingGuard guard;

@@ -22,8 +22,8 @@
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
 #include "output/write_series.h"
+#include "pipeline/stage_clock.h"
 #include "scene/limits.h"
-#include "stage_clock.h"
 
 #include <filesystem>
 #include <iostream>

@@ -3,9 +3,9 @@
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/mesher.h"
 
-#include "memory.h"
 #include "mesh/patch_lookup.h"
 #include "mesh/refine.h"
+#include "plan/memory.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "patchlight/study/study.h"
 
 #include "base/parallel.h"
-#include "memory.h"
+#include "plan/memory.h"
 #include "study/error_parts.h"
 #include "study/experiment.h"
 #include "study/price.h"

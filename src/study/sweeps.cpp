@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
-#include "memory.h"
+#include "plan/memory.h"
 
 #include <algorithm>
 #include <string>

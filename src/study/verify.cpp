@@ -1,11 +1,11 @@
 #include "patchlight/study/verify.h"
 
+#include "accuracy/spaces.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "effects.h"
+#include "plan/planned_scene.h"
 #include "solve/scattering.h"
-#include "spaces.h"
 #include "study/left_out.h"
 
 #include <algorithm>

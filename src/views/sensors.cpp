@@ -4,9 +4,9 @@
 #include "patchlight/gather/sensor_places.h"
 #include "patchlight/radiosity_errors.h"
 
-#include "effects.h"
 #include "gather/doubtful_sensors.h"
 #include "lighting/direct_irradiance.h"
+#include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
 #include <limits>

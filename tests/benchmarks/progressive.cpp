@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "output/write_plot.h"
-#include "problem_of.h"
+#include "pipeline/problem_of.h"
 #include "transport/dense.h"
 #include "transport/on_demand.h"
 

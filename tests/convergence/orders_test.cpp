@@ -5,7 +5,7 @@
 
 #include "mesh/average.h"
 #include "mesh/refine.h"
-#include "problem_of.h"
+#include "pipeline/problem_of.h"
 #include "support/scenes.h"
 #include "transport/dense.h"
 

@@ -1,9 +1,9 @@
-#include "spaces.h"
+#include "accuracy/spaces.h"
 
 #include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
-#include "interest.h"
+#include "accuracy/interest.h"
 #include "support/daylight_office.h"
 
 #include <gtest/gtest.h>

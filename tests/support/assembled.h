@@ -5,7 +5,7 @@
 #include "patchlight/transport/exchange.h"
 #include "patchlight/visibility/occluder.h"
 
-#include "problem_of.h"
+#include "pipeline/problem_of.h"
 #include "transport/dense.h"
 
 #include <memory>

@@ -3,6 +3,8 @@
 #include "patchlight/simulate.h"
 #include "patchlight/views/surface.h"
 
+#include "visibility/tracing.h"
+
 #include <limits>
 
 namespace patchlight {
@@ -24,6 +26,7 @@ inline Scene tiny_scene() {
 inline Simulation tiny_simulation() {
   const Scene scene = tiny_scene();
   Simulation simulation;
+  simulation.tracing = std::make_shared<const Tracing>(scene);
   PatchMesh& mesh = simulation.mesh;
   mesh.vertices = scene.vertices;
   mesh.corners = {{0, 1, 2, 3}, {1, 0, 4, 4}, {2, 1, 4, 4}};

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "problem_of.h"
+#include "pipeline/problem_of.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "support/tiny_scenes.h"

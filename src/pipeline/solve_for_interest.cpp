@@ -1,8 +1,8 @@
-#include "solve_for_interest.h"
+#include "pipeline/solve_for_interest.h"
 
 #include "patchlight/accuracy/error_bars.h"
 
-#include "interest.h"
+#include "accuracy/interest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +22,13 @@ constexpr double least_error = 1e-12;
 
 }  // namespace
 
-SolvedWith solve_for_interest(const Setting& setting, const Simulation& simulation, const SolverOptions& by,
+SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve) {
   SolverOptions options = by;
   SolvedWith best{solve(options), options.relative_error};
   const std::optional<double>& part = simulation.plan.solver_part;
   if (!part || !best.solution.converged) return best;
-  const Eigen::VectorXd interest = interest_of(setting.scene, simulation.mesh, simulation.plan.interest);
+  const Eigen::VectorXd interest = interest_of(run.scene, simulation.mesh, simulation.plan.interest);
   for (;;) {
     const SolvedProblem solved{simulation.problem, best.solution};
     const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);

@@ -1,10 +1,10 @@
-#include "relative_errors.h"
+#include "pipeline/relative_errors.h"
 
 #include "patchlight/accuracy/error_bars.h"
 
+#include "accuracy/interest.h"
+#include "accuracy/spaces.h"
 #include "base/vectors.h"
-#include "interest.h"
-#include "spaces.h"
 
 namespace patchlight {
 

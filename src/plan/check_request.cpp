@@ -1,8 +1,8 @@
-#include "check_request.h"
+#include "plan/check_request.h"
 
 #include "patchlight/base/error.h"
 
-#include "interest.h"
+#include "accuracy/interest.h"
 
 namespace patchlight {
 namespace {
@@ -10,9 +10,10 @@ namespace {
 // Error bars follow from the errors of stored form factors.
 void require_stored_rows(const Request& request) {
   if (keeps_entries(request.storage) || !(request.error_bars || refines(request))) return;
-  const char* const other = request.accuracy ? "--accuracy" : request.seconds ? "--time" : "--error-bars";
-  throw InputError("--on-demand", std::string("form factors that are not kept do not tell the errors that ") + other +
-                                      " needs; leave one of them out");
+  const std::string other = request.accuracy ? "an accuracy" : request.seconds ? "refining for a time" : "error bars";
+  throw InputError("storage", "found rows on demand together with " + other +
+                                  "; form factors that are not kept do not tell the errors that this needs; leave one "
+                                  "of them out");
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
-#include "to_accuracy.h"
+#include "pipeline/search.h"
 
 #include "patchlight/base/error.h"
 
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
-#include "memory.h"
 #include "mesh/refine.h"
-#include "with_error_bars.h"
+#include "pipeline/first_mesh.h"
+#include "pipeline/relative_errors.h"
+#include "pipeline/with_error_bars.h"
+#include "plan/memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,115 +160,121 @@ std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
+// With the samples of the next mesh, and what its solver may leave.
+Plan plan_of_next(Plan plan, int samples, const std::optional<double>& solver_part) {
+  plan.samples = samples;
+  plan.solver_part = solver_part;
+  return plan;
+}
+
+AccuracyStep accuracy_of(const SolvedMesh& solved) {
+  AccuracyStep step = errors_of(solved.simulation, solved.interest);
+  step.patches = step.new_patches = solved.simulation.mesh.size();
+  return step;
+}
+
+}  // namespace
+
 // What the next mesh is made by.
-struct Refinement {
+struct Search::Refinement {
   std::vector<std::uint8_t> cut;  // per parent
   int samples = 0;
 };
 
-struct Search {
-  const Setting& setting;
-  const Request& request;
-  Plan plan;
-  double start = wall_seconds();
-  double cpu_start = cpu_seconds();
-  std::vector<AccuracyStep> steps = {};
+Search::Search(const Run& run) : run_(run), start_(wall_seconds()), cpu_start_(cpu_seconds()) {}
 
-  AccuracyStep step_of(const SolvedMesh& solved, PatchIndex known) const;
-  std::optional<MeshToSolve> next(SolvedMesh& solved);
-  Refinement refinement(const SolvedMesh& solved, double accuracy) const;
-  double patches_in_time() const;
-};
+MeshToSolve Search::first() const {
+  MeshToSolve first{{}, run_.plan, {}};
+  if (run_.with.mesh) {
+    first.mesh.patches = run_.with.mesh();
+  } else {
+    first.mesh = first_mesh(run_.scene, run_.plan);
+  }
+  if (run_.plan.accuracy && !run_.request.tolerance) {
+    first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy;
+    first.plan.solver_part = part_of_solver * *run_.plan.accuracy;
+  }
+  return first;
+}
 
-AccuracyStep Search::step_of(const SolvedMesh& solved, PatchIndex known) const {
+AccuracyStep Search::step_of(const SolvedMesh& solved) const {
   AccuracyStep step = accuracy_of(solved);
-  step.new_patches -= known;
-  step.seconds = wall_seconds() - start;
-  step.cpu_seconds = cpu_seconds() - cpu_start;
+  if (!refines(run_.request)) return step;
+  step.new_patches -= known_;
+  step.seconds = wall_seconds() - start_;
+  step.cpu_seconds = cpu_seconds() - cpu_start_;
   return step;
+}
+
+SolvedMesh Search::noted(SolvedMesh solved) {
+  if (run_.plan.error_bars) steps_.push_back(step_of(solved));
+  solved.simulation.accuracy = steps_;
+  if (refines(run_.request) && run_.with.look) run_.with.look(solved.simulation);
+  return solved;
 }
 
 // The largest number of patches in the time that is left.
 double Search::patches_in_time() const {
-  if (!plan.seconds) return std::numeric_limits<double>::infinity();
-  const AccuracyStep& step = steps.back();
-  const double before = steps.size() > 1 ? steps[steps.size() - 2].seconds : 0;
+  if (!run_.plan.seconds) return std::numeric_limits<double>::infinity();
+  const AccuracyStep& step = steps_.back();
+  const double before = steps_.size() > 1 ? steps_[steps_.size() - 2].seconds : 0;
   const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
-  return patches_in((*plan.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
+  return patches_in((*run_.plan.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
 // that does; and those that make the noise, if they are few or nothing else is left. Else more samples.
-Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
-  const AccuracyStep& step = steps.back();
+Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
+  const AccuracyStep& step = steps_.back();
+  const bool by_time = run_.plan.seconds.has_value();
   const std::size_t parents = solved.mesh.parents.size();
-  const std::size_t most = cuts_up_to(std::min(patches_that_fit(request), patches_in_time()), step);
+  const std::size_t most = cuts_up_to(std::min(patches_that_fit(run_.request), patches_in_time()), step);
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
       parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
-  if (count(noisy) > 0 && (are_few || plan.seconds || plan.samples >= most_samples))
-    return {either(std::move(cut), noisy), plan.samples};
-  return {std::move(cut), plan.seconds ? plan.samples : samples_for(solved, step, accuracy)};
+  if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples))
+    return {either(std::move(cut), noisy), step.samples};
+  return {std::move(cut), by_time ? step.samples : samples_for(solved, step, accuracy)};
 }
 
-// The next mesh; none when the last one is good enough, or time is up.
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
-  const AccuracyStep& step = steps.back();
-  if (!solved.simulation.solution.converged) return std::nullopt;
+  if (!refines(run_.request) || !solved.simulation.solution.converged) return std::nullopt;
+  const Request& request = run_.request;
+  const bool by_time = run_.plan.seconds.has_value();
+  const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
-  const double accuracy = plan.accuracy.value_or(step.total / 2);
-  if (enough * step.total <= accuracy || steps.size() == most_steps) return std::nullopt;
-  if (request.tolerance) {
-    // What a tolerance that was asked for leaves no mesh mends.
-    if (step.solver > accuracy) return std::nullopt;
-  } else {
-    plan.solver_part = part_of_solver * accuracy;
-    plan.solver.relative_error = std::min(plan.solver.relative_error, solved.simulation.plan.solver.relative_error);
-  }
-  if (!plan.seconds && step.total > accuracy) require_within_reach(request, steps);
+  const double accuracy = run_.plan.accuracy.value_or(step.total / 2);
+  if (enough * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
+  // What a tolerance that was asked for leaves no mesh mends.
+  if (request.tolerance && step.solver > accuracy) return std::nullopt;
+  if (!by_time && step.total > accuracy) require_within_reach(request, steps_);
 
   const Refinement by = refinement(solved, accuracy);
-  const bool more_samples = by.samples > plan.samples;
+  const bool more_samples = by.samples > step.samples;
   const bool finer_mesh = count(by.cut) > 0;
   FinerMesh finer = refine(solved.mesh, by.cut);
   const double most = patches_that_fit(request);
   const double factor = mesh_factor(solved, step, accuracy);
   if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
-    if (plan.seconds || step.total <= accuracy) return std::nullopt;
+    if (by_time || step.total <= accuracy) return std::nullopt;
     refuse(request, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
   }
   if (!more_samples && !finer_mesh) return std::nullopt;
-  plan.samples = by.samples;
-  MeshToSolve to_solve{std::move(finer.mesh), std::move(finer.place), {}, solved.simulation.transport.lost};
-  if (!more_samples) to_solve.known = std::move(solved.raw);
+  const std::optional<double> part =
+      request.tolerance ? solved.simulation.plan.solver_part : std::optional(part_of_solver * accuracy);
+  // The solver's error is never asked to be larger than on the mesh before.
+  MeshToSolve to_solve{std::move(finer.mesh),
+                       plan_of_next(solved.simulation.plan, by.samples, part),
+                       {std::move(finer.place), {}, solved.simulation.transport.lost}};
+  known_ = 0;
+  if (more_samples) return to_solve;
+  to_solve.known.exchange = std::move(solved.raw);
+  const std::vector<PatchIndex>& place = to_solve.known.place;
+  known_ =
+      static_cast<PatchIndex>(place.size()) - static_cast<PatchIndex>(std::count(place.begin(), place.end(), no_patch));
   return to_solve;
-}
-
-}  // namespace
-
-SolvedMesh solve_to_accuracy(const Setting& setting, const Request& request, const Plan& plan, StageClock& clock) {
-  Search search{setting, request, plan};
-  if (plan.accuracy && !request.tolerance) {
-    search.plan.solver.relative_error = share_of_solver * *plan.accuracy;
-    search.plan.solver_part = part_of_solver * *plan.accuracy;
-  }
-  MeshToSolve to_solve{first_mesh(setting.scene, plan), {}, {}, {}};
-  for (;;) {
-    require_memory(to_solve.mesh.patches.size(), request);
-    clock.finish(Stage::mesh);
-    const auto known = to_solve.known ? std::count_if(to_solve.place.begin(), to_solve.place.end(),
-                                                      [](PatchIndex p) { return p != no_patch; })
-                                      : 0;
-    SolvedMesh solved = solve_mesh(setting, search.plan, std::move(to_solve), clock);
-    search.steps.push_back(search.step_of(solved, static_cast<PatchIndex>(known)));
-    solved.simulation.accuracy = search.steps;
-    if (setting.with.look) setting.with.look(solved.simulation);
-    std::optional<MeshToSolve> next = search.next(solved);
-    if (!next) return solved;
-    to_solve = std::move(*next);
-  }
 }
 
 }  // namespace patchlight

@@ -12,6 +12,9 @@ namespace patchlight {
 /// form factors are kept, and their standard errors, too.
 double memory_needed(std::size_t patches, const Request& request);
 
+/// The same with the storage that the plan has chosen.
+double memory_needed(std::size_t patches, const Request& request, const Plan& plan);
+
 /// Bytes that the run may take.
 double usable_memory(const Request& request);
 
@@ -24,11 +27,10 @@ std::string gigabytes(double bytes);
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.
 void require_memory(const Scene& scene, const Request& request);
-
-/// The request with the storage that the plan has chosen: what its memory follows from.
-Request as_planned(Request request, const Plan& plan);
+void require_memory(const Scene& scene, const Request& request, const Plan& plan);
 
 /// \throws MemoryError when solving for so many patches would take more memory than it may.
 void require_memory(std::size_t patches, const Request& request);
+void require_memory(std::size_t patches, const Request& request, const Plan& plan);
 
 }  // namespace patchlight

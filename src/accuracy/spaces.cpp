@@ -1,4 +1,4 @@
-#include "spaces.h"
+#include "accuracy/spaces.h"
 
 #include "base/parallel.h"
 #include "scene/shells.h"

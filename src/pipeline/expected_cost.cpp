@@ -1,7 +1,7 @@
 #include "patchlight/expected_cost.h"
 
-#include "effects.h"
-#include "memory.h"
+#include "plan/memory.h"
+#include "plan/planned_scene.h"
 #include "transport/assembly_time.h"
 
 #include <algorithm>
@@ -51,9 +51,8 @@ double rays_per_patch(const Scene& scene, const Plan& plan) {
 
 ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, const PatchMesh& mesh) {
   const auto n = static_cast<double>(mesh.size());
-  ExpectedCost cost{.patches = mesh.size(),
-                    .bytes = memory_needed(mesh.size(), as_planned(request, plan)),
-                    .of_first_mesh = refines(request)};
+  ExpectedCost cost{
+      .patches = mesh.size(), .bytes = memory_needed(mesh.size(), request, plan), .of_first_mesh = refines(request)};
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = request.threads > 0 ? request.threads : std::max(1, processors);
 

@@ -2,8 +2,6 @@
 
 #include "patchlight/transport/lost_share.h"
 
-#include "effects.h"
-
 namespace patchlight {
 
 RadiosityErrors radiosity_errors(const Simulation& simulation) {

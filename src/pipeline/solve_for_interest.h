@@ -1,8 +1,6 @@
 #pragma once
 
-#include "patchlight/simulate.h"
-
-#include "solve_mesh.h"
+#include "pipeline/run.h"
 
 #include <functional>
 
@@ -19,8 +17,8 @@ struct SolvedWith {
 
 /// The solution by some options, or with a smaller relative error than these ask for until the solver's part of the
 /// error of what is of interest is no more than Plan::solver_part: a bound on all light together says little about the
-/// light in a dim room. Ends with the last one that has converged. `simulation` has the problem and the mesh.
-SolvedWith solve_for_interest(const Setting& setting, const Simulation& simulation, const SolverOptions& by,
+/// light in a dim room. Ends with the last one that has converged. `simulation` has the plan, the problem and the mesh.
+SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve);
 
 }  // namespace patchlight

@@ -1,9 +1,9 @@
-#include "interest.h"
+#include "accuracy/interest.h"
 
 #include "patchlight/base/error.h"
 
+#include "accuracy/spaces.h"
 #include "base/vectors.h"
-#include "spaces.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,10 +1,10 @@
-#include "with_error_bars.h"
+#include "pipeline/with_error_bars.h"
 
+#include "accuracy/interest.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "effects.h"
-#include "interest.h"
+#include "pipeline/light_of_lamps.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"
@@ -25,23 +25,23 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
 }
 
 // How far two independent values of the irradiance straight from the lamps are apart.
-Field direct_difference(const Setting& setting, const Simulation& simulation, const Assembly& raw) {
+Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw) {
   const Field& exitance = simulation.problem.exitance;
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = assembly_options(simulation.plan);
   again.seed = hash({simulation.plan.seed, 1});
-  const auto transport = on_demand_transport(simulation.mesh, setting.tracing->between_patches(), again, area);
-  const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, setting.observer);
+  const auto transport = on_demand_transport(simulation.mesh, run.tracing->between_patches(), again, area);
+  const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, run.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 
 // What the sampling of form factors errs. Light straight from the lamps is found twice, unless lamps are too many.
-Field sampling_errors(const Setting& setting, const Simulation& simulation, const Assembly& raw,
-                      const RowTransport& transport, const SolvedProblem& solved) {
+Field sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw, const RowTransport& transport,
+                      const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;
   if (share_of_lamps(solved.problem) > most_lamps)
     return form_factor_errors(simulation.mesh, raw, transport, solved, B);
-  const Field difference = direct_difference(setting, simulation, raw);
+  const Field difference = direct_difference(run, simulation, raw);
   const Field direct = direct_light_errors(simulation.mesh, transport, solved.problem, difference);
   const Field other = form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
   return (direct.square() + other.square()).sqrt();
@@ -107,20 +107,22 @@ double share_of_lamps(const RadiosityProblem& problem) {
          static_cast<double>(problem.exitance.rows());
 }
 
-SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowTransport& transport,
-                           ClosedExchangeAreas of_parents) {
+SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
+  if (!run.plan.error_bars) return result;
+  result.raw = std::move(transport.assembly);
+  const RowTransport& rows = *transport.rows;
   Simulation& simulation = result.simulation;
   const PatchMesh& mesh = simulation.mesh;
   const LostShare& lost = simulation.transport.lost;
   const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.close};
 
   // 1. What patches, samples and solver err.
-  const MeshBars of_mesh = mesh_bars(result, transport, solved, std::move(of_parents));
-  const Field sampled = sampling_errors(setting, simulation, *result.raw, transport, solved);
+  const MeshBars of_mesh = mesh_bars(result, rows, solved, std::move(*transport.of_parents));
+  const Field sampled = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   const Field exposure = errors_of_exposure(simulation, errors, solved);
   Field squares = sampled.square() + exposure.square();
-  if (has_point_or_daylight(setting.scene)) squares += simulation.direct_standard_error.square();
+  if (has_point_or_daylight(run.scene)) squares += simulation.direct_standard_error.square();
   simulation.error_bars = {
       .mesh = (of_mesh.from_larger.square() + of_mesh.in_gaps.square() + of_mesh.by_dark_parts.square()).sqrt(),
       .form_factor = squares.sqrt(),
@@ -128,12 +130,12 @@ SolvedMesh with_error_bars(const Setting& setting, SolvedMesh result, const RowT
       .display = display_errors(result.mesh, solved)};
 
   // 2. Where that matters.
-  result.interest = interest_of(setting.scene, mesh, simulation.plan.interest);
-  require_reflecting(setting.scene, simulation.problem, result.interest);
+  result.interest = interest_of(run.scene, mesh, simulation.plan.interest);
+  require_reflecting(run.scene, simulation.problem, result.interest);
   const bool all = result.interest.minCoeff() == 1;
-  const Eigen::VectorXd weight = all ? result.interest : importance(transport, solved.problem, result.interest);
+  const Eigen::VectorXd weight = all ? result.interest : importance(rows, solved.problem, result.interest);
   result.effects = effects_of(result, solved, weight, of_mesh);
-  if (has_point_or_daylight(setting.scene)) {
+  if (has_point_or_daylight(run.scene)) {
     // The edge of the sun's light crosses fewer patches, by area, when these are finer.
     const Field& of_lights = simulation.direct_standard_error;
     result.effects += squares_of_parents(result.mesh, solved, of_lights, weight);

@@ -1,4 +1,4 @@
-#include "problem_of.h"
+#include "pipeline/problem_of.h"
 
 #include "scene/transmittance.h"
 

@@ -3,7 +3,7 @@
 #include "patchlight/mesh/mesher.h"
 
 #include "base/parallel.h"
-#include "memory.h"
+#include "plan/memory.h"
 #include "visibility/tracing.h"
 
 #include <utility>

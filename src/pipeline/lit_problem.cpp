@@ -1,0 +1,36 @@
+#include "pipeline/lit_problem.h"
+
+#include "lighting/direct_irradiance.h"
+#include "pipeline/problem_of.h"
+#include "plan/planned_scene.h"
+
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  const auto trace = [&](const Scene& scene) {
+    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, {.seed = plan.seed}, run.observer);
+  };
+  if (plan.lamp_colour.size() == 0) return trace(run.scene);
+  // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
+  Eigen::Index brightest = 0;
+  plan.lamp_colour.maxCoeff(&brightest);
+  const DirectIrradiance found = trace(in_one_band(run.scene, brightest));
+  const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
+  return {in_all(found.irradiance), in_all(found.standard_error)};
+}
+
+}  // namespace
+
+LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
+  LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back), {}};
+  if (!has_point_or_daylight(run.scene)) return lit;
+  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh);
+  lit.problem.direct_irradiance = std::move(direct.irradiance);
+  lit.direct_standard_error = std::move(direct.standard_error);
+  return lit;
+}
+
+}  // namespace patchlight

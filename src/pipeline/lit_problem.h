@@ -1,0 +1,19 @@
+#pragma once
+
+#include "patchlight/solve/problem.h"
+
+#include "pipeline/run.h"
+
+namespace patchlight {
+
+/// What is solved on a mesh: its materials, and the light of luminaires, sun and sky where it first arrives.
+struct LitProblem {
+  RadiosityProblem problem;
+  Field direct_standard_error;  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+};
+
+/// `exposed_area` as problem_of() takes it. Where one band stands for all, direct light is found once. \throws
+/// Cancelled.
+LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
+
+}  // namespace patchlight

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "patchlight/transport/closure.h"
+#include "patchlight/transport/transport_operator.h"
+
+#include "pipeline/run.h"
+
+#include <memory>
+#include <optional>
+
+namespace patchlight {
+
+/// Exchange areas S_ij = A_i F_ij of a mesh before closure.
+struct RawTransport {
+  Exchange exchange;
+  TransportFacts facts;
+  std::optional<Assembly> assembly;  ///< with error bars: the same exchange areas with the errors of their entries
+};
+
+/// Light between the patches of a mesh: H = F B.
+struct MeshTransport {
+  std::unique_ptr<RowTransport> rows;
+  Eigen::VectorXd area;  ///< exposed, m^2
+  TransportFacts facts;
+  std::optional<Assembly> assembly;               ///< with error bars: exchange areas before closure
+  std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed up over parents
+};
+
+/// All pairs, with visibility from shadow rays, unless Steps::exchange knows them or their rows are computed on demand;
+/// and the share of each patch's hemisphere from which no patch is seen. What is known of the mesh before is taken
+/// over. \throws Cancelled.
+RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known);
+
+/// The same after closure: each row sums up to what its patch sees. The mesh has to outlive the transport.
+/// \throws Cancelled.
+MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMesh& mesh, RawTransport raw);
+
+}  // namespace patchlight

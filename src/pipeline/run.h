@@ -1,0 +1,51 @@
+#pragma once
+
+#include "patchlight/mesh/nested_mesh.h"
+#include "patchlight/simulate.h"
+#include "patchlight/transport/assemble.h"
+
+#include "visibility/tracing.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// What all meshes of a run have in common.
+struct Run {
+  const Scene& scene;  ///< with the lights that the plan simulates
+  const Request& request;
+  const Plan& plan;
+  std::shared_ptr<const Tracing> tracing;
+  const Steps& with;
+  const Observer& observer;
+};
+
+/// What is known from the mesh before.
+struct Known {
+  std::vector<PatchIndex> place;     ///< per patch: the same one in that mesh, or no_patch
+  std::optional<Assembly> exchange;  ///< its exchange areas before closure; none: all are new
+  std::optional<LostShare> lost;     ///< its lost shares; none: all are new
+};
+
+/// A mesh whose solution is wanted. Without parents there are no error bars.
+struct MeshToSolve {
+  NestedMesh mesh;
+  Plan plan;  ///< that of the run, with the samples and the solver's error that this mesh is worth
+  Known known;
+};
+
+/// A solved mesh.
+struct SolvedMesh {
+  Simulation simulation;  ///< without costs
+  NestedMesh mesh;
+  std::optional<Assembly> raw = {};  ///< with parents: exchange areas before closure
+  Eigen::VectorXd interest = {};     ///< with parents: 1 for each patch whose error counts, else 0
+  Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(), and of what light_bar is of
+  Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
+  double noise_bar = 0;              ///< with parents: what shadow rays between patches err, as relative_bar()
+  double light_bar = 0;              ///< with parents: and those towards luminaires, sun and sky
+};
+
+}  // namespace patchlight

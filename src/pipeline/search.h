@@ -1,0 +1,41 @@
+#pragma once
+
+#include "pipeline/run.h"
+
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// The way to an accuracy: finer and finer meshes, with more samples where these are what limits, until the plan's
+/// accuracy is reached or its time is up. A run that asks for none has one mesh.
+class Search {
+ public:
+  /// Time counts from here on. `run` has to outlive the search.
+  explicit Search(const Run& run);
+
+  /// The mesh to begin with: Steps::mesh, else first_mesh().
+  MeshToSolve first() const;
+
+  /// The solved mesh with the accuracy of all meshes until now, as Steps::look is told on the way to an accuracy.
+  SolvedMesh noted(SolvedMesh solved);
+
+  /// The next mesh after one that was noted; none when that is good enough, or time is up. What is known of it is taken
+  /// for the next one. \throws MemoryError when the accuracy takes more memory than the request allows, with the
+  /// accuracy that can be reached.
+  std::optional<MeshToSolve> next(SolvedMesh& solved);
+
+ private:
+  struct Refinement;
+  AccuracyStep step_of(const SolvedMesh& solved) const;
+  Refinement refinement(const SolvedMesh& solved, double accuracy) const;
+  double patches_in_time() const;
+
+  const Run& run_;
+  double start_;      // wall-clock seconds
+  double cpu_start_;  // processor seconds
+  std::vector<AccuracyStep> steps_;
+  PatchIndex known_ = 0;  // patches of the last mesh whose exchange areas were known
+};
+
+}  // namespace patchlight

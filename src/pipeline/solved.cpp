@@ -1,0 +1,38 @@
+#include "pipeline/solved.h"
+
+#include "base/vectors.h"
+#include "pipeline/light_of_lamps.h"
+#include "pipeline/solve_for_interest.h"
+#include "solve/energy.h"
+
+#include <limits>
+#include <utility>
+
+namespace patchlight {
+
+Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
+  Simulation simulation;
+  simulation.plan = meshed.plan;
+  simulation.mesh = meshed.mesh.patches;
+  simulation.transport = transport.facts;
+  simulation.problem = std::move(problem.problem);
+  simulation.direct_standard_error = std::move(problem.direct_standard_error);
+  simulation.tracing = run.tracing;
+
+  const bool keeps = keeps_entries(meshed.plan.storage);
+  const TransportFacts& facts = simulation.transport;
+  SolverOptions options = meshed.plan.solver;
+  options.largest_row_sum = keeps ? largest(facts.row_sum) : std::numeric_limits<double>::infinity();
+  const SolveWith solve = solver_as_planned(run.with.solve, meshed.plan);
+  const Solve once = [&](const SolverOptions& by) {
+    return solve(*transport.rows, simulation.problem, by, run.observer);
+  };
+  SolvedWith found = solve_for_interest(run, simulation, options, once);
+  simulation.plan.solver.relative_error = found.relative_error;
+  simulation.solution = std::move(found.solution);
+  simulation.balance = energy_balance(simulation.problem, simulation.solution,
+                                      keeps ? facts.row_sum : expected_row_sum(facts.lost), facts.lost);
+  return simulation;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "pipeline/mesh_transport.h"
+#include "pipeline/run.h"
+
+namespace patchlight {
+
+/// The solved mesh with error bars, and where finer patches would pay; without, where the plan wants none. \throws
+/// InputError when nothing of the plan's interest is there or reflects light.
+SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport);
+
+/// The share of the patches that emit.
+double share_of_lamps(const RadiosityProblem& problem);
+
+/// Lamps with a larger share are not traced a second time to learn the errors of their light.
+inline constexpr double most_lamps = 0.125;
+
+}  // namespace patchlight

@@ -1,0 +1,92 @@
+#include "plan/planned_scene.h"
+
+#include "patchlight/light/photometry.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Every spectrum of a luminaire, sun, sky or material changed by change(spectrum); empty ones stay empty.
+template <typename Change>
+void change_light(Luminaire& luminaire, const Change& change) {
+  std::visit(
+      [&](auto& light) {
+        using Light = std::decay_t<decltype(light)>;
+        if constexpr (std::is_same_v<Light, WebLight>) {
+          light.watts_per_lumen = change(light.watts_per_lumen);
+        } else if constexpr (std::is_same_v<Light, SphericalLamp>) {
+          light.exitance = change(light.exitance);
+        } else {
+          light.intensity = change(light.intensity);
+        }
+      },
+      luminaire.light);
+}
+
+template <typename Change>
+Scene with_spectra(Scene scene, const Change& change) {
+  const auto apply = [&](Spectrum& spectrum) {
+    if (spectrum.size() > 0) spectrum = change(spectrum);
+  };
+  for (Material& material : scene.materials) {
+    for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.exitance}) apply(*s);
+  }
+  for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
+  if (scene.sun) apply(scene.sun->normal_irradiance);
+  if (scene.sky) {
+    for (Spectrum* s : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
+      apply(*s);
+  }
+  return scene;
+}
+
+// The same luminance without colour.
+Spectrum without_colour(const Spectrum& spectrum) {
+  return Spectrum::Constant(spectrum.size(), luminance(spectrum) / luminous_efficacy);
+}
+
+bool is_skipped_by_force(const Plan& plan, Effect effect) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
+    return decision.effect == effect && decision.forced && !decision.simulate;
+  });
+}
+
+bool is_forced(const Plan& plan, Effect effect) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
+    return decision.effect == effect && decision.forced && decision.simulate;
+  });
+}
+
+// The scene with the lights that are not left out, and without colour when that is skipped by force.
+template <typename LeftOut>
+Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
+  if (left_out(Effect::luminaires)) scene.luminaires.clear();
+  if (left_out(Effect::sun)) scene.sun.reset();
+  if (left_out(Effect::sky)) scene.sky.reset();
+  return is_skipped_by_force(plan, Effect::colour) ? with_spectra(std::move(scene), without_colour) : scene;
+}
+
+}  // namespace
+
+Occluder::Blockers blockers_of(const Plan& plan) {
+  if (is_skipped_by_force(plan, Effect::occlusion)) return Occluder::Blockers::none;
+  return is_forced(plan, Effect::occlusion) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
+}
+
+Scene scene_for_sensors(Scene scene, const Plan& plan) {
+  return with_light(std::move(scene), plan, [&](Effect effect) { return is_skipped_by_force(plan, effect); });
+}
+
+Scene scene_as_planned(Scene scene, const Plan& plan) {
+  return with_light(std::move(scene), plan, [&](Effect effect) { return !simulates(plan, effect); });
+}
+
+Scene in_one_band(Scene scene, Eigen::Index band) {
+  return with_spectra(std::move(scene),
+                      [band](const Spectrum& spectrum) { return Spectrum::Constant(1, spectrum[band]); });
+}
+
+}  // namespace patchlight

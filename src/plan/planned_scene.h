@@ -1,0 +1,22 @@
+#pragma once
+
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/visibility/occluder.h"
+
+namespace patchlight {
+
+/// Which polygons can stand between two patches: those that may, all when occlusion is forced, none when it is skipped.
+Occluder::Blockers blockers_of(const Plan& plan);
+
+/// The scene with the lights that the plan simulates; without differences of colour when these are skipped by force:
+/// every spectrum is replaced by its luminance (light/photometry.h), the same in all bands.
+Scene scene_as_planned(Scene scene, const Plan& plan);
+
+/// The scene as sensors see it, which may stand where no patch is: only what is skipped by force gives no light.
+Scene scene_for_sensors(Scene scene, const Plan& plan);
+
+/// The scene with a single band, that one of its own.
+Scene in_one_band(Scene scene, Eigen::Index band);
+
+}  // namespace patchlight
