@@ -40,9 +40,13 @@ Scene with_pane(Scene scene) {
 
 TEST(Tracing, BuildsOneSceneForEachSetOfBlockersInARun) {
   const Scene scene = daylit_room();
+  Request request;
+  request.patches = 100;
+  request.accuracy = 0.006;
   Simulation simulation;
   // All faces, which rays meet and which block the light from outside, and those that can stand between patches.
-  EXPECT_EQ(built_by([&] { simulation = simulate(scene, {.patches = 200, .error_bars = true}); }), 2);
+  EXPECT_EQ(built_by([&] { simulation = simulate(scene, request); }), 2);
+  ASSERT_GT(simulation.accuracy.size(), 1U);
   EXPECT_EQ(built_by([&] {
               simulation.tracing->all_faces(scene);
               lighting_of(scene, *simulation.tracing);
