@@ -1,6 +1,8 @@
 #include "patchlight/accuracy/error_bars.h"
 
+#include "accuracy/errors.h"
 #include "base/vectors.h"
+#include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
 
 #include <cassert>

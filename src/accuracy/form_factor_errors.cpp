@@ -1,6 +1,7 @@
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/solve/solve.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/means_around.h"
 #include "base/vectors.h"
 #include "solve/scattering.h"

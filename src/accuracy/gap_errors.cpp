@@ -1,5 +1,6 @@
 #include "patchlight/accuracy/error_bars.h"
 
+#include "accuracy/errors.h"
 #include "base/parallel.h"
 
 #include <algorithm>

@@ -2,7 +2,9 @@
 
 #include "patchlight/solve/solve.h"
 
+#include "accuracy/errors.h"
 #include "base/vectors.h"
+#include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
 #include "transport/merged.h"
 

@@ -4,6 +4,8 @@
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/transport_operator.h"
 
+#include "accuracy/errors.h"
+#include "mesh/nested_mesh.h"
 #include "transport/random_errors.h"
 
 #include <Eigen/Core>

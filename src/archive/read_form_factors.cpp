@@ -1,7 +1,7 @@
-#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
 
 #include "archive/file_names.h"
+#include "archive/form_factor_files.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/row_sums.h"

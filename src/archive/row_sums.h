@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/archive/form_factor_files.h"
+#include "archive/form_factor_files.h"
 
 #include <filesystem>
 

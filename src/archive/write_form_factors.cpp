@@ -1,8 +1,8 @@
-#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
 
 #include "archive/file_names.h"
+#include "archive/form_factor_files.h"
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/sampling_error_json.h"

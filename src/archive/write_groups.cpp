@@ -1,5 +1,4 @@
-#include "patchlight/archive/group_factors.h"
-
+#include "archive/group_factors.h"
 #include "output/csv_cell.h"
 #include "output/write_bytes.h"
 #include "transport/group_exchange.h"

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
-#include "patchlight/study/compare.h"
-#include "patchlight/study/study.h"
-#include "patchlight/study/verify.h"
 #include "patchlight/views/picture.h"
 
+#include "archive/form_factor_files.h"
 #include "cli/messages.h"
+#include "study/compare.h"
+#include "study/study.h"
+#include "study/verify.h"
 
 #include <filesystem>
 #include <optional>

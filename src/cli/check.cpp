@@ -1,15 +1,14 @@
 #include "cli/check.h"
 
-#include "patchlight/light/photometry.h"
-#include "patchlight/plan/survey.h"
-
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
+#include "light/photometry.h"
 #include "output/whole_file.h"
 #include "output/write_problems.h"
 #include "output/write_survey.h"
+#include "plan/survey.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,5 @@
 #include "cli/compare.h"
 
-#include "patchlight/render/tone_map.h"
-
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -10,6 +8,7 @@
 #include "cli/text_table.h"
 #include "output/whole_file.h"
 #include "output/write_comparison.h"
+#include "render/tone_map.h"
 
 #include <cmath>
 #include <iomanip>

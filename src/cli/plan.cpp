@@ -1,12 +1,12 @@
 #include "cli/plan.h"
 
-#include "patchlight/expected_cost.h"
-
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/text_table.h"
+#include "expected_cost.h"
+#include "mesh/nested_mesh.h"
 #include "output/whole_file.h"
 #include "output/write_plan.h"
 #include "pipeline/first_mesh.h"

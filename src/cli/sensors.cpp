@@ -1,7 +1,8 @@
 #include "cli/sensors.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/input/read_points.h"
+
+#include "input/read_points.h"
 
 namespace patchlight::cli {
 

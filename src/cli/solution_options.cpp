@@ -1,11 +1,11 @@
 #include "cli/solution_options.h"
 
-#include "patchlight/output/write_points.h"
 #include "patchlight/output/write_result.h"
 
 #include "cli/add_option.h"
 #include "cli/mesh_options.h"
 #include "cli/parse_value.h"
+#include "output/write_points.h"
 
 #include <algorithm>
 #include <utility>

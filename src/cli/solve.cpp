@@ -2,10 +2,8 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_image.h"
-#include "patchlight/output/write_points.h"
 #include "patchlight/output/write_report.h"
 #include "patchlight/output/write_result.h"
-#include "patchlight/render/tone_map.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/sensors.h"
@@ -21,8 +19,10 @@
 #include "cli/summary.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
+#include "output/write_points.h"
 #include "output/write_series.h"
 #include "pipeline/stage_clock.h"
+#include "render/tone_map.h"
 #include "scene/limits.h"
 
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "cli/solve_input.h"
 
-#include "patchlight/archive/form_factor_files.h"
 #include "patchlight/base/error.h"
 
+#include "archive/form_factor_files.h"
 #include "archive/scene_file.h"
 #include "scene/transmittance.h"
 

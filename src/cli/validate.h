@@ -1,9 +1,8 @@
 #pragma once
 
-#include "patchlight/validate/validate.h"
-
 #include "cli/arguments.h"
 #include "cli/exit_code.h"
+#include "validate/validate.h"
 
 #include <span>
 

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "patchlight/visibility/occluder.h"
-
 #include "form_factor/monte_carlo.h"
 #include "form_factor/patch_shape.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/gather/sensor_places.h"
 #include "patchlight/scene/scene.h"
+
+#include "gather/sensor_places.h"
 
 #include <span>
 #include <string>

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "gather/gradients.h"
 #include "gather/sources.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "patchlight/gather/readings.h"
 
-#include "patchlight/light/photometry.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,9 +1,10 @@
-#include "patchlight/gather/sensor_places.h"
+#include "gather/sensor_places.h"
 
 #include "base/parallel.h"
 #include "gather/facets.h"
 #include "gather/walls.h"
 #include "scene/extent.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 #include "form_factor/monte_carlo.h"
 #include "form_factor/point_polygon.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

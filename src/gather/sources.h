@@ -3,7 +3,8 @@
 #include "patchlight/base/field.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/sensor.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <array>
 #include <cstdint>

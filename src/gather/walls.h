@@ -1,9 +1,9 @@
 #pragma once
 
 #include "patchlight/scene/sides.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "gather/facets.h"
+#include "visibility/occluder.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/light/solar_position.h"
 #include "patchlight/scene/daylight.h"
+
+#include "light/solar_position.h"
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,6 @@
 #include "patchlight/input/read_scene.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/repair.h"
 
 #include "base/sha256.h"
 #include "input/material_settings.h"
@@ -12,6 +11,7 @@
 #include "input/text.h"
 #include "input/toml_sensors.h"
 #include "scene/limits.h"
+#include "scene/repair.h"
 
 #include <cassert>
 #include <utility>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "patchlight/light/solar_position.h"
 #include "patchlight/scene/scene.h"
 
 #include "input/read_epw.h"
+#include "light/solar_position.h"
 
 #include <optional>
 #include <string>

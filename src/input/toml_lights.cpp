@@ -1,7 +1,8 @@
 #include "input/toml_lights.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/light/photometry.h"
+
+#include "light/photometry.h"
 
 #include <cmath>
 #include <utility>

@@ -1,8 +1,8 @@
 #include "patchlight/base/error.h"
-#include "patchlight/light/photometry.h"
 
 #include "input/read_ies.h"
 #include "input/toml_lights.h"
+#include "light/photometry.h"
 #include "scene/photometric_web.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #include "input/toml_sensors.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/input/read_points.h"
 
 #include "base/near_match.h"
 #include "input/material_settings.h"
+#include "input/read_points.h"
 #include "input/text.h"
 #include "scene/sensor_grid.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/light/photometry.h"
+#include "light/photometry.h"
 
 #include "light/bands.h"
 

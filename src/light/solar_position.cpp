@@ -1,4 +1,4 @@
-#include "patchlight/light/solar_position.h"
+#include "light/solar_position.h"
 
 #include <cmath>
 #include <numbers>

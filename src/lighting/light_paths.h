@@ -2,6 +2,7 @@
 
 #include "patchlight/base/field.h"
 
+#include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
 #include <memory>

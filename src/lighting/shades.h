@@ -1,11 +1,11 @@
 #pragma once
 
 #include "patchlight/light/spectrum.h"
-#include "patchlight/scene/coverings.h"
 #include "patchlight/scene/scene.h"
-#include "patchlight/visibility/shaft.h"
 
 #include "lighting/receiver.h"
+#include "scene/coverings.h"
+#include "visibility/shaft.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "patchlight/mesh/interpolate.h"
+#include "mesh/interpolate.h"
 
 #include <algorithm>
 #include <cmath>

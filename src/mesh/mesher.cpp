@@ -1,4 +1,4 @@
-#include "patchlight/mesh/mesher.h"
+#include "mesh/mesher.h"
 
 #include "patchlight/base/error.h"
 

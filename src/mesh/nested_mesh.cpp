@@ -1,4 +1,4 @@
-#include "patchlight/mesh/nested_mesh.h"
+#include "mesh/nested_mesh.h"
 
 #include "mesh/refine.h"
 

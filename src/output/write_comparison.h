@@ -2,7 +2,8 @@
 
 #include "patchlight/base/progress.h"
 #include "patchlight/output/provenance.h"
-#include "patchlight/study/compare.h"
+
+#include "study/compare.h"
 
 #include <filesystem>
 

@@ -1,11 +1,11 @@
 #include "output/write_glb.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/render/tone_map.h"
 
 #include "output/append_bytes.h"
 #include "output/json_array.h"
 #include "output/write_bytes.h"
+#include "render/tone_map.h"
 
 #include <Eigen/Core>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "patchlight/output/write_image.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/render/tone_map.h"
 
 #include "output/write_bytes.h"
+#include "render/tone_map.h"
 
 #include <algorithm>
 #include <array>

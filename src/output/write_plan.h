@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/expected_cost.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
+
+#include "expected_cost.h"
 
 #include <filesystem>
 #include <string>

@@ -1,9 +1,8 @@
 #include "output/write_ply.h"
 
-#include "patchlight/render/tone_map.h"
-
 #include "output/append_bytes.h"
 #include "output/write_bytes.h"
+#include "render/tone_map.h"
 
 #include <sstream>
 

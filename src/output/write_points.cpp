@@ -1,4 +1,4 @@
-#include "patchlight/output/write_points.h"
+#include "output/write_points.h"
 
 #include "light/bands.h"
 #include "output/csv_cell.h"

@@ -1,11 +1,11 @@
 #include "output/write_series.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/render/tone_map.h"
 
 #include "output/vtk_polygons.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
+#include "render/tone_map.h"
 
 #include <cassert>
 #include <cerrno>

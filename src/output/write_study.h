@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/study/study.h"
+
+#include "study/study.h"
 
 #include <filesystem>
 

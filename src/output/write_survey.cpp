@@ -1,8 +1,8 @@
 #include "output/write_survey.h"
 
-#include "patchlight/light/photometry.h"
 #include "patchlight/output/provenance.h"
 
+#include "light/photometry.h"
 #include "output/json_array.h"
 #include "output/write_bytes.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/plan/survey.h"
+#include "plan/survey.h"
 
 #include <filesystem>
 #include <string>

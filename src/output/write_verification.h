@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/study/verify.h"
+
+#include "study/verify.h"
 
 #include <filesystem>
 

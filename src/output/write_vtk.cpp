@@ -1,9 +1,8 @@
 #include "output/write_vtk.h"
 
-#include "patchlight/light/photometry.h"
-#include "patchlight/render/tone_map.h"
-
+#include "light/photometry.h"
 #include "output/vtk_polygons.h"
+#include "render/tone_map.h"
 
 #include <array>
 #include <numbers>

@@ -1,8 +1,9 @@
-#include "patchlight/expected_cost.h"
+#include "expected_cost.h"
 
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "transport/assembly_time.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <thread>

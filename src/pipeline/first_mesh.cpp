@@ -1,6 +1,7 @@
 #include "pipeline/first_mesh.h"
 
-#include "patchlight/mesh/mesher.h"
+#include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 
 namespace patchlight {
 

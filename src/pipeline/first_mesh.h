@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
+
+#include "mesh/nested_mesh.h"
 
 namespace patchlight {
 

@@ -1,9 +1,9 @@
 #include "patchlight/form_factors.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/parallel.h"
+#include "mesh/mesher.h"
 #include "plan/memory.h"
+#include "transport/closure.h"
 #include "visibility/tracing.h"
 
 #include <utility>

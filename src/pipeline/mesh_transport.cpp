@@ -1,9 +1,12 @@
 #include "pipeline/mesh_transport.h"
 
+#include "mesh/nested_mesh.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"
 #include "transport/ray_rate.h"
+#include "visibility/occluder.h"
 
 #include <utility>
 

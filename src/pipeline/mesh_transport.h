@@ -1,9 +1,10 @@
 #pragma once
 
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/transport_operator.h"
 
+#include "mesh/nested_mesh.h"
 #include "pipeline/run.h"
+#include "transport/closure.h"
 
 #include <memory>
 #include <optional>

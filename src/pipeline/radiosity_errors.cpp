@@ -1,4 +1,4 @@
-#include "patchlight/radiosity_errors.h"
+#include "radiosity_errors.h"
 
 #include "patchlight/transport/lost_share.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
 
+#include "mesh/nested_mesh.h"
 #include "visibility/tracing.h"
 
 #include <memory>

@@ -4,6 +4,7 @@
 
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
+#include "mesh/nested_mesh.h"
 #include "mesh/refine.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/relative_errors.h"

@@ -2,6 +2,7 @@
 
 #include "patchlight/accuracy/error_bars.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/interest.h"
 
 #include <algorithm>

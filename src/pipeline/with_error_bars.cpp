@@ -1,10 +1,13 @@
 #include "pipeline/with_error_bars.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/interest.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/light_of_lamps.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"

@@ -1,5 +1,7 @@
 #include "plan/close_lamps.h"
 
+#include "visibility/occluder.h"
+
 #include <algorithm>
 #include <optional>
 #include <sstream>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/scene/scene.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <string>
 #include <vector>

@@ -1,13 +1,13 @@
 #include "patchlight/plan/plan.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/plan/survey.h"
 
+#include "mesh/mesher.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
+#include "plan/survey.h"
 #include "scene/problem_face.h"
 
 #include <algorithm>

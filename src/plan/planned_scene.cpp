@@ -1,6 +1,7 @@
 #include "plan/planned_scene.h"
 
-#include "patchlight/light/photometry.h"
+#include "light/photometry.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <type_traits>

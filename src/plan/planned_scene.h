@@ -2,7 +2,8 @@
 
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 namespace patchlight {
 

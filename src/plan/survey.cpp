@@ -1,8 +1,7 @@
-#include "patchlight/plan/survey.h"
-
-#include "patchlight/scene/coverings.h"
+#include "plan/survey.h"
 
 #include "base/lower_case.h"
+#include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
 

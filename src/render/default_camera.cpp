@@ -1,4 +1,5 @@
-#include "patchlight/render/render.h"
+#include "render/render.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
-#include "patchlight/render/render.h"
+#include "render/render.h"
 
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
 #include "mesh/patch_lookup.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

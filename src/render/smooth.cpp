@@ -1,4 +1,6 @@
-#include "patchlight/render/smooth.h"
+#include "render/smooth.h"
+
+#include "visibility/occluder.h"
 
 #include <vector>
 

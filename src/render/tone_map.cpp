@@ -1,8 +1,7 @@
-#include "patchlight/render/tone_map.h"
-
-#include "patchlight/light/photometry.h"
+#include "render/tone_map.h"
 
 #include "light/bands.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "patchlight/scene/daylight.h"
 
-#include "patchlight/light/photometry.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 #include <array>

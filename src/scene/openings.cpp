@@ -1,7 +1,6 @@
 #include "scene/openings.h"
 
-#include "patchlight/scene/coverings.h"
-
+#include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/pieces.h"
 #include "scene/problem_face.h"

@@ -1,4 +1,4 @@
-#include "patchlight/scene/repair.h"
+#include "scene/repair.h"
 
 #include "scene/coincident.h"
 #include "scene/extent.h"

@@ -1,6 +1,6 @@
 #include "scene/transmittance.h"
 
-#include "patchlight/light/photometry.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 

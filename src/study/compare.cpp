@@ -1,4 +1,4 @@
-#include "patchlight/study/compare.h"
+#include "study/compare.h"
 
 #include "base/parallel.h"
 #include "base/vectors.h"

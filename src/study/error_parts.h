@@ -1,8 +1,7 @@
 #pragma once
 
-#include "patchlight/study/study.h"
-
 #include "study/reference.h"
+#include "study/study.h"
 
 namespace patchlight {
 

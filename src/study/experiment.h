@@ -1,9 +1,8 @@
 #pragma once
 
-#include "patchlight/study/study.h"
-
 #include "study/nested_sizes.h"
 #include "study/reference.h"
+#include "study/study.h"
 
 namespace patchlight {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/study/verify.h"
+#include "study/verify.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "study/nested_sizes.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/mesher.h"
 
+#include "mesh/mesher.h"
 #include "mesh/patch_lookup.h"
 #include "mesh/refine.h"
 #include "plan/memory.h"

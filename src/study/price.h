@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/study/study.h"
+#include "study/study.h"
 
 #include <array>
 #include <string>

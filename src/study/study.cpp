@@ -1,4 +1,4 @@
-#include "patchlight/study/study.h"
+#include "study/study.h"
 
 #include "base/parallel.h"
 #include "plan/memory.h"

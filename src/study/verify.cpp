@@ -1,4 +1,4 @@
-#include "patchlight/study/verify.h"
+#include "study/verify.h"
 
 #include "accuracy/spaces.h"
 #include "base/parallel.h"

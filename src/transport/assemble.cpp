@@ -6,6 +6,7 @@
 #include "transport/estimators.h"
 #include "transport/narrow.h"
 #include "transport/pair_sampler.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cassert>

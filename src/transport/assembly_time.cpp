@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "transport/cluster_pairs.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,8 @@
 
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 namespace patchlight {
 

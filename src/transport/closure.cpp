@@ -1,4 +1,4 @@
-#include "patchlight/transport/closure.h"
+#include "transport/closure.h"
 
 #include "patchlight/base/error.h"
 

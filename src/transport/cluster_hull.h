@@ -1,8 +1,7 @@
 #pragma once
 
-#include "patchlight/visibility/shaft.h"
-
 #include "form_factor/patch_cluster.h"
+#include "visibility/shaft.h"
 
 #include <optional>
 #include <vector>

@@ -1,5 +1,7 @@
 #include "transport/cluster_pairs.h"
 
+#include "visibility/occluder.h"
+
 #include <algorithm>
 
 namespace patchlight {

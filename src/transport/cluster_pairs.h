@@ -2,12 +2,12 @@
 
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "form_factor/patch_cluster.h"
 #include "form_factor/patch_shape.h"
 #include "transport/cluster_hull.h"
 #include "transport/pair_sampler.h"
+#include "visibility/occluder.h"
 
 #include <bit>
 #include <cstddef>

@@ -1,6 +1,7 @@
 #include "transport/dense.h"
 
 #include "base/parallel.h"
+#include "transport/closure.h"
 #include "transport/tile_kernel.h"
 #include "transport/tiles.h"
 

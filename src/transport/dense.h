@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/transport_operator.h"
+
+#include "transport/closure.h"
 
 #include <Eigen/Core>
 #include <memory>

@@ -1,5 +1,6 @@
 #include "transport/estimators.h"
 #include "transport/pair_by_pair.h"
+#include "visibility/occluder.h"
 
 namespace patchlight {
 

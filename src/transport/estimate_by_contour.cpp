@@ -1,6 +1,7 @@
 #include "form_factor/contour.h"
 #include "transport/estimators.h"
 #include "transport/pair_by_pair.h"
+#include "visibility/occluder.h"
 
 namespace patchlight {
 

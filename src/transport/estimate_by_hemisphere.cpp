@@ -5,6 +5,7 @@
 #include "transport/estimators.h"
 #include "transport/narrow.h"
 #include "transport/patch_frame.h"
+#include "visibility/occluder.h"
 
 #include <map>
 #include <vector>

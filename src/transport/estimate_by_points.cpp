@@ -3,6 +3,7 @@
 #include "form_factor/solid_angle.h"
 #include "transport/estimators.h"
 #include "transport/pair_by_pair.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 

@@ -2,6 +2,8 @@
 
 #include "patchlight/transport/assemble.h"
 
+#include "visibility/occluder.h"
+
 namespace patchlight {
 
 // What assemble_exchange_areas() does for Estimator::area and so on. Each is plain: no clusters, no short cuts.

@@ -1,5 +1,8 @@
 #include "patchlight/transport/exchange.h"
 
+#include "transport/closure.h"
+#include "visibility/occluder.h"
+
 #include <utility>
 
 namespace patchlight {

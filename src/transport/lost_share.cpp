@@ -4,6 +4,7 @@
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "transport/patch_frame.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cassert>

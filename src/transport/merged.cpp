@@ -1,6 +1,8 @@
 #include "transport/merged.h"
 
 #include "base/parallel.h"
+#include "mesh/nested_mesh.h"
+#include "transport/closure.h"
 #include "transport/narrow.h"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "patchlight/base/field.h"
-#include "patchlight/mesh/nested_mesh.h"
-#include "patchlight/transport/closure.h"
+
+#include "mesh/nested_mesh.h"
+#include "transport/closure.h"
 
 #include <Eigen/Core>
 

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "transport/cluster_pairs.h"
 #include "transport/narrow.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cassert>

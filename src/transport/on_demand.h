@@ -3,7 +3,8 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/transport_operator.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <Eigen/Core>
 #include <memory>

@@ -5,6 +5,7 @@
 #include "form_factor/monte_carlo.h"
 #include "form_factor/patch_keys.h"
 #include "transport/narrow.h"
+#include "visibility/occluder.h"
 
 #include <utility>
 #include <vector>

@@ -3,6 +3,7 @@
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <functional>

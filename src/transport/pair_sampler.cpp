@@ -6,6 +6,7 @@
 #include "form_factor/patch_keys.h"
 #include "form_factor/solid_angle.h"
 #include "transport/narrow.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <array>

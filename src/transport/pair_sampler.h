@@ -2,10 +2,10 @@
 
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "form_factor/pair_samples.h"
 #include "form_factor/patch_shape.h"
+#include "visibility/occluder.h"
 
 #include <cstdint>
 #include <span>

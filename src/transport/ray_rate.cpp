@@ -4,6 +4,7 @@
 #include "base/sampling.h"
 #include "form_factor/pair_samples.h"
 #include "form_factor/patch_shape.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <vector>

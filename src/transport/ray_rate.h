@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <cstdint>
 

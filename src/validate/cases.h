@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/validate/validate.h"
+#include "validate/validate.h"
 
 #include <vector>
 

@@ -1,11 +1,10 @@
 #include "validate/measure.h"
 
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
-#include "patchlight/visibility/occluder.h"
-
 #include "form_factor/patch_shape.h"
+#include "mesh/mesher.h"
+#include "scene/repair.h"
 #include "transport/group_exchange.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/transport/assemble.h"
-#include "patchlight/validate/validate.h"
+
+#include "validate/validate.h"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,12 @@
 #include "patchlight/gather/gather.h"
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
 
+#include "mesh/mesher.h"
+#include "scene/repair.h"
 #include "validate/cases.h"
 #include "validate/closed_forms.h"
 #include "validate/measure.h"
 #include "validate/scenes.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <limits>

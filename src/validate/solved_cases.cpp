@@ -1,6 +1,6 @@
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "scene/repair.h"
 #include "validate/cases.h"
 #include "validate/closed_forms.h"
 #include "validate/measure.h"

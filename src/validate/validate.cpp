@@ -1,4 +1,4 @@
-#include "patchlight/validate/validate.h"
+#include "validate/validate.h"
 
 #include "patchlight/base/error.h"
 

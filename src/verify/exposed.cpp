@@ -1,6 +1,7 @@
 #include "verify/exposed.h"
 
 #include "base/sampling.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

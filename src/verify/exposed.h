@@ -1,9 +1,8 @@
 #pragma once
 
-#include "patchlight/verify/path_tracer.h"
-#include "patchlight/visibility/occluder.h"
-
+#include "verify/path_tracer.h"
 #include "verify/surfaces.h"
+#include "visibility/occluder.h"
 
 #include <cstdint>
 #include <span>

@@ -1,13 +1,13 @@
-#include "patchlight/verify/path_tracer.h"
-
-#include "patchlight/scene/coverings.h"
+#include "verify/path_tracer.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "scene/coverings.h"
 #include "verify/exposed.h"
 #include "verify/lamps.h"
 #include "verify/lights.h"
 #include "verify/surfaces.h"
+#include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "patchlight/views/picture.h"
 
-#include "patchlight/light/photometry.h"
-#include "patchlight/render/render.h"
-#include "patchlight/render/tone_map.h"
-
+#include "light/photometry.h"
+#include "render/render.h"
+#include "render/tone_map.h"
+#include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
 #include <algorithm>

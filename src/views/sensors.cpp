@@ -1,12 +1,12 @@
 #include "patchlight/views/sensors.h"
 
 #include "patchlight/gather/gather.h"
-#include "patchlight/gather/sensor_places.h"
-#include "patchlight/radiosity_errors.h"
 
 #include "gather/doubtful_sensors.h"
+#include "gather/sensor_places.h"
 #include "lighting/direct_irradiance.h"
 #include "plan/planned_scene.h"
+#include "radiosity_errors.h"
 #include "visibility/tracing.h"
 
 #include <limits>

@@ -1,7 +1,7 @@
 #include "patchlight/views/surface.h"
 
-#include "patchlight/render/smooth.h"
-
+#include "render/smooth.h"
+#include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
 #include <numbers>

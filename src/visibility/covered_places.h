@@ -1,7 +1,6 @@
 #pragma once
 
-#include "patchlight/scene/coverings.h"
-
+#include "scene/coverings.h"
 #include "visibility/flat_polygon.h"
 
 #include <vector>

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/scene/scene.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "visibility/covered_places.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <cstddef>

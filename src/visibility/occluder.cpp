@@ -1,4 +1,4 @@
-#include "patchlight/visibility/occluder.h"
+#include "visibility/occluder.h"
 
 #include "base/sampling.h"
 #include "scene/extent.h"

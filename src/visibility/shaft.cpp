@@ -1,4 +1,4 @@
-#include "patchlight/visibility/shaft.h"
+#include "visibility/shaft.h"
 
 #include "base/target_clones.h"
 #include "scene/extent.h"

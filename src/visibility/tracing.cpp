@@ -1,5 +1,7 @@
 #include "visibility/tracing.h"
 
+#include "visibility/occluder.h"
+
 #include <mutex>
 #include <utility>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/visibility/occluder.h"
+#include "visibility/occluder.h"
 
 #include <memory>
 

@@ -1,11 +1,11 @@
 // Whole runs against closed forms.
 #include "patchlight/form_factors.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

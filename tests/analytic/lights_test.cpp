@@ -1,10 +1,11 @@
 #include "patchlight/gather/gather.h"
-#include "patchlight/light/photometry.h"
 #include "patchlight/simulate.h"
 
 #include "input/read_ies.h"
+#include "light/photometry.h"
 #include "lighting/direct_irradiance.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <cmath>

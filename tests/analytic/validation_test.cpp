@@ -1,5 +1,5 @@
 // The table of `patchlight validate`.
-#include "patchlight/validate/validate.h"
+#include "validate/validate.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 #include "form_factor/contour.h"
 #include "form_factor/patch_shape.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

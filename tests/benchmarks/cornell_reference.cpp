@@ -4,12 +4,12 @@
 // sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/render/smooth.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/parallel.h"
 #include "mesh/patch_lookup.h"
+#include "render/smooth.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

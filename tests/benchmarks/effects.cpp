@@ -1,11 +1,11 @@
 // What leaving an effect out saves, on a scene made for it: the table of docs/effects.md, in Markdown, and how exact
 // expected_cost() is.
 // usage: benchmark_effects [PATCHES]
-#include "patchlight/expected_cost.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
 #include "base/parallel.h"
+#include "expected_cost.h"
+#include "mesh/mesher.h"
 #include "plan/effect_facts.h"
 #include "support/effect_scenes.h"
 

@@ -13,6 +13,7 @@
 #include "benchmarks/sampled_entries.h"
 #include "benchmarks/solution_error.h"
 #include "benchmarks/unoccluded.h"
+#include "visibility/occluder.h"
 
 #include <benchmark/benchmark.h>
 #include <cstdio>

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "benchmarks/room.h"
 #include "benchmarks/shadow_packets.h"
+#include "visibility/occluder.h"
 
 #include <benchmark/benchmark.h>
 #include <cstdio>

@@ -1,6 +1,6 @@
 // How long it takes to cut a box into about a million patches: as quadrilaterals, and with its faces halved into
 // triangles. usage: benchmark_mesher
-#include "patchlight/mesh/mesher.h"
+#include "mesh/mesher.h"
 
 #include "base/parallel.h"
 #include "support/scenes.h"

@@ -2,17 +2,18 @@
 // usage: benchmark_progressive OUT PATCHES MODEL...
 // Prints a table per model; OUT takes progressive.png, and MODEL.csv with all that was measured.
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/exchange.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/parallel.h"
+#include "mesh/mesher.h"
 #include "output/write_plot.h"
 #include "pipeline/problem_of.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/on_demand.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cstdio>

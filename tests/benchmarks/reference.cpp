@@ -4,6 +4,7 @@
 #include "patchlight/transport/assemble.h"
 
 #include "transport/tiles.h"
+#include "visibility/occluder.h"
 
 #include <fstream>
 

@@ -1,9 +1,11 @@
 #include "benchmarks/room.h"
 
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/lost_share.h"
+
+#include "mesh/mesher.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <benchmark/benchmark.h>

@@ -4,7 +4,8 @@
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <cstdio>

@@ -2,13 +2,14 @@
 // usage: benchmark_sensor_coverage PERCENT PATHS MODEL...
 // Each model is solved to an accuracy of so many percent. PATHS per sensor: 16384 know it to about a percent.
 #include "patchlight/gather/gather.h"
-#include "patchlight/gather/sensor_places.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/radiosity_errors.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
-#include "patchlight/verify/path_tracer.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "gather/sensor_places.h"
+#include "radiosity_errors.h"
+#include "scene/repair.h"
+#include "verify/path_tracer.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "benchmarks/room.h"
 #include "benchmarks/sampled_entries.h"
+#include "visibility/occluder.h"
 
 #include <vector>
 

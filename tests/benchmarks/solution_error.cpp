@@ -1,10 +1,11 @@
 #include "benchmarks/solution_error.h"
 
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/lost_share.h"
 
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 

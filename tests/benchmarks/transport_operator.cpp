@@ -1,6 +1,7 @@
 // One application of the stored matrix, and one sweep over it, against a plain pass over the same bytes.
 #include "base/parallel.h"
 #include "base/target_clones.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/tiles.h"
 

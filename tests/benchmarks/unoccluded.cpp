@@ -7,6 +7,7 @@
 #include "form_factor/patch_shape.h"
 #include "support/scenes.h"
 #include "validate/closed_forms.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,14 @@
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "mesh/average.h"
+#include "mesh/mesher.h"
 #include "mesh/refine.h"
 #include "pipeline/problem_of.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

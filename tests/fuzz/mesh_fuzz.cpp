@@ -1,13 +1,13 @@
 // What repair() leaves of any few polygons on a coarse grid passes the check of a scene and can be meshed, and the
 // exchange areas are those of a radiosity problem: finite, not negative, symmetric, and never more than the smaller
 // patch.
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/parallel.h"
+#include "mesh/mesher.h"
+#include "scene/repair.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Panes drawn on walls that are not cut: a clear face opens what it lies over.
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Lamps in the plane of a surface, and lamps that cross closed solids: no light is lost by deciding where they are.
 #include "patchlight/scene/luminaire.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <cmath>

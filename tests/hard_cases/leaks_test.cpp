@@ -1,11 +1,11 @@
 // Walls that must be tight: without thickness, standing on a floor, pieced together with T-junctions. And surfaces that
 // must not shade themselves.
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "base/sampling.h"
+#include "scene/repair.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

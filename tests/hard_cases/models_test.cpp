@@ -1,11 +1,11 @@
 // Models as they come: tiny, huge and far away; with faces that are no faces, and with faces turned around.
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
+#include "mesh/mesher.h"
+#include "scene/repair.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

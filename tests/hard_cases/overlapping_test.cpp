@@ -1,9 +1,10 @@
 // Polygons that lie one on the other in the same plane: a rug drawn on a floor, floors of two solids.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/exchange.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Pairs of patches: coplanar, straddling each other's plane, half hidden.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "form_factor/patch_shape.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
 #include "patchlight/gather/gather.h"
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/render/render.h"
-#include "patchlight/render/smooth.h"
 #include "patchlight/simulate.h"
-#include "patchlight/verify/path_tracer.h"
 
+#include "mesh/mesher.h"
+#include "render/render.h"
+#include "render/smooth.h"
 #include "support/scenes.h"
+#include "verify/path_tracer.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Faces whose outlines have many more corners than patches are asked for, as lids of round rooms.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <algorithm>

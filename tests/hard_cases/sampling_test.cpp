@@ -2,15 +2,15 @@
 // crack is no window.
 #include "base/sampling.h"
 
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/sampling_error.h"
-#include "patchlight/visibility/occluder.h"
 
 #include "form_factor/solid_angle.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,9 +1,10 @@
 // What shines through small openings arrives: patches behind walls with slits, slats, bars and holes, against paths.
 #include "patchlight/gather/gather.h"
 #include "patchlight/simulate.h"
-#include "patchlight/verify/path_tracer.h"
 
 #include "support/partitions.h"
+#include "verify/path_tracer.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

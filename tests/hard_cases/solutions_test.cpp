@@ -1,9 +1,9 @@
 // Hard systems: reflectances of nearly 1 and of 1, patches that see nothing.
 #include "patchlight/input/read_scene.h"
-#include "patchlight/plan/survey.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "plan/survey.h"
+#include "scene/repair.h"
 #include "support/meshes.h"
 #include "support/scenes.h"
 

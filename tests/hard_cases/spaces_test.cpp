@@ -1,9 +1,9 @@
 #include "accuracy/spaces.h"
 
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
 #include "accuracy/interest.h"
+#include "mesh/mesher.h"
 #include "support/daylight_office.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Faces and vertices far from the rest of a model: they change nothing where it is.
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <algorithm>

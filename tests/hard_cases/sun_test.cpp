@@ -1,6 +1,5 @@
-#include "patchlight/mesh/mesher.h"
-
 #include "lighting/direct_irradiance.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // Thin things: gaps, boxes and slivers of 1e-4 to 1e-6 of their size, and the bounds that no form factor may pass.
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/visibility/occluder.h"
 
+#include "mesh/mesher.h"
+#include "scene/repair.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,14 @@
 // Patches that touch: form factors next to a shared edge or vertex, and lengths that are no more than rounding.
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
 #include "form_factor/contour.h"
 #include "form_factor/monte_carlo.h"
 #include "form_factor/point_polygon.h"
 #include "form_factor/solid_angle.h"
+#include "mesh/mesher.h"
+#include "scene/repair.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>

@@ -1,9 +1,10 @@
 // The errors that are stated for sampled exchange areas are those that they have.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

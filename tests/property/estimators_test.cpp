@@ -1,10 +1,11 @@
 // The estimators agree, and the short cuts of the automatic one change no more than they may.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 #include "transport/group_exchange.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

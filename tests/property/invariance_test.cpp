@@ -1,7 +1,7 @@
 // Where a model stands, how large it is, and in which order its faces come means nothing.
-#include "patchlight/scene/repair.h"
 #include "patchlight/simulate.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <algorithm>

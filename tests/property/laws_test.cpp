@@ -1,12 +1,12 @@
 // Laws that every run obeys.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/closure.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/visibility/occluder.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/scene/coverings.h"
 #include "patchlight/transport/exchange.h"
-#include "patchlight/visibility/occluder.h"
 
+#include "mesh/mesher.h"
 #include "pipeline/problem_of.h"
+#include "scene/coverings.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <memory>
 #include <utility>

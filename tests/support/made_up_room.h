@@ -2,6 +2,7 @@
 
 #include "patchlight/solve/problem.h"
 
+#include "transport/closure.h"
 #include "transport/dense.h"
 
 #include <cmath>

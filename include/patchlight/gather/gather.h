@@ -4,12 +4,13 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/sensor.h"
-#include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
 #include <span>
 
 namespace patchlight {
+
+class Occluder;
 
 /// What may be wrong with the radiosities that are gathered, per patch and band, W/m^2. Empty fields: nothing.
 struct RadiosityErrors {

@@ -5,12 +5,13 @@
 #include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/sampling_error.h"
-#include "patchlight/visibility/occluder.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
+
+class Occluder;
 
 /// How exchange areas are found. All but the first are for study: they take no short cuts, and every pair that faces
 /// each other costs rays.

@@ -3,15 +3,18 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/closure.h"
+#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/visibility/occluder.h"
+#include "patchlight/transport/sampling_error.h"
 
 #include <Eigen/Core>
 #include <string>
 
 namespace patchlight {
+
+class Occluder;
+struct ClosedExchangeAreas;
 
 /// What passes between the patches of a mesh. Geometry alone decides it.
 struct Exchange {

@@ -2,13 +2,14 @@
 
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/visibility/occluder.h"
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
+
+class Occluder;
 
 /// What rays see of each patch's surroundings, all per patch and in [0, 1].
 struct LostShare {

@@ -1,11 +1,14 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "patchlight/simulate.h"
-#include "patchlight/transport/closure.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/refinement.h"
+#include "mesh/nested_mesh.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

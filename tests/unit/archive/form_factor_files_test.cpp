@@ -1,12 +1,13 @@
-#include "patchlight/archive/form_factor_files.h"
+#include "archive/form_factor_files.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
 #include "archive/npy.h"
 #include "archive/scene_file.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
 #include "unit/output/temporary_folder.h"
 
 #include <gtest/gtest.h>

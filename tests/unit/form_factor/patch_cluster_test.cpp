@@ -1,8 +1,7 @@
 #include "form_factor/patch_cluster.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "form_factor/patch_shape.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "form_factor/patch_shape.h"
 
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/sides.h"
 
 #include "form_factor/contour.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <functional>

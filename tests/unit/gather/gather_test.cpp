@@ -1,13 +1,14 @@
 #include "patchlight/gather/gather.h"
 
 #include "patchlight/gather/readings.h"
-#include "patchlight/gather/sensor_places.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/sides.h"
 
 #include "gather/doubtful_sensors.h"
+#include "gather/sensor_places.h"
+#include "mesh/mesher.h"
 #include "scene/sensor_grid.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

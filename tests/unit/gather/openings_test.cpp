@@ -1,8 +1,9 @@
 #include "patchlight/gather/gather.h"
-#include "patchlight/mesh/mesher.h"
 
 #include "form_factor/point_polygon.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
-#include "patchlight/gather/sensor_places.h"
+#include "gather/sensor_places.h"
 
 #include "patchlight/gather/gather.h"
-#include "patchlight/mesh/mesher.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

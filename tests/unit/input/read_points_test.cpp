@@ -1,4 +1,4 @@
-#include "patchlight/input/read_points.h"
+#include "input/read_points.h"
 
 #include "model_files.h"
 

@@ -1,7 +1,7 @@
 #include "patchlight/input/read_scene.h"
-#include "patchlight/light/photometry.h"
-#include "patchlight/light/solar_position.h"
 
+#include "light/photometry.h"
+#include "light/solar_position.h"
 #include "model_files.h"
 #include "scene/photometric_web.h"
 

@@ -1,10 +1,10 @@
 #include "lighting/direct_irradiance.h"
 
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/scene/sides.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "mesh/mesher.h"
 #include "scene/photometric_web.h"
 #include "support/scenes.h"
 

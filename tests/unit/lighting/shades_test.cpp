@@ -1,9 +1,8 @@
 #include "lighting/shades.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/sampling.h"
 #include "lighting/direct_irradiance.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <cmath>

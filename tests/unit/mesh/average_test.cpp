@@ -1,8 +1,7 @@
 #include "mesh/average.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/parallel.h"
+#include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

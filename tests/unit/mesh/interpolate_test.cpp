@@ -1,7 +1,6 @@
-#include "patchlight/mesh/interpolate.h"
+#include "mesh/interpolate.h"
 
-#include "patchlight/mesh/mesher.h"
-
+#include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

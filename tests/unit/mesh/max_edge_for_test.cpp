@@ -1,5 +1,4 @@
-#include "patchlight/mesh/mesher.h"
-
+#include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
-#include "patchlight/mesh/nested_mesh.h"
-
-#include "patchlight/mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 
 #include "base/sampling.h"
+#include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 #include "support/scenes.h"
 

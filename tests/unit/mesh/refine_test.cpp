@@ -1,9 +1,8 @@
 #include "mesh/refine.h"
 
-#include "patchlight/mesh/interpolate.h"
-#include "patchlight/mesh/mesher.h"
-
 #include "base/sampling.h"
+#include "mesh/interpolate.h"
+#include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 
 #include <algorithm>

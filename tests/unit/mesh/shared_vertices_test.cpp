@@ -1,5 +1,4 @@
-#include "patchlight/mesh/mesher.h"
-
+#include "mesh/mesher.h"
 #include "support/tiny_scenes.h"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "output/write_glb.h"
 
-#include "patchlight/render/smooth.h"
-#include "patchlight/render/tone_map.h"
-
+#include "render/smooth.h"
+#include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <cstring>

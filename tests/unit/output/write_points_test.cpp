@@ -1,4 +1,4 @@
-#include "patchlight/output/write_points.h"
+#include "output/write_points.h"
 
 #include "patchlight/base/error.h"
 

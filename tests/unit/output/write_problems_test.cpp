@@ -1,8 +1,7 @@
 #include "output/write_problems.h"
 
-#include "patchlight/scene/repair.h"
-
 #include "output/write_survey.h"
+#include "scene/repair.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"
 

@@ -1,8 +1,8 @@
 #include "output/write_series.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/render/tone_map.h"
 
+#include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
 

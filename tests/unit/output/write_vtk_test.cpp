@@ -1,12 +1,13 @@
 #include "output/write_vtk.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/light/photometry.h"
-#include "patchlight/render/smooth.h"
-#include "patchlight/render/tone_map.h"
 
+#include "light/photometry.h"
+#include "render/smooth.h"
+#include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

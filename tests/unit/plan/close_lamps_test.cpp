@@ -1,6 +1,7 @@
 #include "plan/close_lamps.h"
 
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "patchlight/plan/plan.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/simulate.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <algorithm>

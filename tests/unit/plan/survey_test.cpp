@@ -1,9 +1,9 @@
-#include "patchlight/plan/survey.h"
+#include "plan/survey.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/plan/plan.h"
-#include "patchlight/scene/repair.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,10 +1,11 @@
-#include "patchlight/render/render.h"
+#include "render/render.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/interpolate.h"
 
 #include "base/parallel.h"
+#include "mesh/interpolate.h"
 #include "quad_scene.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "patchlight/render/smooth.h"
+#include "render/smooth.h"
 
-#include "patchlight/mesh/mesher.h"
-
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "patchlight/render/tone_map.h"
+#include "render/tone_map.h"
 
 #include <algorithm>
 #include <cmath>

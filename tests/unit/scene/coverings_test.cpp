@@ -1,4 +1,4 @@
-#include "patchlight/scene/coverings.h"
+#include "scene/coverings.h"
 
 #include "support/scenes.h"
 

@@ -1,8 +1,7 @@
 // Geometry of many corners and faces takes N log N: four times as many take some five times as long, and not sixteen
 // times.
-#include "patchlight/scene/coverings.h"
-
 #include "base/parallel.h"
+#include "scene/coverings.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
 #include "support/scenes.h"

@@ -1,8 +1,8 @@
-#include "patchlight/scene/repair.h"
+#include "scene/repair.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/mesher.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <algorithm>

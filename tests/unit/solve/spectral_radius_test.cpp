@@ -1,5 +1,6 @@
 #include "solve/spectral_radius.h"
 
+#include "transport/closure.h"
 #include "transport/dense.h"
 
 #include <Eigen/Eigenvalues>

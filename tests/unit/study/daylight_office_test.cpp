@@ -1,6 +1,6 @@
 #include "support/daylight_office.h"
 
-#include "patchlight/study/verify.h"
+#include "study/verify.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "patchlight/study/verify.h"
+#include "study/verify.h"
 
 #include "patchlight/input/read_scene.h"
 

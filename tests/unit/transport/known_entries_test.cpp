@@ -1,16 +1,18 @@
-#include "patchlight/mesh/mesher.h"
-#include "patchlight/mesh/nested_mesh.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/exchange.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/problem_of.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "support/tiny_scenes.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

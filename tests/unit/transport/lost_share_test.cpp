@@ -1,9 +1,11 @@
 #include "patchlight/transport/lost_share.h"
 
 #include "patchlight/accuracy/error_bars.h"
-#include "patchlight/mesh/mesher.h"
 
+#include "accuracy/errors.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,11 @@
 #include "transport/merged.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/parallel.h"
+#include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "support/scenes.h"
 #include "support/tiny_scenes.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
 
 #include <cmath>

@@ -1,12 +1,14 @@
 #include "transport/on_demand.h"
 
 #include "patchlight/input/read_scene.h"
-#include "patchlight/mesh/mesher.h"
 
 #include "base/parallel.h"
+#include "mesh/mesher.h"
 #include "support/meshes.h"
 #include "support/scenes.h"
+#include "transport/closure.h"
 #include "transport/dense.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

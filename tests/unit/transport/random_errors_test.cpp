@@ -1,8 +1,7 @@
 #include "transport/random_errors.h"
 
-#include "patchlight/mesh/mesher.h"
-
 #include "base/parallel.h"
+#include "mesh/mesher.h"
 #include "support/scenes.h"
 #include "support/tiny_scenes.h"
 

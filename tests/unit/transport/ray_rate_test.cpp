@@ -1,8 +1,8 @@
 #include "transport/ray_rate.h"
 
-#include "patchlight/mesh/mesher.h"
-
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // The mean estimate of an exchange area over many pairs and seeds is the true one, however small the opening is.
-#include "patchlight/mesh/mesher.h"
 #include "patchlight/transport/assemble.h"
 
+#include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
-#include "patchlight/verify/path_tracer.h"
-
 #include "support/daylight_office.h"
+#include "verify/path_tracer.h"
 
 #include <array>
 #include <cmath>

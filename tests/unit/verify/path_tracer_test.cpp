@@ -1,4 +1,4 @@
-#include "patchlight/verify/path_tracer.h"
+#include "verify/path_tracer.h"
 
 #include "base/parallel.h"
 #include "support/scenes.h"

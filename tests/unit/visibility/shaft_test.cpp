@@ -1,9 +1,8 @@
-#include "patchlight/visibility/shaft.h"
-
-#include "patchlight/visibility/occluder.h"
+#include "visibility/shaft.h"
 
 #include "base/sampling.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <gtest/gtest.h>
 

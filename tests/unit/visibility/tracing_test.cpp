@@ -4,6 +4,7 @@
 
 #include "lighting/lighting.h"
 #include "support/scenes.h"
+#include "visibility/occluder.h"
 
 #include <dlfcn.h>
 #include <embree3/rtcore.h>

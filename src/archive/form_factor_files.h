@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/archive/group_factors.h"
 #include "patchlight/form_factors.h"
+
+#include "archive/group_factors.h"
 
 #include <cstdint>
 #include <filesystem>

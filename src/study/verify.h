@@ -1,7 +1,8 @@
 #pragma once
 
 #include "patchlight/simulate.h"
-#include "patchlight/verify/path_tracer.h"
+
+#include "verify/path_tracer.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,10 +3,11 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/render/image.h"
-#include "patchlight/render/smooth.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "render/smooth.h"
+#include "visibility/occluder.h"
 
 namespace patchlight {
 

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "patchlight/mesh/interpolate.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "mesh/interpolate.h"
+#include "visibility/occluder.h"
 
 #include <Eigen/Core>
 

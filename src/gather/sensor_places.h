@@ -2,12 +2,15 @@
 
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
-#include "patchlight/visibility/occluder.h"
+
+#include "visibility/occluder.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
+
+class Occluder;
 
 /// What a sensor's place means for its reading.
 enum class Standing : std::uint8_t {

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
-#include "patchlight/scene/coverings.h"
 #include "patchlight/scene/scene.h"
-#include "patchlight/visibility/shaft.h"
+
+#include "scene/coverings.h"
+#include "visibility/shaft.h"
 
 #include <array>
 #include <cstddef>

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "patchlight/accuracy/error_bars.h"
+#include "patchlight/solve/problem.h"
+#include "patchlight/transport/assemble.h"
+#include "patchlight/transport/lost_share.h"
+#include "patchlight/transport/transport_operator.h"
+
+#include "mesh/nested_mesh.h"
+
+#include <cstdint>
+
+namespace patchlight {
+
+/// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band; infinite where there is an error
+/// and no reflected light. Patches of weight 0 do not count.
+double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
+                    const Eigen::VectorXd& weight);
+
+/// A problem and what solves it.
+struct SolvedProblem {
+  const RadiosityProblem& problem;
+  const Solution& solution;
+  bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
+};
+
+/// What the sampling of form factors does to the irradiance by the light `B`, radiosity in W/m^2: the root mean square
+/// over random draws of the entries' errors (random_errors()), each followed through all reflections,
+/// e = A^-1 D B + F R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums.
+/// docs/accuracy.md. Costs some tens of applications. `raw` has the entries' errors.
+Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
+                         const SolvedProblem& solved, const FieldView& B);
+
+/// The same of light straight from the lamps, where that was found a second time, with other samples: `difference`, in
+/// W/m^2, is how far both are apart.
+Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
+                          const FieldView& difference);
+
+/// What the share of a patch that is exposed, when it is not all of it, may be off, as a share of it; stratified points
+/// find a straight edge with a variance of their number to the power of -3/2 times the length of the edge, which grows
+/// as the root of covered (1 - covered).
+Eigen::ArrayXd exposure_errors(const LostShare& lost);
+
+/// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from sources twice as
+/// large: |F (B_h - B_2h)| / (2^order - 1), where B_2h is the solution on the parents, with the same exchange areas
+/// summed up. Of that and its root mean square over the patches around, the larger: where the difference changes sign,
+/// it is not the error that is 0.
+Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
+                  const FieldView& radiosity_of_parents);
+
+/// The order of the mean irradiance in the size of the patches that mesh_errors() takes. Measured ones are 1.5 to 2
+/// where there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
+inline constexpr double mesh_order = 1.2;
+
+/// What the errors of light straight from the lamps, known from a single difference, are multiplied with, so that bars
+/// cover what they should.
+inline constexpr double form_factor_scale = 1.5;
+
+/// How far the radiosity of the lit part of a patch that reaches into a solid is above its mean: B_i d_i / (1 - d_i),
+/// d_i the dark share, not above 1/2. As long as the patch is wider than what is dark of it, the light that this takes
+/// away does not depend on the patch's size: comparison with larger patches does not show it.
+Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
+
+/// What no comparison with larger patches shows, either: in a gap that is narrower than its patches are wide, light
+/// that gets in at the rim is spread over all of a patch, however large. There H_i times how much of the hemisphere
+/// above 0.35, the view of a face 0.6 edges away, is taken by faces that are so near and look back. `S` as the
+/// transport has it, m^2. O(size^2).
+Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
+
+/// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
+/// sqrt(3) of those inside a patch where the irradiance is linear.
+Field display_errors(const NestedMesh& mesh, const SolvedProblem& solved);
+
+/// The solver's bound |dB_i| / rho_i; for patches that reflect nothing the largest of the others. Infinite where none
+/// is known.
+Field solver_errors(const SolvedProblem& solved);
+
+/// The problem for the parents of a mesh.
+RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem);
+
+}  // namespace patchlight
