@@ -4,13 +4,13 @@
 
 namespace patchlight {
 
-Field Scattering::reflect(const FieldView& irradiance) const { return reflectance * irradiance; }
+Field Scattering::reflect(const Field& irradiance) const { return reflectance * irradiance; }
 
-Field Scattering::adjoint(const FieldView& radiosity) const { return reflectance * radiosity; }
+Field Scattering::adjoint(const Field& radiosity) const { return reflectance * radiosity; }
 
 Eigen::ArrayXd Scattering::norm_bound() const { return highest(reflectance); }
 
-Field radiosity_from(const RadiosityProblem& problem, const FieldView& irradiance) {
+Field radiosity_from(const RadiosityProblem& problem, const Field& irradiance) {
   return problem.exitance + problem.scattering.reflectance * irradiance;
 }
 
@@ -19,31 +19,35 @@ Field source_radiosity(const RadiosityProblem& problem) {
   return radiosity_from(problem, problem.direct_irradiance);
 }
 
-Field reflect_at(const Scattering& scattering, Eigen::Index patch, const FieldView& irradiance) {
-  return scattering.reflectance.row(patch) * irradiance;
+Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradiance) {
+  return scaled(scattering.reflectance, irradiance);
 }
 
-Field absorb(const Scattering& scattering, const FieldView& irradiance) {
+Field plus_reflected(Field radiosity, const Scattering& scattering, const Field& irradiance) {
+  radiosity += scattering.reflectance * irradiance;
+  return radiosity;
+}
+
+Field absorb(const Scattering& scattering, const Field& irradiance) {
   return (1 - scattering.reflectance) * irradiance;
 }
 
-Field irradiance_behind(const Scattering& scattering, const FieldView& reflected, const FieldView& otherwise) {
+Field irradiance_behind(const Scattering& scattering, const Field& reflected, const Field& otherwise) {
   const Field& rho = scattering.reflectance;
   return (rho > 0).select(reflected / rho, otherwise);
 }
 
-Field irradiance_errors(const Scattering& scattering, const FieldView& error) {
+Field irradiance_errors(const Scattering& scattering, const Field& error) {
   const Field of_reflecting = irradiance_behind(scattering, error, Field::Zero(error.rows(), error.cols()));
   const Field largest_of_all = highest(of_reflecting).transpose().replicate(error.rows(), 1);
   return irradiance_behind(scattering, error, largest_of_all);
 }
 
-Field reflected_variance(const Scattering& scattering, const FieldView& variance) {
+Field reflected_variance(const Scattering& scattering, const Field& variance) {
   return scattering.reflectance.square() * variance;
 }
 
-Eigen::ArrayXd reflected_square(const Scattering& scattering, const FieldView& irradiance,
-                                const Eigen::VectorXd& area) {
+Eigen::ArrayXd reflected_square(const Scattering& scattering, const Field& irradiance, const Eigen::VectorXd& area) {
   return area_sum(scattering.reflectance * irradiance.square(), area);
 }
 

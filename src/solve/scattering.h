@@ -9,24 +9,32 @@ namespace patchlight {
 
 // What solvers and error bars ask of R beyond Scattering's own functions. Nothing else knows that R is diagonal.
 
-/// (R H)_i, one row, from `irradiance`, the row H_i.
-Field reflect_at(const Scattering& scattering, Eigen::Index patch, const FieldView& irradiance);
+/// (R H)_i, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at once.
+inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const Field& irradiance) {
+  return scattering.reflectance.row(patch) * irradiance;
+}
+
+/// R H of an irradiance that is the same everywhere, one value per band.
+Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradiance);
+
+/// radiosity + R H
+Field plus_reflected(Field radiosity, const Scattering& scattering, const Field& irradiance);
 
 /// (1 - R) H: what is absorbed of an irradiance, W/m^2.
-Field absorb(const Scattering& scattering, const FieldView& irradiance);
+Field absorb(const Scattering& scattering, const Field& irradiance);
 
 /// The irradiance H for which R H is `reflected`; that of `otherwise` where nothing is reflected.
-Field irradiance_behind(const Scattering& scattering, const FieldView& reflected, const FieldView& otherwise);
+Field irradiance_behind(const Scattering& scattering, const Field& reflected, const Field& otherwise);
 
 /// How far irradiances may be off when radiosities are by `error`, |dB| = R |dH|, W/m^2; for patches that reflect
 /// nothing the largest of the others.
-Field irradiance_errors(const Scattering& scattering, const FieldView& error);
+Field irradiance_errors(const Scattering& scattering, const Field& error);
 
 /// The variances of R H, from those of irradiances that do not depend on each other.
-Field reflected_variance(const Scattering& scattering, const FieldView& variance);
+Field reflected_variance(const Scattering& scattering, const Field& variance);
 
 /// sum_i A_i H_i (R H)_i per band: the square of the norm in which K and its symmetric form have one spectrum.
-Eigen::ArrayXd reflected_square(const Scattering& scattering, const FieldView& irradiance, const Eigen::VectorXd& area);
+Eigen::ArrayXd reflected_square(const Scattering& scattering, const Field& irradiance, const Eigen::VectorXd& area);
 
 /// R of these bands, in this order; a band may come several times.
 Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index>& bands);
@@ -41,9 +49,9 @@ class SymmetricRoot {
   SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd& area);
 
   /// D w, radiosity in W/m^2.
-  Field radiosity_of(const FieldView& w) const { return radiosity_ * w; }
+  Field radiosity_of(const Field& w) const { return radiosity_ * w; }
   /// T H, in the units of w.
-  Field of_irradiance(const FieldView& irradiance) const { return from_irradiance_ * irradiance; }
+  Field of_irradiance(const Field& irradiance) const { return from_irradiance_ * irradiance; }
   /// T 1, what irradiance 1 everywhere comes to.
   const Field& of_even_irradiance() const { return from_irradiance_; }
 

@@ -2,6 +2,7 @@
 
 #include "base/vectors.h"
 #include "solve/coarse_transport.h"
+#include "solve/scattering.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,15 +14,16 @@ namespace {
 
 // The share of even irradiance that is reflected.
 Eigen::ArrayXd mean_reflectance_of(const RadiosityProblem& problem) {
-  const Field even = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
-  return area_sum(problem.scattering.reflect(even), problem.area) / total(problem.area);
+  const Field reflected = reflect_even(problem.scattering, Eigen::ArrayXd::Ones(problem.exitance.cols()));
+  return area_sum(reflected, problem.area) / total(problem.area);
 }
 
 // Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly:
 // sum_i A_i dB_i / sum_i A_i / (1 - mean rho). Cohen et al. 1988, section 3.2. What overshooting shoots beforehand.
-Field even_irradiance(const Field& unshot, const Eigen::VectorXd& area, const Eigen::ArrayXd& mean_reflectance) {
+Eigen::ArrayXd even_irradiance(const Field& unshot, const Eigen::VectorXd& area,
+                               const Eigen::ArrayXd& mean_reflectance) {
   const Eigen::ArrayXd mean_unshot = area_sum(unshot, area) / total(area);
-  return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0).transpose();
+  return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
 }
 
 // The lamps' light where it arrives first, the number of their patches, and what their rows tell.
@@ -51,15 +53,16 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
 
 // How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
 // best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
-Field over_relaxation(const Eigen::ArrayXd& mean_reflectance) {
+Eigen::ArrayXd over_relaxation(const Eigen::ArrayXd& mean_reflectance) {
   constexpr double next_eigenvalue = 0.7;
-  return (2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt())).transpose();
+  return 2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt());
 }
 
 // What is shot of what is unshot and of what is expected to come.
 Field with_expected(const Field& unshot, const RadiosityProblem& problem, const Eigen::ArrayXd& mean_reflectance) {
-  const Field even = even_irradiance(unshot, problem.area, mean_reflectance).replicate(unshot.rows(), 1);
-  return unshot.rowwise() * over_relaxation(mean_reflectance).row(0) + problem.scattering.reflect(even);
+  Field waiting = reflect_even(problem.scattering, even_irradiance(unshot, problem.area, mean_reflectance));
+  waiting += unshot.rowwise() * over_relaxation(mean_reflectance).transpose();
+  return waiting;
 }
 
 // How many shots there may be after the lamps'.
@@ -100,7 +103,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
     const Field arriving =
         is_done ? Field::Zero(n, shot_radiosity.cols()) : transport.shoot({index, index + 1}, shot_radiosity);
     unshot.row(source) -= shot_radiosity;
-    unshot += problem.scattering.reflect(arriving);
+    unshot = plus_reflected(std::move(unshot), problem.scattering, arriving);
     H += arriving;
     coarse.learn(source, shot_radiosity, arriving);
     iterations.count(1.0 / static_cast<double>(n));

@@ -15,9 +15,9 @@ struct Scattering {
   Field reflectance;  ///< rho, in [0, 1]: one row per patch, one column per band
 
   /// R H: the radiosity by an irradiance, both in W/m^2.
-  Field reflect(const FieldView& irradiance) const;
+  Field reflect(const Field& irradiance) const;
   /// The adjoint of R in the inner product sum_i A_i x_i y_i, applied to a field.
-  Field adjoint(const FieldView& radiosity) const;
+  Field adjoint(const Field& radiosity) const;
   /// Per band a bound on ||R H||_A / ||H||_A.
   Eigen::ArrayXd norm_bound() const;
 };
@@ -31,7 +31,7 @@ struct RadiosityProblem {
 };
 
 /// B = E + R H for any irradiance H, W/m^2.
-Field radiosity_from(const RadiosityProblem& problem, const FieldView& irradiance);
+Field radiosity_from(const RadiosityProblem& problem, const Field& irradiance);
 
 /// What patches send out before any of it has come from another patch: E + R H_direct, W/m^2.
 Field source_radiosity(const RadiosityProblem& problem);
