@@ -42,7 +42,7 @@ struct Request {
                                            ///< "room.inside" and "room.outside": the accuracy is that of their patches;
                                            ///< none: of all
   int threads = 0;                         ///< 0: all processors
-  std::optional<double> memory;            ///< bytes that the run may take; without it 0.8 of the machine's memory
+  std::optional<double> memory = {};       ///< bytes that the run may take; without it 0.8 of the machine's memory
   std::vector<Effect> force = {};          ///< effects that are simulated whatever the scene is like
   std::vector<Effect> skip = {};           ///< effects that are left out; none that is forced
 };
