@@ -3,7 +3,7 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 
-#include "expected_cost.h"
+#include "pipeline/expected_cost.h"
 
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-#include "expected_cost.h"
+#include "pipeline/expected_cost.h"
 
 #include "plan/memory.h"
 #include "plan/planned_scene.h"

@@ -1,4 +1,4 @@
-#include "radiosity_errors.h"
+#include "pipeline/radiosity_errors.h"
 
 #include "patchlight/transport/lost_share.h"
 

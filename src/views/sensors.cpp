@@ -5,8 +5,8 @@
 #include "gather/doubtful_sensors.h"
 #include "gather/sensor_places.h"
 #include "lighting/direct_irradiance.h"
+#include "pipeline/radiosity_errors.h"
 #include "plan/planned_scene.h"
-#include "radiosity_errors.h"
 #include "visibility/tracing.h"
 
 #include <limits>

@@ -4,8 +4,8 @@
 #include "patchlight/simulate.h"
 
 #include "base/parallel.h"
-#include "expected_cost.h"
 #include "mesh/mesher.h"
+#include "pipeline/expected_cost.h"
 #include "plan/effect_facts.h"
 #include "support/effect_scenes.h"
 

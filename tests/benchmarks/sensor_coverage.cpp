@@ -6,7 +6,7 @@
 #include "patchlight/simulate.h"
 
 #include "gather/sensor_places.h"
-#include "radiosity_errors.h"
+#include "pipeline/radiosity_errors.h"
 #include "scene/repair.h"
 #include "verify/path_tracer.h"
 #include "visibility/occluder.h"
