@@ -143,8 +143,8 @@ TEST(Simulate, RefusesErrorsOfFormFactorsThatAreNotKept) {
     simulate(cube_room(0.5, 1), request);
     FAIL() << "expected an InputError";
   } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with("--on-demand: ")) << error.what();
-    EXPECT_NE(std::string(error.what()).find("--accuracy"), std::string::npos) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with("storage: ")) << error.what();
+    EXPECT_NE(std::string(error.what()).find("an accuracy"), std::string::npos) << error.what();
   }
 }
 
