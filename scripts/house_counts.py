@@ -30,7 +30,7 @@ def naming(files, pattern, outside=()):
 
 
 def long_functions(files):
-    """Names of functions whose body, with its head, is longer than LONG lines: from a line that ends with an opening
+    """Places of functions whose body, with its head, is longer than LONG lines: from a line that ends with an opening
     brace after a parenthesis to the closing brace below its beginning."""
     found = []
     for name, text in files.items():
@@ -69,10 +69,10 @@ def counts(root):
               for hit in re.findall(r"\bplan\.([\w.]+) = request\.\1\b|\brequest\.([\w.]+) = plan\.\2\b", text)]
     return {
         "files outside of transport and archive that name tiles":
-            len(naming(files, r"(?<!::)\btiles?\b|tile_edge", ("src/transport/", "include/patchlight/transport/", "src/archive/"))),
+            len(naming(files, r"(?<!::)\btiles?\b|tile_edge", ("src/transport/", "include/patchlight/transport/", "src/archive/", "src/render/"))),
         "files in which `on_demand` is asked for": len(naming(files, r"\bon_demand\b(?!_)")),
         "fields copied by hand between Request and Plan": len(copies),
-        "files that build an Occluder": len(naming(files, r"\bOccluder\(\w|\bOccluder \w+\(")),
+        "files that build an Occluder": len(naming(files, r"\bOccluder>?\(\w|\bOccluder \w+\(", ("src/visibility/occluder", "include/patchlight/visibility/occluder"))),
         "public headers": sum(name.startswith("include/") for name in files),
         "files at the root of src": sum(name.count("/") == 1 for name in files if name.startswith("src/")),
         "files that multiply by reflectance":

@@ -71,7 +71,8 @@ struct Simulation {
                                          ///< interest: inside and outside; else empty
   std::vector<StageCost> costs;
   Field direct_standard_error = {};             ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
-  std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of the solution
+  std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
+                                                ///< the solution; never null after simulate()
 };
 
 /// The exchange between the patches of a mesh where it is known already.

@@ -7,7 +7,8 @@
 
 namespace patchlight {
 
-// What solvers and error bars ask of R beyond Scattering's own functions. Nothing else knows that R is diagonal.
+// What solvers and error bars ask of R beyond Scattering's own functions. Solvers know no more of R: the parents'
+// problem, squares in accuracy/, reports and files take rho as it is.
 
 /// (R H)_i, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at once.
 inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const Field& irradiance) {

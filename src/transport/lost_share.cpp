@@ -116,12 +116,15 @@ std::vector<Seen> HemisphereSampler::look(PatchIndex patch, std::vector<Ray> ray
   return seen;
 }
 
-// Does another face lie against the one that was hit, where it was?
+// Does another face lie against the one that was hit, where it was? One that lies over it and faces the same way, as a
+// rug on a floor, is met from behind, where it has no patches.
 bool HemisphereSampler::is_in_contact(const Hit& hit) const {
   const Vector& normal = mesh.normal[mesh.patches_on(hit.polygon, hit.side).begin];
   const Ray through{hit.point - behind * extent * normal, normal, hit.polygon};
   const auto next = occluder.first_hits({&through, 1})[0];
-  return next && next->distance < 2 * behind * extent;
+  if (!next || next->distance >= 2 * behind * extent) return false;
+  const PatchRange range = mesh.patches_on(next->polygon, next->side);
+  return range.begin != range.end;
 }
 
 int count(std::span<const Seen> among, Sight sight) {
@@ -146,8 +149,8 @@ std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::
   return seen;
 }
 
-// What groups of rays from one point each tell. A point is covered when every ray from it meets a back or a face that
-// lies against the patch.
+// What groups of rays from one point each tell. A point is covered when every ray from it meets a back, a face that
+// lies against the patch, or one against which another lies.
 Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   const std::vector<Seen> sights = look_together(patch, rays, seed);
   int covered = 0;

@@ -34,7 +34,8 @@ Eigen::VectorXd expected_row_sum(const LostShare& lost);
 
 /// Measures the shares with stratified cosine-hemisphere rays that start spread over each patch. A ray that meets
 /// nothing is traced again from a place 1 % nearer to the patch's centroid and a little behind its plane, so that
-/// cracks between polygons and faces that lie against each other do not count as openings. \throws Cancelled.
+/// cracks between polygons and faces that lie against each other do not count as openings. Where rays from one point
+/// meet backs, a face counts as a back too if another lies against it. \throws Cancelled.
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer = {});
 
@@ -50,8 +51,8 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer = {});
 
 /// The area in m^2 that takes part in the exchange of light: what is not covered, times the share that a clear patch
-/// holds back. It is never below what the exchange
-/// areas S_ij, given by their row sums in m^2, show to be seen of the patch, nor below 1e-6 of it.
+/// holds back. It is never below what the exchange areas S_ij, given by their row sums in m^2, show to be seen of the
+/// patch, nor below 1e-6 of it.
 Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen);
 
 }  // namespace patchlight

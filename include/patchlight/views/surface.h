@@ -13,7 +13,8 @@ struct SolvedSurface {
   Field radiance_at_vertices;  ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
 };
 
-/// Smooths the radiance of a solution, which traces rays along the patches; see smooth().
+/// Smooths the radiance of a solution, which traces rays along the patches. `scene` is the one that was solved, and
+/// `simulation` comes from simulate().
 SolvedSurface surface_of(const Scene& scene, const Simulation& simulation);
 
 }  // namespace patchlight

@@ -4,6 +4,7 @@
 
 #include "accuracy/errors.h"
 #include "mesh/mesher.h"
+#include "scene/coverings.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 
@@ -102,6 +103,25 @@ TEST(LostShare, FindsContactBetweenSolidsThatTouchWalls) {
     }
     EXPECT_GE(in_contact, 4);
   }
+}
+
+// A rug drawn on a floor lies over it and faces the same way: before a wall whose back is seen, both are in plain
+// sight.
+TEST(LostShare, TakesNoRugForContact) {
+  Scene scene = empty_scene({grey(0.5)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(1, 1, 0), Point(3, 1, 0), Point(3, 3, 0), Point(1, 3, 0)});
+  // A table's top over them that looks down, and a board with its back to them.
+  scene = with_quad(std::move(scene), {Point(1, 1, 1), Point(1, 3, 1), Point(3, 3, 1), Point(3, 1, 1)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 4, 0), Point(0, 4, 2), Point(0, 0, 2)});
+  const KeptSides front = kept_sides(scene, Sides::front);
+  const PatchMesh mesh = tessellate(scene, front, 9);
+  const LostShare lost =
+      measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, front)), 256, 1);
+  const PatchIndex top = mesh.patches_on(2, Side::front).begin;
+  const double backs = lost.at_backs[top];
+  EXPECT_LT(backs, 0.2);
+  EXPECT_EQ(lost.covered[top], 0);
 }
 
 // What is known is not measured again: here it is made up.
