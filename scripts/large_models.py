@@ -93,6 +93,19 @@ def disc(count):
     return model
 
 
+def cylinder(count):
+    """A round column of so many sides from above the floor to below the lamp, with both lids."""
+    model = Obj()
+    rims = [[model.vertex(5 + 4 * math.cos(2 * math.pi * k / count), 5 + 4 * math.sin(2 * math.pi * k / count), z)
+             for k in range(count)] for z in (0.5, 8)]
+    model.face(*reversed(rims[0]))
+    model.face(*rims[1])
+    for k in range(count):
+        following = (k + 1) % count
+        model.face(rims[0][k], rims[0][following], rims[1][following], rims[1][k])
+    return model
+
+
 def overlapping(count):
     """Quadrilaterals in one plane, of which nearly every two overlap."""
     model, chance = Obj(), random.Random(3)
@@ -116,6 +129,7 @@ MODELS = {
     "one_edge_100k": ("100,000 triangles on one edge", lambda: on_one_edge(100_000)),
     "intersecting_100k": ("100,000 intersecting triangles", lambda: intersecting(100_000)),
     "disc_10000": ("a disc of 10,000 corners", lambda: disc(10_000)),
+    "cylinder_10000": ("a cylinder of 10,000 sides", lambda: cylinder(10_000)),
     "overlapping_2000": ("2,000 overlapping quadrilaterals", lambda: overlapping(2_000)),
     "one_edge_20k": ("20,000 triangles on one edge", lambda: on_one_edge(20_000)),
     "intersecting_20k": ("20,000 intersecting triangles", lambda: intersecting(20_000)),

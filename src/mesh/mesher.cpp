@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "mesh/boundary_vertices.h"
+#include "mesh/coarse_outline.h"
 #include "mesh/outline.h"
 #include "mesh/refine_polygon.h"
 #include "scene/triangulate.h"
@@ -113,12 +114,16 @@ std::size_t count_patches(const Outline& outline, double max_edge) {
   return refine_polygon(outline, max_edge).patches.size();
 }
 
-std::size_t count_patches(const Scene& scene, const KeptSides& sides, double max_edge) {
+Outline outline_of(const Scene& scene, const LooseCorners& loose, PolygonIndex polygon, double max_edge) {
+  return make_outline(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon), max_edge);
+}
+
+std::size_t count_patches(const Scene& scene, const LooseCorners& loose, const KeptSides& sides, double max_edge) {
   std::vector<std::size_t> counts(scene.polygons.size(), 0);
   parallel_for(counts.size(), [&](std::size_t p) {
     const std::size_t kept = sides.front[p] + sides.back[p];
     const auto polygon = static_cast<PolygonIndex>(p);
-    if (kept > 0) counts[p] = kept * count_patches(make_outline(scene, polygon, max_edge), max_edge);
+    if (kept > 0) counts[p] = kept * count_patches(outline_of(scene, loose, polygon, max_edge), max_edge);
   });
   return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
@@ -135,12 +140,13 @@ bool is_kept(const KeptSides& sides, std::size_t slot) { return (slot % 2 == 0 ?
 
 Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge) {
   const std::size_t count = scene.polygons.size();
+  const LooseCorners loose = find_loose_corners(scene);
   Pieces pieces{.outlines = std::vector<Outline>(count),
                 .meshes = std::vector<PolygonMesh>(count),
                 .first_inner = {},
                 .boundary = {}};
   parallel_for(count, [&](std::size_t p) {
-    pieces.outlines[p] = make_outline(scene, static_cast<PolygonIndex>(p), max_edge);
+    pieces.outlines[p] = outline_of(scene, loose, static_cast<PolygonIndex>(p), max_edge);
     if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], max_edge);
   });
   pieces.boundary = {number_boundary(scene, pieces.outlines, Side::front, sides.front),
@@ -230,7 +236,19 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 }
 
 std::size_t least_patches(const Scene& scene, const KeptSides& sides) {
-  return count_patches(scene, sides, diameter(scene));
+  return count_patches(scene, find_loose_corners(scene), sides, diameter(scene));
+}
+
+std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge) {
+  const LooseCorners loose = find_loose_corners(scene);
+  std::vector<std::size_t> counts(scene.polygons.size(), 0);
+  if (loose.empty()) return counts;
+  parallel_for(counts.size(), [&](std::size_t p) {
+    const auto polygon = static_cast<PolygonIndex>(p);
+    if (loose[p].empty()) return;
+    counts[p] = outline_corners(scene, polygon).size() - coarse_outline(scene, loose, polygon, max_edge).size();
+  });
+  return counts;
 }
 
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
@@ -238,7 +256,8 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
-  const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, sides, edge)); };
+  const LooseCorners loose = find_loose_corners(scene);
+  const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, loose, sides, edge)); };
 
   // 1. No number below that of the uncut scene.
   double too_long = diameter(scene);

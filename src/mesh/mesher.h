@@ -4,13 +4,15 @@
 #include "patchlight/scene/sides.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace patchlight {
 
 /// Subdivides the kept sides of every polygon into patches no edge of which is longer than `max_edge` metres.
 ///
 /// An edge is cut into ceil(length / max_edge) equal parts, whichever polygon it belongs to, so neighbours that share
-/// an edge share its points. Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
+/// an edge share its points. Where an outline that no third face meets is finer than that it becomes coarser first, see
+/// coarse_outline(). Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
 /// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
 /// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
 /// are numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
@@ -20,6 +22,9 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 
 /// The number of patches when no edge is cut: the least there can be.
 std::size_t least_patches(const Scene& scene, const KeptSides& sides);
+
+/// Per polygon how many corners of its outline patches do without, see coarse_outline().
+std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 
 /// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
 /// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for

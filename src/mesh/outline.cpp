@@ -1,6 +1,8 @@
 #include "mesh/outline.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace patchlight {
 
@@ -10,16 +12,10 @@ bool comes_before(const Point& a, const Point& b) {
   return a.z() < b.z();
 }
 
-Outline make_outline(const Scene& scene, PolygonIndex polygon, double max_edge) {
+Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge) {
   // An edge of n max_edge has n parts, whatever the rounding of its length.
   constexpr double rounding = 1e-9;
-  Outline outline{.corners = {}, .parts = {}, .normal = front_normal(scene, polygon)};
-  outline.corners.reserve(scene.polygons[polygon].corners.size());
-  for (const Point& corner : corner_points(scene, polygon)) {
-    if (outline.corners.empty() || corner != outline.corners.back()) outline.corners.push_back(corner);
-  }
-  while (outline.corners.size() > 1 && outline.corners.back() == outline.corners.front()) outline.corners.pop_back();
-
+  Outline outline{.corners = std::move(corners), .parts = {}, .normal = normal};
   const std::size_t n = outline.corners.size();
   outline.parts.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {

@@ -23,7 +23,7 @@ struct PolygonMesh {
 /// True when a comes before b in the order of their coordinates.
 bool comes_before(const Point& a, const Point& b);
 
-Outline make_outline(const Scene& scene, PolygonIndex polygon, double max_edge);
+Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge);
 
 /// Point `index` of 0 to `parts` on an edge. Taken from the end that comes first, so that it has the same bits
 /// whichever way the edge is traversed.

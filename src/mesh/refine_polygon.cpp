@@ -36,6 +36,7 @@ struct OutlinePlane {
   Point origin;
   Eigen::Matrix3d axes;
   double spacing;  // of the points on that edge
+  bool is_cut;     // that edge: it has points besides its ends
 
   FlatPoint flat(const Point& point) const { return axes.leftCols<2>().transpose() * (point - origin); }
   Point lifted(const FlatPoint& point) const { return origin + axes.leftCols<2>() * point; }
@@ -51,7 +52,10 @@ OutlinePlane plane_of(const Outline& outline) {
     const Vector edge = outline.corners[(k + 1) % n] - outline.corners[k];
     if (edge.norm() > (1 + rounding) * longest.norm()) longest = edge, first = k;
   }
-  OutlinePlane plane{.origin = outline.corners[first], .axes = {}, .spacing = longest.norm() / outline.parts[first]};
+  OutlinePlane plane{.origin = outline.corners[first],
+                     .axes = {},
+                     .spacing = longest.norm() / outline.parts[first],
+                     .is_cut = outline.parts[first] > 1};
   const Vector left = outline.normal.cross(longest).normalized();
   plane.axes << left.cross(outline.normal), left, outline.normal;
   return plane;
@@ -62,12 +66,12 @@ OutlinePlane plane_of(const Outline& outline) {
 // has n - 2 + 2 m triangles, so that these are at most half as many again as the outline takes by itself. Where that
 // would leave edges that are too long the lattice is as fine as it has to be: no point of the outline is farther from
 // it than (lattice_margin + 1 / sqrt(3)) spacings.
-double lattice_spacing(const Outline& outline, double spacing, double max_edge) {
-  constexpr double much_finer = 0.5;
+double lattice_spacing(const Outline& outline, const OutlinePlane& plane, double max_edge) {
   constexpr double corners_per_point = 4;
   constexpr double reaches_outline = 0.8;  // < 1 / (lattice_margin + 1 / sqrt(3))
   const double area_per_spacing = std::sqrt(0.75);
-  if (spacing >= much_finer * max_edge) return spacing;
+  const double spacing = plane.spacing;
+  if (plane.is_cut) return spacing;
   const double area = area_vector(outline.corners).norm();
   const auto corners = static_cast<double>(outline.corners.size());
   if (area <= corners * area_per_spacing * spacing * spacing) return spacing;
@@ -357,7 +361,7 @@ PolygonMesh Triangulation::result(const OutlinePlane& plane) const {
 
 PolygonMesh refine_polygon(const Outline& outline, double max_edge) {
   const OutlinePlane plane = plane_of(outline);
-  const double spacing = lattice_spacing(outline, plane.spacing, max_edge);
+  const double spacing = lattice_spacing(outline, plane, max_edge);
   std::vector<FlatPoint> corners;
   for (const Point& corner : outline.corners) corners.push_back(plane.flat(corner));
 

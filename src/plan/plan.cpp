@@ -5,10 +5,10 @@
 #include "mesh/mesher.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
+#include "plan/fine_outlines.h"
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
 #include "plan/survey.h"
-#include "scene/problem_face.h"
 
 #include <algorithm>
 #include <cassert>
@@ -67,23 +67,6 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
          ", for its large ones to be cut as well; a simpler model takes fewer";
 }
 
-// Every corner of an outline is one of patches, so that a round face may take more of them than were asked for.
-std::vector<std::string> notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked) {
-  constexpr std::size_t parts = 4;  // of the patches asked for: a face that takes as many is worth a word
-  std::vector<ProblemFace> faces;
-  std::size_t most = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const std::size_t corners = scene.polygons[p].corners.size();
-    if (!(sides.front[p] || sides.back[p]) || parts * (corners - 2) < asked || corners <= 4) continue;
-    faces.push_back(problem_face(scene, scene.polygons[p]));
-    most = std::max(most, corners);
-  }
-  if (faces.empty()) return {};
-  return {listed(scene, faces) + " with an outline of up to " + std::to_string(most) +
-          " corners, finer than the patches asked for: all are kept, so that each side takes " +
-          std::to_string(most - 2) + " patches at least; an outline of fewer corners takes fewer"};
-}
-
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& request) {
@@ -123,17 +106,21 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   const bool nested = request.error_bars || refines(request);
   Plan plan;
   plan.sides = sides_for(scene, request);
+  std::size_t asked = 0;
   if (request.max_edge) {
     plan.max_edge = *request.max_edge;
   } else {
-    const std::size_t asked = request.patches.value_or(refines(request) ? first_patches : default_patches);
+    asked = request.patches.value_or(refines(request) ? first_patches : default_patches);
     const std::size_t least = least_patches(scene, plan.sides);
     const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
     if (wanted > asked && !nested) plan.notes.push_back(note_on_patches(scene, asked, wanted));
-    for (std::string& note : notes_on_fine_outlines(scene, plan.sides, asked)) plan.notes.push_back(std::move(note));
     // A nested mesh is made from parents with edges twice as long.
-    plan.max_edge = nested ? max_edge_for(scene, plan.sides, wanted / 4) / 2 : max_edge_for(scene, plan.sides, wanted);
+    const double edge = max_edge_for(scene, plan.sides, nested ? wanted / 4 : wanted);
+    plan.max_edge = nested ? edge / 2 : edge;
   }
+  const double outline_edge = nested ? 2 * plan.max_edge : plan.max_edge;
+  for (std::string& note : notes_on_fine_outlines(scene, plan.sides, asked, outline_edge))
+    plan.notes.push_back(std::move(note));
   plan.samples = request.samples;
   plan.seed = request.seed;
   plan.estimator = request.estimator;
