@@ -2,13 +2,14 @@
 
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
+#include "cli/text_table.h"
 
 #include <string>
 #include <vector>
 
 namespace patchlight::cli {
 
-void add_accuracy_options(CLI::App& command, Request& request) {
+void add_refinement_options(CLI::App& command, Request& request) {
   add(command, "--accuracy", "ERROR",
       "relative error of the patches' mean radiosities, e.g. 1% or 0.01:\npatches and shadow rays are refined where it "
       "pays until the error\nbars are below; begins with --patches, here " +
@@ -24,10 +25,31 @@ void add_accuracy_options(CLI::App& command, Request& request) {
           "refinement serves them; may be\nrepeated; default: all")
       ->allow_extra_args(false)
       ->option_text("NAME");
+}
+
+void add_accuracy_options(CLI::App& command, Request& request) {
+  add_refinement_options(command, request);
   command.add_flag_callback(
       "--error-bars", [&request] { request.error_bars = true; },
       "error bars on every patch: from mesh, form factors and solver; as\nlong again as the solution; default: only "
       "with --accuracy or --time");
+}
+
+std::optional<std::string> note_on_accuracy(const Request& request) {
+  if (!request.accuracy) return std::nullopt;
+  return "refining to " + percent(*request.accuracy, 4) +
+         " %: until the errors of mesh, form factors and solver are together about that share of the reflected light";
+}
+
+std::optional<std::string> option_without_error_bars(const Request& request, const std::string& form_factors) {
+  if (!keeps_entries(request.storage)) return "--on-demand";
+  if (!form_factors.empty()) return "--form-factors";
+  if (!request.close) return "--no-closure";
+  if (contains(request.skip, Effect::closure)) return "--skip closure";
+  if (contains(request.skip, Effect::interreflection)) return "--skip interreflection";
+  if (request.estimator != Estimator::automatic) return "--estimator";
+  if (request.max_rows) return "--max-rows";
+  return std::nullopt;
 }
 
 void require_error_bars_possible(const Request& request, const std::string& form_factors) {
@@ -39,16 +61,9 @@ void require_error_bars_possible(const Request& request, const std::string& form
     if (request.interest.empty()) return;
     throw UsageError("--interest needs --accuracy, --time or --error-bars");
   }
-  const char* const other = !keeps_entries(request.storage)                   ? "--on-demand"
-                            : !form_factors.empty()                           ? "--form-factors"
-                            : !request.close                                  ? "--no-closure"
-                            : contains(request.skip, Effect::closure)         ? "--skip closure"
-                            : contains(request.skip, Effect::interreflection) ? "--skip interreflection"
-                            : request.estimator != Estimator::automatic       ? "--estimator"
-                            : request.max_rows                                ? "--max-rows"
-                                                                              : nullptr;
-  if (other == nullptr) return;
-  throw UsageError(std::string(other) + " and " + option + " exclude each other; give one of them");
+  const std::optional<std::string> other = option_without_error_bars(request, form_factors);
+  if (!other) return;
+  throw UsageError(*other + " and " + option + " exclude each other; give one of them");
 }
 
 }  // namespace patchlight::cli

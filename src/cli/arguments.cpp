@@ -9,6 +9,7 @@
 #include "cli/form_factor_options.h"
 #include "cli/plan_options.h"
 #include "cli/relight_options.h"
+#include "cli/solution_options.h"
 #include "cli/solve_options.h"
 #include "cli/study_options.h"
 #include "cli/validate_options.h"
@@ -49,23 +50,27 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
-// "solve, check"
-std::string commands(const CLI::App& tool) {
-  std::string list;
-  for (const CLI::App* command : tool.get_subcommands([](const CLI::App*) { return true; })) {
-    list += (list.empty() ? "" : ", ") + command->get_name();
-  }
-  return list;
+std::vector<std::string> commands(const CLI::App& tool) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : tool.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
 }
 
 void require_one_command(const CLI::App& tool) {
   if (tool.get_subcommands().size() == 1) return;
+  const std::vector<std::string> names = commands(tool);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const std::vector<std::string> left = tool.remaining();
   if (!left.empty() && left.front()[0] == '-') {
-    throw UsageError("unknown option " + left.front() + "; expected a command: " + commands(tool));
+    throw UsageError("unknown option " + left.front() + "; expected a command: " + list);
   }
-  if (!left.empty()) throw UsageError("unknown command '" + left.front() + "'; expected one of " + commands(tool));
-  throw UsageError("found no command; expected one of " + commands(tool) + ". patchlight --help tells more");
+  if (!left.empty()) {
+    throw UsageError("unknown command '" + left.front() + "'; expected one of " + list +
+                     suggestion(left.front(), names));
+  }
+  throw UsageError("found no command; expected one of " + list + ". patchlight --help tells more");
 }
 
 // The command line as one would type it again.
@@ -151,6 +156,9 @@ Arguments parse_arguments(int count, const char* const* values) {
     return Information{tool.help()};
   } catch (const CLI::CallForVersion& call) {
     return Information{std::string(call.what()) + "\n"};
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string message = error.what();
+    throw UsageError(message + (message.starts_with("--camera") ? std::string("; expected EYE TARGET FOV, as in ") + camera_example : ""));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   } catch (const InputError& error) {

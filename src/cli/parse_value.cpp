@@ -93,7 +93,9 @@ double relative_error(const std::string& option, const std::string& text) {
   const std::optional<double> value = to_number(text.substr(0, end));
   const double error = value ? *value / (percent ? 100 : 1) : 0;
   if (once && error > 0 && error < 1) return error;
-  throw refusal(option, text, "an error above 0 and below 100%, such as 1% or 0.01");
+  const bool meant_in_percent = !percent && error >= 1 && error < 100;
+  throw refusal(option, text, "an error above 0 and below 100%, such as 1% or 0.01" +
+                                  (meant_in_percent ? "; did you mean " + text + "%?" : ""));
 }
 
 double share(const std::string& option, const std::string& text) {
@@ -107,10 +109,11 @@ double share(const std::string& option, const std::string& text) {
 Point point(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text);
   Point result = Point::Zero();
-  if (parts.size() != 3) throw refusal(option, text, "three numbers X,Y,Z");
+  const std::string expected = "three numbers X,Y,Z such as 4,-3,1.6";
+  if (parts.size() != 3) throw refusal(option, text, expected);
   for (int axis = 0; axis < 3; ++axis) {
     const std::optional<double> value = to_number(parts[axis]);
-    if (!value) throw refusal(option, text, "three numbers X,Y,Z");
+    if (!value) throw refusal(option, text, expected);
     result[axis] = *value;
   }
   return result;

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 namespace patchlight::cli {
 namespace {
@@ -29,6 +30,11 @@ void ProgressLine::hide() {
   width_ = 0;
 }
 
+void ProgressLine::name(std::string work) {
+  work_ = std::move(work);
+  stage_.reset();
+}
+
 void ProgressLine::show(const Progress& progress) {
   if (!visible_) return;
   const double now = wall_seconds();
@@ -37,7 +43,7 @@ void ProgressLine::show(const Progress& progress) {
     stage_begin_ = now;
   }
 
-  std::string line = name_of(progress.stage);
+  std::string line = work_ + name_of(progress.stage);
   line += ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
   // The time left follows from the time taken; too early it would only flicker.
   const double taken = now - stage_begin_;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace patchlight::cli {
 
@@ -19,12 +20,15 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  /// What is at work, before stage, percent and time left; nothing at first.
+  void name(std::string work);
   void show(const Progress& progress);
   /// Erases the line, so that something else can be printed.
   void hide();
 
  private:
   bool visible_;
+  std::string work_;
   std::optional<Stage> stage_;
   double stage_begin_ = 0;  // wall seconds
   std::size_t width_ = 0;   // characters on the line

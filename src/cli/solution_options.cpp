@@ -129,9 +129,9 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
           "--camera",
           [&options](const std::vector<std::string>& values) {
             const auto angle = [](double x) { return x > 0 && x < 180; };
-            options.camera =
-                Camera{point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
-                       number("--camera (FOV)", values[2], "an angle above 0 and below 180 degrees", angle)};
+            const std::string degrees = std::string("an angle above 0 and below 180 degrees, as in ") + camera_example;
+            options.camera = Camera{point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
+                                    number("--camera (FOV)", values[2], degrees, angle)};
           },
           "view of the picture: eye and target as X,Y,Z in model\nunits, vertical field of view in degrees; "
           "default: a view\nfrom within the scene's bounds that shows most of it")

@@ -10,6 +10,9 @@
 
 namespace patchlight::cli {
 
+/// How --camera is given.
+inline constexpr const char* camera_example = "--camera 4,-3,1.6 0,0,1 60";
+
 /// The options that say how the equations are solved and what is written, while they are being parsed.
 struct SolutionOptions {
   Request request;  ///< solver, tolerance, iterations, closure

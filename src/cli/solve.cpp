@@ -10,6 +10,7 @@
 #include "patchlight/views/surface.h"
 
 #include "base/parallel.h"
+#include "cli/accuracy_options.h"
 #include "cli/interrupt.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -167,6 +168,13 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   return written;
 }
 
+// Said of a result without error bars.
+std::string how_to_know_errors(const SolveArguments& arguments) {
+  if (!arguments.form_factors.empty()) return " with stored form factors";
+  const auto other = option_without_error_bars(arguments.request, {});
+  return other ? " with " + *other : "; --error-bars tells them, in about twice the time";
+}
+
 }  // namespace
 
 ExitCode solve(const SolveArguments& arguments) {
@@ -174,6 +182,7 @@ ExitCode solve(const SolveArguments& arguments) {
 
   const ThreadLimit limit(arguments.request.threads);
   const bool quiet = arguments.verbosity == Verbosity::quiet;
+  if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
   const Results results = [&] {
     ProgressLine line(!quiet && stderr_is_terminal());
     return compute(arguments, observer_on(line));
@@ -183,7 +192,7 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.sensors.warnings) print_message("warning", warning);
-    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose);
+    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose, how_to_know_errors(arguments));
     std::cout << files_line(written) << std::flush;
   }
   if (!results.report.solution.converged) {

@@ -178,7 +178,7 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
   return all;
 }
 
-std::string summary(const Report& report, bool long_form) {
+std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors) {
   std::ostringstream text;
   const Vector& size = report.scene.size;
   text << shown_name(report.scene.file) << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x "
@@ -188,6 +188,8 @@ std::string summary(const Report& report, bool long_form) {
   if (long_form) text << details(report);
   text << convergence(report) << '\n';
   if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n';
+  if (report.accuracy.empty())
+    text << "errors from the size of the patches and from form factors: not known" << how_to_know_errors << '\n';
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
   text << energy(report) << '\n';
   text << seconds(report.costs) << '\n';

@@ -11,9 +11,10 @@ namespace patchlight::cli {
 /// What the user should know about the scene and the plan.
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation);
 
-/// A few lines: patches, convergence, errors where they are known, where the light goes, seconds, and a line for each
-/// group of sensors. The long form adds decisions, counts, speed and the meshes on the way to an accuracy.
-std::string summary(const Report& report, bool long_form);
+/// A few lines: patches, convergence, errors, or where they are not known `how_to_know_errors`, where the light goes,
+/// seconds, and a line for each group of sensors. The long form adds decisions, counts, speed and the meshes on the way
+/// to an accuracy.
+std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors);
 
 /// "wrote a, b, c" as one line.
 std::string files_line(const std::vector<std::filesystem::path>& files);

@@ -12,6 +12,7 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
+#include <string>
 #include <vector>
 
 namespace patchlight::cli {
@@ -35,16 +36,24 @@ std::string table(const std::vector<ValidationResult>& results) {
   return text_table(rows);
 }
 
+// One case after the other, saying which.
+std::vector<ValidationResult> run(std::span<const ValidationCase> cases) {
+  ProgressLine line(stderr_is_terminal());
+  std::vector<ValidationResult> results;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    line.name("case " + std::to_string(k + 1) + " of " + std::to_string(cases.size()) + ": ");
+    results.push_back(patchlight::validate(cases.subspan(k, 1), observer_on(line)).front());
+  }
+  return results;
+}
+
 }  // namespace
 
 ExitCode validate(const ValidateArguments& arguments, std::span<const ValidationCase> cases) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.threads);
   const double begin = wall_seconds();
-  const std::vector<ValidationResult> results = [&] {
-    ProgressLine line(stderr_is_terminal());
-    return patchlight::validate(cases, observer_on(line));
-  }();
+  const std::vector<ValidationResult> results = run(cases);
   const double seconds = wall_seconds() - begin;
 
   const WritingGuard guard;

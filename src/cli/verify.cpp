@@ -1,6 +1,7 @@
 #include "cli/verify.h"
 
 #include "base/parallel.h"
+#include "cli/accuracy_options.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -8,6 +9,8 @@
 #include "cli/text_table.h"
 #include "output/whole_file.h"
 #include "output/write_verification.h"
+#include "plan/close_lamps.h"
+#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,13 +52,15 @@ std::vector<Difference> worst_first(const Verification& verification) {
 
 std::string table(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
   std::vector<TextRow> rows{
-      {"place", "material", "position, m", "band", "ours", "bar", "path", "standard error", "z", "z with bar"}};
+      {"place", "object", "material", "side", "position, m", "band", "ours", "bar", "path", "standard error", "z", "z with bar"}};
   const Field z = deviations_by_noise(verification);
   const Field with_bar = deviations(verification);
   for (const auto& [i, band, size] : worst_first(verification)) {
     if (rows.size() > shown) break;
     const PatchIndex patch = verification.patches[static_cast<std::size_t>(i)];
-    rows.push_back({place_of(scene, scene.polygons[mesh.polygon[patch]]), scene.materials[mesh.material[patch]].name,
+    const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
+    rows.push_back({place_of(scene, polygon), group_name(scene, polygon.group),
+                    scene.materials[mesh.material[patch]].name, name_of(mesh.side[patch]),
                     position(mesh.centroid[patch]), std::to_string(band + 1),
                     rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
                     rounded(verification.paths.irradiance(i, band), 5),
@@ -105,7 +110,7 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
     const Polygon& polygon = scene.polygons[side.polygon];
     Eigen::Index band = 0;
     side.irradiance.maxCoeff(&band);
-    text << "  light on the " << (side.side == Side::front ? "front" : "back") << " of "
+    text << "  light on the " << name_of(side.side) << " of "
          << shown_name(place_of(scene, polygon)) << ", " << shown_name(group_name(scene, polygon.group)) << ": "
          << rounded(side.irradiance[band], 4) << " +- " << rounded(side.standard_error[band], 2)
          << " W/m^2; --sides both takes it in\n";
@@ -113,7 +118,15 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
   return text.str();
 }
 
-std::string verdict(const Verification& verification, const std::string& granted) {
+// Where light is spread too far the patches that were checked need not show it.
+std::string close_lamps(const Scene& scene, const Simulation& simulation, Verdict verdict) {
+  if (notes_on_close_lamps(scene, simulation.tracing->between_patches(), simulation.plan.max_edge).empty()) return {};
+  const std::string near = "the lamps that are nearer to a surface than its patches are large";
+  return verdict == Verdict::agrees ? ", on the patches that were checked: see the note on " + near
+                                    : "; " + near + " may be why: see the note on them";
+}
+
+std::string verdict(const Verification& verification, const std::string& granted, const std::string& doubt) {
   std::ostringstream text;
   text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
        << root_mean_square(deviations_by_noise(verification)) << " (1 is noise)\n";
@@ -129,7 +142,7 @@ std::string verdict(const Verification& verification, const std::string& granted
          << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
             "what scatters";
   }
-  text << "\n";
+  text << doubt << '\n';
   return text.str();
 }
 
@@ -138,6 +151,7 @@ std::string verdict(const Verification& verification, const std::string& granted
 ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.threads);
+  if (const auto note = note_on_accuracy(arguments.request)) print_message("note", *note);
   ProgressLine line(stderr_is_terminal());
   const Observer observer = observer_on(line);
 
@@ -145,9 +159,10 @@ ExitCode verify(const VerifyArguments& arguments) {
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   const Simulation simulation = simulate(scene, arguments.request, observer);
+  const Report report = report_of(scene, arguments.request, simulation);
   if (!simulation.solution.converged) {
     line.hide();
-    print_message("warning", "not verified: " + explain_not_converged(report_of(scene, arguments.request, simulation)));
+    print_message("warning", "not verified: " + explain_not_converged(report));
     return not_converged;
   }
 
@@ -166,9 +181,14 @@ ExitCode verify(const VerifyArguments& arguments) {
             << verification.patches.size() << " of " << simulation.mesh.size() << " patches, "
             << verification.paths.paths << " paths each, " << rounded(static_cast<double>(verification.paths.rays), 3)
             << " rays in " << rounded(seconds, 3) << " s; irradiance in W/m^2\n"
-            << sides_left_out(scene, verification) << verdict(verification, bars(arguments.bar, simulation))
+            << sides_left_out(scene, verification)
+            << verdict(verification, bars(arguments.bar, simulation),
+                       close_lamps(scene, simulation, verification.verdict))
             << std::flush;
-  return verification.verdict == Verdict::agrees ? good : validation_failed;
+  if (verification.verdict != Verdict::agrees) return validation_failed;
+  if (is_accurate(report)) return good;
+  print_message("warning", explain_not_accurate(report));
+  return not_converged;
 }
 
 }  // namespace patchlight::cli

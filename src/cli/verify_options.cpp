@@ -1,5 +1,6 @@
 #include "cli/verify_options.h"
 
+#include "cli/accuracy_options.h"
 #include "cli/add_option.h"
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
@@ -60,6 +61,7 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   add_effect_options(command, to.mesh.request);
   add_verify_options(command, to);
   add_patch_options(command, to.mesh);
+  add_refinement_options(command, to.mesh.request);
   add_sampling_options(command, to.mesh);
   add_machine_options(command, to.mesh.request);
   return options;
@@ -86,6 +88,7 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
     throw UsageError(std::string("--skip ") + name_of(effect) +
                      " leaves the error bars unknown; give --bar PERCENT with it");
   }
+  require_error_bars_possible(arguments.request, {});
   require_consistent_effects(arguments.request, {});
   arguments.json = options.json;
   return arguments;

@@ -4,6 +4,7 @@
 #include "patchlight/input/read_scene.h"
 
 #include "base/lower_case.h"
+#include "base/near_match.h"
 #include "input/read_collada.h"
 #include "input/read_gltf.h"
 #include "input/read_ifc.h"
@@ -13,6 +14,7 @@
 #include "input/read_stl.h"
 #include "input/text.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -39,6 +41,22 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
                    "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }
 
+// "; did you mean 'room.obj'?" when its folder has a file of such a name; nothing where it cannot be read.
+std::string near_file(const std::filesystem::path& file) {
+  constexpr std::size_t most = 10'000;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < most;
+       entry.increment(error)) {
+    std::error_code unknown;
+    if (!entry->is_directory(unknown)) names.push_back(entry->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string nearest = near_match(file.filename().string(), names);
+  return nearest.empty() ? "" : "; did you mean '" + (file.parent_path() / nearest).string() + "'?";
+}
+
 }  // namespace
 
 std::string format_of(const std::filesystem::path& file) {
@@ -48,7 +66,7 @@ std::string format_of(const std::filesystem::path& file) {
   return in_lower_case(std::move(text));
 }
 
-void require_file(const std::filesystem::path& file, const std::string& where) {
+void require_file(const std::filesystem::path& file, const std::string& where, bool near_names) {
   if (file == "-") return;
   std::error_code error;
   const std::string name = where == file ? "" : file.string() + ": ";
@@ -57,7 +75,8 @@ void require_file(const std::filesystem::path& file, const std::string& where) {
     throw InputError(where, name + "the model file cannot be opened: " + error.message());
   }
   if (!std::filesystem::exists(status)) {
-    throw InputError(where, name + "the model file does not exist; check the name and the folder");
+    const std::string hint = near_names ? near_file(file) : "";
+    throw InputError(where, name + "the model file does not exist; check the name and the folder" + hint);
   }
   if (std::filesystem::is_directory(status)) {
     throw InputError(where, name + "this is a folder; expected a model file (" + allowed_extensions() + ")");

@@ -10,8 +10,9 @@ namespace patchlight {
 /// The format of a file: its extension in lower case, without the dot; the standard input is OBJ.
 std::string format_of(const std::filesystem::path& file);
 
-/// \throws InputError at `where` unless the file is there and no folder. "-" always is.
-void require_file(const std::filesystem::path& file, const std::string& where);
+/// \throws InputError at `where` unless the file is there and no folder. "-" always is. `near_names` lets the message
+/// name a file of that folder which may be meant.
+void require_file(const std::filesystem::path& file, const std::string& where, bool near_names = false);
 
 /// One model file as it stands, in metres, before any setting or check. `format` is one of readable_formats() without
 /// toml. The file, and those that it names, must lie in the folder `confine`, if there is one. \throws InputError.

@@ -92,7 +92,8 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   std::vector<Scene> models;
   std::vector<SceneFile> scene_files;
   for (const std::filesystem::path& file : files) {
-    require_file(file, file.string());
+    // Who may read one folder only is told of no other.
+    require_file(file, file.string(), options.confine.empty());
     const std::string format = options.format.empty() ? format_of(file) : options.format;
     if (format == "toml") {
       scene_files.push_back(scene_file(file, options));

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/lower_case.h"
 #include "base/sha256.h"
 #include "input/materials.h"
 #include "input/text.h"
@@ -24,11 +25,11 @@ std::size_t triangles_promised(std::string_view bytes) {
   return count;
 }
 
-// Binary files may begin with "solid" too; their length tells.
+// Binary files may begin with "solid" too; their length tells. Some writers use capitals.
 bool is_binary(std::string_view bytes) {
   if (bytes.size() < header_bytes) return false;
   return bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes) ||
-         !trimmed(bytes.substr(0, header_bytes)).starts_with("solid");
+         !in_lower_case(std::string(trimmed(bytes.substr(0, header_bytes)))).starts_with("solid");
 }
 
 Polygon polygon_of(std::uint32_t first, std::uint32_t corners, std::uint32_t group, std::uint32_t line) {
@@ -75,17 +76,18 @@ Scene with_ascii(Scene scene, const std::string& text) {
     const std::vector<std::string_view> statement = words(line.text);
     if (statement.empty()) continue;
     const std::string where = scene.file + ":" + std::to_string(line.number);
-    if (statement[0] == "solid") {
+    const std::string word = in_lower_case(std::string(statement[0]));
+    if (word == "solid") {
       scene.groups.emplace_back(after_first_word(line.text));
     } else if (scene.groups.empty()) {
       throw InputError(where, "is not an STL file: expected the word solid at its beginning");
-    } else if (statement[0] == "outer") {
+    } else if (word == "outer") {
       first = scene.vertices.size();
       begin = line.number;
       is_whole = false;
-    } else if (statement[0] == "vertex") {
+    } else if (word == "vertex") {
       scene.vertices.emplace_back(scene.metres_per_unit * stl_vertex(statement, where));
-    } else if (statement[0] == "endloop") {
+    } else if (word == "endloop") {
       const auto corners = static_cast<std::uint32_t>(scene.vertices.size() - first);
       if (corners < 3) {
         throw InputError(where, "this facet has " + std::to_string(corners) + " corners; expected three");

@@ -59,6 +59,7 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
                                {"source_polygon", polygon.face},
                                {"group", group_name(scene, polygon.group)},
                                {"material", scene.materials[mesh.material[patch]].name},
+                               {"side", name_of(mesh.side[patch])},
                                {"centre_m", list(mesh.centroid[patch])},
                                {"area_m2", mesh.area[patch]},
                                {"irradiance_W_m2", row(verification.irradiance, i)},
@@ -73,7 +74,7 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
     const Polygon& polygon = scene.polygons[side.polygon];
     json["left_out_sides"].push_back({{"place", place_of(scene, polygon)},
                                       {"source_polygon", polygon.face},
-                                      {"side", side.side == Side::front ? "front" : "back"},
+                                      {"side", name_of(side.side)},
                                       {"traced_W_m2", list(side.irradiance)},
                                       {"standard_error_W_m2", list(side.standard_error)},
                                       {"lit", side.is_lit}});

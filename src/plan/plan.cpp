@@ -106,6 +106,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   const bool nested = request.error_bars || refines(request);
   Plan plan;
   plan.sides = sides_for(scene, request);
+  for (Problem& problem : problems_with_size(scene)) plan.notes.push_back(std::move(problem.what));
   std::size_t asked = 0;
   if (request.max_edge) {
     plan.max_edge = *request.max_edge;

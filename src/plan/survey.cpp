@@ -55,7 +55,7 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
                                   " m, the size of a room or a building"};
 }
 
-std::vector<Problem> problems_with_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
+std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return {};
   const std::string advice =
       guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason + ": --unit " + guess->unit
@@ -160,6 +160,11 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
   return {chosen, count(kept.front) + count(kept.back), kept_area(scene, kept), kept.notes};
 }
 
+std::vector<Problem> problems_with_size(const Scene& scene) {
+  const double size = main_bounds(scene).sizes().maxCoeff();
+  return problems_of_size(scene, guess_unit(scene, size), size);
+}
+
 SceneReport survey(const Scene& scene) {
   SceneReport report;
   report.bounds = bounds(scene);
@@ -185,7 +190,7 @@ SceneReport survey(const Scene& scene) {
   const auto add = [&report](const std::vector<Problem>& problems) {
     report.problems.insert(report.problems.end(), problems.begin(), problems.end());
   };
-  add(problems_with_size(scene, report.unit_guess, size));
+  add(problems_of_size(scene, report.unit_guess, size));
   add(problems_with_reflectance(report.materials));
   add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
   if (!report.usable) add({{ProblemKind::no_lamp, 1, advice_without_lamp(scene), {}}});

@@ -54,6 +54,10 @@ struct SceneReport {
 /// Looks at a scene that repair() and check() have passed. Pure. O(n log n) for n corners.
 SceneReport survey(const Scene& scene);
 
+/// That a model is smaller than 0.4 m or larger than 150 m, what is far from the rest apart, with the unit that would
+/// make it the size of a room; nothing for others.
+std::vector<Problem> problems_with_size(const Scene& scene);
+
 /// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
 SideCounts count_sides(const Scene& scene, Sides sides);
 

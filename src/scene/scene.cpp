@@ -77,6 +77,8 @@ void check_polygon(const Scene& scene, PolygonIndex index) {
 
 }  // namespace
 
+const char* name_of(Side side) { return side == Side::front ? "front" : "back"; }
+
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon) {
   const auto& corners = scene.polygons[polygon].corners;
   std::vector<Point> points;

@@ -133,7 +133,21 @@ class AccuracyTest(ToolTest):
                 done = self.solve("-o", "a.vtp", option, value, code=USAGE)
                 self.assertIn(f"{option}: found '{value}'", done.stderr)
                 self.assertIn(expected, done.stderr)
+        for value, meant in (("1", "1%"), ("2.5", "2.5%")):
+            self.assertIn(f"did you mean {meant}?", self.solve("-o", "a.vtp", "--accuracy", value, code=USAGE).stderr)
+        self.assertNotIn("mean", self.solve("-o", "a.vtp", "--accuracy", "200", code=USAGE).stderr)
         self.assertEqual(self.names(), set())
+
+    def test_what_was_understood_is_said_first(self):
+        done = self.solve("-o", "a.ply", "--accuracy", "0.5", "--patches", "100")
+        self.assertTrue(done.stderr.startswith("patchlight: note: refining to 50 %: "), done.stderr)
+        self.assertEqual(self.solve("-o", "a.ply", "--accuracy", "0.5", "--patches", "100", "-q").stderr, "")
+
+    def test_without_bars_it_is_said_what_is_not_known(self):
+        for words, how in (((), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
+            done = self.solve("-o", "a.ply", "--patches", "100", *words)
+            self.assertIn(f"errors from the size of the patches and from form factors: not known{how}", done.stdout)
+        self.assertNotIn("not known", self.solve("-o", "a.ply", "--patches", "100", "--error-bars").stdout)
 
     def test_options_that_leave_no_error_bars_are_refused(self):
         for asked in (("--accuracy", "1%"), ("--time", "1s"), ("--error-bars",)):

@@ -82,6 +82,9 @@ class CheckTest(ToolTest):
         self.assertEqual(report["unit_guess"], "mm")
         self.assertEqual([p["kind"] for p in report["problems"]], ["implausible_size"])
         self.assertEqual(self.report("room.obj", "--unit", "mm")["problems"], [])
+        solve = ("solve", "room.obj", "-o", "a.ply", "--patches", "60")
+        self.assertIn("perhaps its unit is mm", self.run_tool(*solve).stderr)
+        self.assertEqual(self.run_tool(*solve, "--unit", "mm").stderr, "")
 
     def test_unusable_models_are_refused(self):
         self.write("room.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")

@@ -32,6 +32,18 @@ class RefusalTest(ToolTest):
     def test_missing_file(self):
         self.assert_model_refused(["missing.obj"], model="missing.obj")
 
+    def test_near_names_of_files_and_commands(self):
+        self.assert_refused(INPUT, ["rom.obj", "did you mean 'room.obj'?"], "solve", "rom.obj", "-o", "room.vtp")
+        self.assert_refused(INPUT, ["did you mean './room.obj'?"], "check", "./rooom.obj")
+        self.assert_refused(USAGE, ["'sovle'", "did you mean 'solve'?"], "sovle", "room.obj")
+        self.assertNotIn("mean", self.run_tool("check", "quite_another.obj").stderr)
+        self.assertNotIn("mean", self.run_tool("check", "rom.obj", "--confine", "elsewhere").stderr)
+
+    def test_camera(self):
+        for words, named in ((("1,2", "0,0,1", "60"), "such as 4,-3,1.6"), (("1,2,3",), "as in --camera 4,-3,1.6 0,0,1 60"),
+                             (("1,2,3", "0,0,1", "up"), "as in --camera 4,-3,1.6 0,0,1 60")):
+            self.assert_refused(USAGE, ["--camera", named], "solve", "room.obj", "--picture", "room.png", "--camera", *words)
+
     def test_coordinate_that_is_not_a_number(self):
         self.write("room.obj", ROOM.replace("v 1 1 0\n", "v 1 nan 0\n"))
         self.assert_model_refused(["room.obj:4"])

@@ -1,8 +1,11 @@
 """patchlight validate: cases with known answers, with a verdict each."""
 import json
+import os
+import pty
+import subprocess
 import unittest
 
-from support import ToolTest
+from support import TOOL, ToolTest
 
 GOOD, USAGE, OUTPUT = 0, 1, 6
 
@@ -20,6 +23,17 @@ class ValidateTest(ToolTest):
             self.assertTrue(case["within_bar"])
             self.assertTrue(case["exact_from"] and case["error_bar_from"])
         self.assertIn(f"{len(report['cases'])} cases, 0 outside", done.stdout)
+
+    def test_a_terminal_shows_which_case_is_at_work(self):
+        ours, theirs = pty.openpty()
+        with subprocess.Popen([TOOL, "validate"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs) as process:
+            os.close(theirs)
+            shown = b""
+            while b"case 2 of " not in shown:  # the end of the run closes the terminal, which is an error here
+                shown += os.read(ours, 4096)
+            process.kill()
+        os.close(ours)
+        self.assertRegex(shown.decode(), r"case 1 of \d+: form factors")
 
     def test_refusals(self):
         for words, code in ((["--json", "a.txt"], USAGE), (["--jsn"], USAGE), (["room.obj"], USAGE),

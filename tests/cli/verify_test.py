@@ -4,7 +4,7 @@ import os
 import pathlib
 import unittest
 
-from support import ToolTest
+from support import ROOM, ToolTest
 
 GOOD, USAGE, INPUT, NOT_CONVERGED, DIFFERS, OUTPUT = 0, 1, 2, 3, 5, 6
 CORNELL_BOX = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell_box.obj"
@@ -36,6 +36,9 @@ class VerifyTest(ToolTest):
         sizes = [abs(float(row.split()[-1])) for row in rows]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
         self.assertTrue(all("cornell_box.obj:" in row for row in rows))
+        self.assertRegex(done.stdout.splitlines()[0], r"^place +object +material +side +position")
+        self.assertEqual({patch["side"] for patch in facts["checked"]}, {"front"})
+        self.assertTrue(all(" front " in row for row in rows))
 
     def test_two_rooms_agree(self):
         done = self.run_tool("verify", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front")
@@ -52,6 +55,21 @@ class VerifyTest(ToolTest):
         for patch in facts["checked"]:
             for ours, bar in zip(patch["irradiance_W_m2"], patch["bar_W_m2"]):
                 self.assertGreaterEqual(bar, 0.05 * ours)
+
+    def test_an_accuracy_is_reached_first(self):
+        done = self.run_tool("verify", "room.obj", "--accuracy", "3%", "--json", "out.json")
+        self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
+        self.assertIn("refining to 3 %", done.stderr)
+        self.assertLessEqual(json.loads((self.folder / "out.json").read_text())["relative_error"]["total"], 0.03)
+
+    def test_lamps_close_to_a_surface_are_in_the_verdict(self):
+        """A lamp 1 mm above the floor, that looks at it: only the gap lights the room."""
+        self.write("room.obj", ROOM.replace("usemtl lamp\n", "v 0.4 0.4 0.001\nv 0.6 0.4 0.001\nv 0.6 0.6 0.001\n"
+                                            "v 0.4 0.6 0.001\nusemtl lamp\nf 20 19 18 17\n"))
+        done = self.run_tool("verify", "room.obj", "--patches", 60, "--paths", 256, "--bar", "1%")
+        self.assertIn("wrong by a factor", done.stderr)
+        verdict = done.stdout.splitlines()[-1]
+        self.assertRegex(verdict, r"(agrees|DISAGREES|INCONCLUSIVE): .*nearer to a surface than its patches are large")
 
     def test_wide_bars_are_inconclusive(self):
         """Bars of 45 % grant a coarse mesh whatever it is off by."""

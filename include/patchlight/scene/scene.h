@@ -25,6 +25,9 @@ inline constexpr PolygonIndex no_polygon = ~PolygonIndex{0};
 /// The two sides of a polygon: from the front its corners run counter-clockwise.
 enum class Side : std::uint8_t { front, back };
 
+/// "front" or "back".
+const char* name_of(Side side);
+
 /// A planar polygon of the model, not necessarily convex; a hole is joined to the outline by a seam that is walked
 /// along both ways.
 struct Polygon {

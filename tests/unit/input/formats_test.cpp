@@ -196,6 +196,18 @@ TEST_F(Formats, OffMayHaveCommentsColorsAndCountsBesideTheKeyWord) {
   EXPECT_EQ(scene.polygons[0].line, 7U);
 }
 
+TEST_F(Formats, StlMayBeInCapitals) {
+  const std::string stl =
+      "SOLID Part\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\n"
+      "ENDSOLID\n";
+  for (const std::string& text : {stl, stl + std::string(200, '\n')}) {  // short, and longer than a binary header
+    const Scene scene = read_scene(write("m.stl", text));
+    ASSERT_EQ(scene.polygons.size(), 1U);
+    EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 0.5));
+    EXPECT_EQ(scene.groups, std::vector<std::string>{"Part"});
+  }
+}
+
 TEST_F(Formats, BadNumbersAreRefusedNamingTheLine) {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
