@@ -158,7 +158,9 @@ Arguments parse_arguments(int count, const char* const* values) {
     return Information{std::string(call.what()) + "\n"};
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string message = error.what();
-    throw UsageError(message + (message.starts_with("--camera") ? std::string("; expected EYE TARGET FOV, as in ") + camera_example : ""));
+    throw UsageError(message + (message.starts_with("--camera")
+                                    ? std::string("; expected EYE TARGET FOV, as in ") + camera_example
+                                    : ""));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   } catch (const InputError& error) {

@@ -94,8 +94,9 @@ double relative_error(const std::string& option, const std::string& text) {
   const double error = value ? *value / (percent ? 100 : 1) : 0;
   if (once && error > 0 && error < 1) return error;
   const bool meant_in_percent = !percent && error >= 1 && error < 100;
-  throw refusal(option, text, "an error above 0 and below 100%, such as 1% or 0.01" +
-                                  (meant_in_percent ? "; did you mean " + text + "%?" : ""));
+  throw refusal(option, text,
+                "an error above 0 and below 100%, such as 1% or 0.01" +
+                    (meant_in_percent ? "; did you mean " + text + "%?" : ""));
 }
 
 double share(const std::string& option, const std::string& text) {

@@ -51,21 +51,20 @@ std::vector<Difference> worst_first(const Verification& verification) {
 }
 
 std::string table(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
-  std::vector<TextRow> rows{
-      {"place", "object", "material", "side", "position, m", "band", "ours", "bar", "path", "standard error", "z", "z with bar"}};
+  std::vector<TextRow> rows{{"place", "object", "material", "side", "position, m", "band", "ours", "bar", "path",
+                             "standard error", "z", "z with bar"}};
   const Field z = deviations_by_noise(verification);
   const Field with_bar = deviations(verification);
   for (const auto& [i, band, size] : worst_first(verification)) {
     if (rows.size() > shown) break;
     const PatchIndex patch = verification.patches[static_cast<std::size_t>(i)];
     const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
-    rows.push_back({place_of(scene, polygon), group_name(scene, polygon.group),
-                    scene.materials[mesh.material[patch]].name, name_of(mesh.side[patch]),
-                    position(mesh.centroid[patch]), std::to_string(band + 1),
-                    rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
-                    rounded(verification.paths.irradiance(i, band), 5),
-                    rounded(verification.paths.standard_error(i, band), 2), rounded(z(i, band), 2),
-                    rounded(with_bar(i, band), 2)});
+    rows.push_back(
+        {place_of(scene, polygon), group_name(scene, polygon.group), scene.materials[mesh.material[patch]].name,
+         name_of(mesh.side[patch]), position(mesh.centroid[patch]), std::to_string(band + 1),
+         rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
+         rounded(verification.paths.irradiance(i, band), 5), rounded(verification.paths.standard_error(i, band), 2),
+         rounded(z(i, band), 2), rounded(with_bar(i, band), 2)});
   }
   return text_table(rows);
 }
@@ -110,10 +109,9 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
     const Polygon& polygon = scene.polygons[side.polygon];
     Eigen::Index band = 0;
     side.irradiance.maxCoeff(&band);
-    text << "  light on the " << name_of(side.side) << " of "
-         << shown_name(place_of(scene, polygon)) << ", " << shown_name(group_name(scene, polygon.group)) << ": "
-         << rounded(side.irradiance[band], 4) << " +- " << rounded(side.standard_error[band], 2)
-         << " W/m^2; --sides both takes it in\n";
+    text << "  light on the " << name_of(side.side) << " of " << shown_name(place_of(scene, polygon)) << ", "
+         << shown_name(group_name(scene, polygon.group)) << ": " << rounded(side.irradiance[band], 4) << " +- "
+         << rounded(side.standard_error[band], 2) << " W/m^2; --sides both takes it in\n";
   }
   return text.str();
 }

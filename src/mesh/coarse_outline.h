@@ -13,7 +13,7 @@ inline constexpr double outline_tolerance = 0.01;
 
 /// Whether patches could do without a corner.
 struct LooseCorner {
-  double width = 0;  ///< 4 area / perimeter of the narrowest face that has it, in metres; 0: the corner is kept
+  double width = 0;       ///< 4 area / perimeter of the narrowest face that has it, in metres; 0: the corner is kept
   bool reversed = false;  ///< the first face that has it goes through it the other way
 };
 

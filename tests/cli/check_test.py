@@ -84,7 +84,7 @@ class CheckTest(ToolTest):
         self.assertEqual(self.report("room.obj", "--unit", "mm")["problems"], [])
         solve = ("solve", "room.obj", "-o", "a.ply", "--patches", "60")
         self.assertIn("perhaps its unit is mm", self.run_tool(*solve).stderr)
-        self.assertEqual(self.run_tool(*solve, "--unit", "mm").stderr, "")
+        self.assertNotIn("unit", self.run_tool(*solve, "--unit", "mm").stderr)
 
     def test_unusable_models_are_refused(self):
         self.write("room.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")

@@ -176,8 +176,8 @@ TEST(RoundFace, IsTheLidOfAFurnace) {
   }
 }
 
-// The same with a round plate of 1,000 corners that hangs in a cubic room and shines on both sides, and a lamp of 500 in
-// a round hole of its ceiling: the error is that of closure, however the outlines are followed.
+// The same with a round plate of 1,000 corners that hangs in a cubic room and shines on both sides, and a lamp of 500
+// in a round hole of its ceiling: the error is that of closure, however the outlines are followed.
 TEST(RoundFace, InARoomIsPartOfAFurnace) {
   Scene scene = empty_scene({grey(0.9, 0.1)});
   const std::vector<Quad> faces = box_faces(Point(-6, -6, -1), Point(6, 6, 5), true);
