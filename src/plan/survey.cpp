@@ -180,8 +180,9 @@ SceneReport survey(const Scene& scene) {
   const Shells shells = shells_of(scene);
   report.shells = shells.count;
   report.closed_shells = shells.closed_count;
-  report.open_edges = shells.boundary.size();
-  for (const auto& [from, to] : shells.boundary) report.open_edge_length += (to - from).norm();
+  report.open_edges = shells.rim.size();
+  for (const RimEdge& edge : shells.rim)
+    report.open_edge_length += (scene.vertices[edge.to] - scene.vertices[edge.from]).norm();
 
   const double size = main_bounds(scene).sizes().maxCoeff();
   report.unit_guess = guess_unit(scene, size);

@@ -25,30 +25,6 @@ constexpr double same_area = 1 + 1e-9;
 
 using Triangle = std::array<Point, 3>;
 
-FlatFace flat_face(const Scene& scene, PolygonIndex p) {
-  FlatFace face;
-  const std::vector<Point> corners = corner_points(scene, p);
-  const Vector area = area_vector(corners);
-  face.area = area.norm();
-  face.normal = area.normalized();
-  Vector sum = Vector::Zero();
-  for (const Point& corner : corners) {
-    face.box.extend(corner);
-    sum += corner - corners[0];
-  }
-  face.mean = corners[0] + sum / static_cast<double>(corners.size());
-  face.farthest = *std::max_element(corners.begin(), corners.end(), [&](const Point& a, const Point& b) {
-    return (a - face.mean).squaredNorm() < (b - face.mean).squaredNorm();
-  });
-  return face;
-}
-
-std::vector<Triangle> triangles_of(const std::vector<Point>& corners) {
-  std::vector<Triangle> triangles;
-  for (const auto& [a, b, c] : triangulate(corners)) triangles.push_back({corners[a], corners[b], corners[c]});
-  return triangles;
-}
-
 // Does nothing but an edge of a triangle lie before a line in its plane, but for rounding as of clip_to_half_space()?
 bool lies_beyond(const Triangle& triangle, const Point& on_line, const Vector& inward) {
   constexpr double rounding = 1e-9;
@@ -175,7 +151,7 @@ std::span<const PolygonIndex> Coverings::over_side(PolygonIndex polygon, Side si
 Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   const std::size_t count = scene.polygons.size();
   std::vector<FlatFace> faces(count);
-  parallel_for(count, [&](std::size_t p) { faces[p] = flat_face(scene, static_cast<PolygonIndex>(p)); });
+  parallel_for(count, [&](std::size_t p) { faces[p] = flat_face(corner_points(scene, static_cast<PolygonIndex>(p))); });
   const Search search{scene, kept, FaceTree(std::move(faces)), in_plane_tolerance * extent_of(scene)};
   std::vector<std::vector<PolygonIndex>> over(2 * count);
   parallel_for(count, [&](std::size_t p) {

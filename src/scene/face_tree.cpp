@@ -22,6 +22,23 @@ bool comes_near(const Box& box, const FaceQuery& query) {
 
 }  // namespace
 
+FlatFace flat_face(const std::vector<Point>& corners) {
+  FlatFace face;
+  const Vector area = area_vector(corners);
+  face.area = area.norm();
+  face.normal = area.normalized();
+  Vector sum = Vector::Zero();
+  for (const Point& corner : corners) {
+    face.box.extend(corner);
+    sum += corner - corners[0];
+  }
+  face.mean = corners[0] + sum / static_cast<double>(corners.size());
+  face.farthest = *std::max_element(corners.begin(), corners.end(), [&](const Point& a, const Point& b) {
+    return (a - face.mean).squaredNorm() < (b - face.mean).squaredNorm();
+  });
+  return face;
+}
+
 FaceTree::FaceTree(std::vector<FlatFace> faces) : faces_(std::move(faces)), order_(faces_.size()) {
   std::iota(order_.begin(), order_.end(), 0U);
   if (!order_.empty()) add_nodes(0, static_cast<std::uint32_t>(order_.size()));

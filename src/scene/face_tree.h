@@ -19,6 +19,9 @@ struct FlatFace {
   Point farthest;   ///< the corner farthest from there
 };
 
+/// Of a polygon with these corners.
+FlatFace flat_face(const std::vector<Point>& corners);
+
 /// A plane with a tolerance, the box that a face has to meet, and the largest area it may have.
 struct FaceQuery {
   Box box;

@@ -127,22 +127,6 @@ std::optional<Loop> with_holes(const Scene& scene, const Loop& wall, const std::
   return cut;
 }
 
-// What is left of convex pieces beside a triangle: cut along its three sides one after the other.
-std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pieces,
-                                       const std::array<Point, 3>& triangle, double width) {
-  const Vector normal = area_vector(triangle).normalized();
-  std::vector<std::vector<Point>> left;
-  for (std::vector<Point> piece : pieces) {
-    for (std::size_t k = 0; k < 3 && piece.size() > 2; ++k) {
-      const Vector inward = normal.cross(triangle[(k + 1) % 3] - triangle[k]).normalized();
-      std::vector<Point> outside = clip_to_half_space(piece, triangle[k], -inward);
-      if (outside.size() > 2 && !is_narrow(outside, width)) left.push_back(std::move(outside));
-      piece = clip_to_half_space(piece, triangle[k], inward);
-    }
-  }
-  return left;
-}
-
 std::vector<std::vector<Point>> in_pieces(const Scene& scene, const Loop& wall, const std::vector<Loop>& panes,
                                           double width) {
   const std::vector<Point> outline = points_of(scene, wall);

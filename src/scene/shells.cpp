@@ -4,7 +4,9 @@
 #include "scene/weld.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -140,11 +142,19 @@ Shells shells_of(const Scene& scene) {
   shells.shell = connected(scene.polygons.size(), uses);
   shells.turned = turned_polygons(scene, uses);
 
-  std::vector<std::uint8_t> closed(scene.polygons.size(), 1);  // per first polygon of a shell
+  // Per first polygon of a shell.
+  std::vector<std::uint8_t> consistent(scene.polygons.size(), 1);
+  std::vector<std::uint8_t> has_rim(scene.polygons.size(), 0);
   for_each_edge(uses, [&](const EdgeUse* first, const EdgeUse* last) {
     const auto goes_up = [&](const EdgeUse& use) { return use.upward != (shells.turned[use.polygon] != 0); };
-    if (last - first != 2 || goes_up(first[0]) == goes_up(first[1])) closed[shells.shell[first->polygon]] = 0;
-    if (last - first == 1) shells.boundary.push_back({scene.vertices[first->low], scene.vertices[first->high]});
+    const PolygonIndex shell = shells.shell[first->polygon];
+    if (last - first == 1) {
+      has_rim[shell] = 1;
+      const auto [from, to] = goes_up(*first) ? std::pair(first->low, first->high) : std::pair(first->high, first->low);
+      shells.rim.push_back({first->polygon, from, to});
+    } else if (last - first != 2 || goes_up(first[0]) == goes_up(first[1])) {
+      consistent[shell] = 0;
+    }
     if (last - first <= 2) return;
     ++shells.branched_edges;
     for (const EdgeUse* use = first; use < last; ++use) shells.branched.push_back(use->polygon);
@@ -153,9 +163,11 @@ Shells shells_of(const Scene& scene) {
   shells.branched.erase(std::unique(shells.branched.begin(), shells.branched.end()), shells.branched.end());
 
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    shells.closed.push_back(closed[shells.shell[p]]);
-    shells.count += shells.shell[p] == p;
-    shells.closed_count += shells.shell[p] == p && closed[p];
+    const PolygonIndex shell = shells.shell[p];
+    shells.closed.push_back(consistent[shell] && !has_rim[shell]);
+    shells.rimmed.push_back(consistent[shell] && has_rim[shell]);
+    shells.count += shell == p;
+    shells.closed_count += shell == p && shells.closed[p];
   }
   return shells;
 }

@@ -2,12 +2,19 @@
 
 #include "patchlight/scene/scene.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
+
+/// An edge of one polygon only: two vertices of the scene in the order in which the polygon walks along it, turned back
+/// where it is turned. Where vertices are welded the first of them stands for all.
+struct RimEdge {
+  PolygonIndex polygon = 0;
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+};
 
 /// How the polygons of a scene hang together. A shell is a set of polygons connected by shared edges; vertices nearer
 /// than weld_distance() are one.
@@ -17,7 +24,8 @@ struct Shells {
   std::vector<std::uint8_t> closed;  ///< per polygon: 1 when each edge of its shell belongs to exactly two of its
                                      ///< polygons, which walk along it in opposite directions once those turned are
                                      ///< turned back
-  std::vector<std::array<Point, 2>> boundary;  ///< the edges of one polygon only
+  std::vector<std::uint8_t> rimmed;    ///< per polygon: 1 when its shell would be closed but for edges of one polygon
+  std::vector<RimEdge> rim;            ///< all of these edges
   std::vector<PolygonIndex> branched;          ///< the polygons at edges that three or more walk along
   std::size_t branched_edges = 0;
   std::size_t count = 0;         ///< of shells

@@ -5,6 +5,7 @@
 #include "scene/lamp_places.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
+#include "scene/standing_solids.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -172,6 +173,14 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
       dark.push_back(std::move(solid));
     else if (!lit.outside)
       around_all_lamps.push_back(std::move(solid));
+  }
+  // What other faces close may be dark inside; of those faces it is not known which part lies inside, so that the dark
+  // outside of one that holds all lamps is not looked for.
+  for (Solid& solid : standing_solids(scene, shells)) {
+    if (lit_sides(solid, places_of(lamps, solid, extent), daylight).inside) continue;
+    count.dark += !in_the_dark.unreached;
+    kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
+    dark.push_back(std::move(solid));
   }
   kept.notes = notes_on(count);
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.

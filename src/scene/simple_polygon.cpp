@@ -170,6 +170,22 @@ std::vector<std::vector<Point>> cut_at_crossings(std::vector<Point> polygon, dou
   return simple;
 }
 
+std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pieces,
+                                       const std::array<Point, 3>& triangle, double width) {
+  const Vector normal = area_vector(triangle).normalized();
+  // Cut along the sides of the triangle one after the other.
+  std::vector<std::vector<Point>> left;
+  for (std::vector<Point> piece : pieces) {
+    for (std::size_t k = 0; k < 3 && piece.size() > 2; ++k) {
+      const Vector inward = normal.cross(triangle[(k + 1) % 3] - triangle[k]).normalized();
+      std::vector<Point> outside = clip_to_half_space(piece, triangle[k], -inward);
+      if (outside.size() > 2 && !is_narrow(outside, width)) left.push_back(std::move(outside));
+      piece = clip_to_half_space(piece, triangle[k], inward);
+    }
+  }
+  return left;
+}
+
 std::optional<std::vector<std::array<std::uint32_t, 3>>> proper_triangles(std::span<const Point> polygon) {
   const Vector normal = plane_normal(polygon);
   const double rounding = area_rounding * perimeter(polygon) * perimeter(polygon);

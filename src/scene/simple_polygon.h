@@ -29,6 +29,10 @@ bool crosses_itself(std::span<const Point> polygon);
 /// narrow ones are left out. Nothing when there are over 100 crossings.
 std::vector<std::vector<Point>> cut_at_crossings(std::vector<Point> polygon, double width);
 
+/// What is left of convex pieces of a plane beside a triangle in it, in convex pieces; narrow ones are left out.
+std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pieces,
+                                       const std::array<Point, 3>& triangle, double width);
+
 /// The polygon in triangles, provided that they cover it without turning over: none has negative area.
 std::optional<std::vector<std::array<std::uint32_t, 3>>> proper_triangles(std::span<const Point> polygon);
 

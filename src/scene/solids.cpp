@@ -25,31 +25,6 @@ constexpr double volume_tolerance = 1e-9;
 // Tests of boxes and triangles, some 10 ns each.
 constexpr double most_tests = 2e7;
 
-// The solid of these polygons with its triangles and the direction its fronts face; no triangles if it has no volume.
-Solid make_solid(const Scene& scene, std::vector<PolygonIndex> polygons, const std::vector<std::uint8_t>& turned) {
-  Solid solid;
-  for (const PolygonIndex p : polygons) {
-    std::vector<Point> corners = corner_points(scene, p);
-    solid.has_opening = solid.has_opening || is_opening(scene, p);
-    for (const Point& corner : corners) solid.box.extend(corner);
-    if (turned[p]) std::reverse(corners.begin(), corners.end());
-    for (const auto& [a, b, c] : triangulate(corners)) solid.triangles.push_back({corners[a], corners[b], corners[c]});
-  }
-  solid.polygons = std::move(polygons);
-
-  // V = 1/6 sum (a - o) . ((b - o) x (c - o)), positive when the fronts face outward.
-  const Point origin = solid.box.center();
-  double volume = 0;
-  double area = 0;
-  for (const auto& [a, b, c] : solid.triangles) {
-    volume += (a - origin).dot((b - origin).cross(c - origin)) / 6;
-    area += (b - a).cross(c - a).norm() / 2;
-  }
-  solid.fronts_face_inside = volume < 0;
-  if (std::abs(volume) <= volume_tolerance * area * solid.box.diagonal().norm()) solid.triangles.clear();
-  return solid;
-}
-
 Point inner_point(const std::vector<Point>& corners) {
   double largest = 0;
   Point middle = corners[0];
@@ -102,6 +77,32 @@ std::vector<Box> boxes_of(const Scene& scene) {
 
 }  // namespace
 
+std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> polygons, const Shells& shells,
+                              std::vector<std::array<Point, 3>> lids) {
+  Solid solid;
+  solid.triangles = std::move(lids);
+  for (const PolygonIndex p : polygons) {
+    std::vector<Point> corners = corner_points(scene, p);
+    solid.has_opening = solid.has_opening || is_opening(scene, p);
+    for (const Point& corner : corners) solid.box.extend(corner);
+    if (shells.turned[p]) std::reverse(corners.begin(), corners.end());
+    for (const auto& [a, b, c] : triangulate(corners)) solid.triangles.push_back({corners[a], corners[b], corners[c]});
+  }
+  solid.polygons = std::move(polygons);
+
+  // V = 1/6 sum (a - o) . ((b - o) x (c - o)), positive when the fronts face outward.
+  const Point origin = solid.box.center();
+  double volume = 0;
+  double area = 0;
+  for (const auto& [a, b, c] : solid.triangles) {
+    volume += (a - origin).dot((b - origin).cross(c - origin)) / 6;
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  solid.fronts_face_inside = volume < 0;
+  if (std::abs(volume) <= volume_tolerance * area * solid.box.diagonal().norm()) return std::nullopt;
+  return solid;
+}
+
 std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells) {
   std::vector<std::vector<PolygonIndex>> members(scene.polygons.size());
   for (PolygonIndex p = 0; p < members.size(); ++p) {
@@ -110,8 +111,8 @@ std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells) {
   std::vector<Solid> solids;
   for (std::vector<PolygonIndex>& polygons : members) {
     if (polygons.empty()) continue;
-    Solid solid = make_solid(scene, std::move(polygons), shells.turned);
-    if (!solid.triangles.empty()) solids.push_back(std::move(solid));
+    std::optional<Solid> solid = solid_of(scene, std::move(polygons), shells);
+    if (solid) solids.push_back(std::move(*solid));
   }
   return solids;
 }

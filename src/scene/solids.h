@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,12 @@ struct Solid {
   std::vector<std::array<Point, 3>> triangles;  ///< oriented as the polygons
 };
 
+/// The solid of these polygons of one shell and of lids over its rims, which are oriented as the polygons once those
+/// turned are turned back; nothing when it has no volume.
+std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> polygons, const Shells& shells,
+                              std::vector<std::array<Point, 3>> lids = {});
+
+/// The solids of closed shells.
 std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells);
 
 /// The side of one of its polygons that faces its inside.

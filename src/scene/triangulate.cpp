@@ -251,6 +251,12 @@ std::vector<IndexTriangle> EarClipping::triangles() {
 
 }  // namespace
 
+std::vector<std::array<Point, 3>> triangles_of(std::span<const Point> polygon) {
+  std::vector<std::array<Point, 3>> triangles;
+  for (const auto& [a, b, c] : triangulate(polygon)) triangles.push_back({polygon[a], polygon[b], polygon[c]});
+  return triangles;
+}
+
 bool is_convex(std::span<const Point> polygon) {
   const Vector normal = area_vector(polygon);
   const std::size_t n = polygon.size();

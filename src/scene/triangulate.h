@@ -14,6 +14,9 @@ namespace patchlight {
 /// most outlines, O(n^2) in the worst case.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Point> polygon);
 
+/// The same as points.
+std::vector<std::array<Point, 3>> triangles_of(std::span<const Point> polygon);
+
 /// True when no corner of the planar polygon turns inward.
 bool is_convex(std::span<const Point> polygon);
 

@@ -43,15 +43,15 @@ struct KeptInTheDark {
   bool turned_away = false;  ///< those that face the dark outside of a closed solid
 };
 
-/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume; its turned polygons are seen as if
-/// turned back. It holds a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1;
+/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume, or one with rims that opaque faces of
+/// others close, as a block without a bottom that stands on a floor; its turned polygons are seen as if turned back. It holds a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1;
 /// what crosses its surface, or comes within 5e-7 of the scene's extent of it, where rounding decides, is inside and
 /// outside: no light is lost for it. Sun and sky shine from outside. Clear openings let light in and out.
 /// Sides::automatic keeps a side unless
 /// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
 ///   belongs to the solid itself, or there is light elsewhere and the point just before its middle and all its corners
 ///   lie within, or
-/// - it faces the outside of a closed solid that holds every lamp of the scene, or lies beside the bounds of one
+/// - it faces the outside of a closed shell that holds every lamp of the scene, or lies beside the bounds of one
 ///   without openings: no light gets there, or
 /// - nothing of the scene lies before its plane, nor a luminaire, it does not emit, and there is no sun or sky.
 /// `in_the_dark` asks for such sides nevertheless; they are counted all the same, the last as turned away. What stands

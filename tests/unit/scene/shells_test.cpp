@@ -22,7 +22,7 @@ TEST(ShellsOf, ACubeIsOneClosedShell) {
   const Shells shells = shells_of(cube());
   EXPECT_EQ(shells.count, 1U);
   EXPECT_EQ(shells.closed_count, 1U);
-  EXPECT_TRUE(shells.boundary.empty());
+  EXPECT_TRUE(shells.rim.empty());
   EXPECT_EQ(shells.branched_edges, 0U);
   EXPECT_EQ(std::count(shells.turned.begin(), shells.turned.end(), 1), 0);
 }
@@ -46,8 +46,8 @@ TEST(ShellsOf, AMissingFaceLeavesItsRim) {
   const Shells shells = shells_of(scene);
   EXPECT_EQ(shells.closed_count, 0U);
   double length = 0;
-  for (const auto& [from, to] : shells.boundary) length += (to - from).norm();
-  EXPECT_EQ(shells.boundary.size(), 4U);
+  for (const RimEdge& edge : shells.rim) length += (scene.vertices[edge.to] - scene.vertices[edge.from]).norm();
+  EXPECT_EQ(shells.rim.size(), 4U);
   EXPECT_DOUBLE_EQ(length, 4);
 }
 
@@ -80,7 +80,7 @@ TEST(ShellsOf, AMoebiusBandIsOneOpenShell) {
   const Shells shells = shells_of(scene);
   EXPECT_EQ(shells.count, 1U);
   EXPECT_EQ(shells.closed_count, 0U);
-  EXPECT_EQ(shells.boundary.size(), 2U * parts);
+  EXPECT_EQ(shells.rim.size(), 2U * parts);
 }
 
 }  // namespace

@@ -222,6 +222,55 @@ TEST(KeptSides, AnOpenOrBranchedSurfaceKeepsEverything) {
   expect_all(automatic(fold), 0, 2, both_sides);
 }
 
+// A floor of two triangles from -2 to 2 at this height, whose front looks up.
+Scene with_floor(Scene scene, double height) {
+  scene = with_polygon(std::move(scene), {{-2, -2, height}, {2, -2, height}, {2, 2, height}});
+  return with_polygon(std::move(scene), {{-2, -2, height}, {2, 2, height}, {-2, 2, height}});
+}
+
+// A unit cube around the origin without the faces that look along +-z, as asked for, among a lamp over it.
+Scene lit_tube(bool bottom, bool top) {
+  Scene scene = with_cube(with_lamp(empty_scene(), {0, 0, 1.5}), {0, 0, 0}, 1, Normals::outward);
+  if (!top) scene.polygons.erase(scene.polygons.begin() + 6);
+  if (!bottom) scene.polygons.erase(scene.polygons.begin() + 5);
+  return scene;
+}
+
+TEST(KeptSides, AFaceClosesWhatStandsOnIt) {
+  const KeptSides kept = automatic(with_floor(lit_tube(false, true), -0.5));
+  expect_all(kept, 1, 6, front_only);
+  ASSERT_EQ(kept.dark_solids.size(), 1U);
+  EXPECT_EQ(kept.dark_solids[0].polygons, 5U);
+  // A column is closed at both ends, and so is what lies on its side before a wall.
+  const KeptSides column = automatic(with_floor(with_floor(lit_tube(false, false), -0.5), 0.5));
+  expect_all(column, 1, 5, front_only);
+  const Eigen::Affine3d turned(Eigen::AngleAxisd(1.1, Vector(1, 2, -1).normalized()));
+  Scene on_wall = with_floor(lit_tube(false, true), -0.5);
+  for (Point& vertex : on_wall.vertices) vertex = turned * (1000 * vertex) + Vector(3e5, 0, -2e4);
+  expect_all(automatic(on_wall), 1, 6, front_only);
+}
+
+TEST(KeptSides, WhatIsNotClosedByWhatItStandsOnKeepsItsInsides) {
+  expect_all(automatic(with_floor(lit_tube(false, true), -0.501)), 1, 6, both_sides);
+  expect_all(automatic(with_floor(lit_tube(false, false), -0.5)), 1, 5, both_sides);
+  // The floor ends under the block.
+  Scene half = with_floor(lit_tube(false, true), -0.5);
+  half.polygons.pop_back();
+  expect_all(automatic(half), 1, 6, both_sides);
+  // A pane.
+  Scene pane = with_floor(lit_tube(false, true), -0.5);
+  pane.materials.push_back({"clear", rgb(0, 0, 0), rgb(0, 0, 0)});
+  pane.materials.back().transmittance = rgb(1, 1, 1);
+  pane.polygons.back().material = 2;
+  ASSERT_TRUE(is_opening(pane, static_cast<PolygonIndex>(pane.polygons.size() - 1)));
+  expect_all(automatic(pane), 1, 6, both_sides);
+  // A lamp inside, and the luminous floor itself.
+  expect_all(automatic(with_lamp(with_floor(lit_tube(false, true), -0.5), {0, 0, 0})), 1, 6, both_sides);
+  Scene luminous = with_floor(lit_tube(false, true), -0.5);
+  luminous.polygons.back().material = lamp;
+  expect_all(automatic(luminous), 1, 6, both_sides);
+}
+
 TEST(KeptSides, TouchingAtACornerDoesNotJoinSolids) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   scene = with_cube(std::move(scene), {1, 1, 1}, 1, Normals::inward);

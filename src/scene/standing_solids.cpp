@@ -1,0 +1,137 @@
+#include "scene/standing_solids.h"
+
+#include "scene/extent.h"
+#include "scene/face_tree.h"
+#include "scene/simple_polygon.h"
+#include "scene/triangulate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+constexpr std::size_t most_rim_corners = 1000;
+constexpr std::size_t most_lid_triangles = 1000;
+
+// How far the unit normals of a rim and of a face under it may differ; corners decide whether they share a plane.
+constexpr double largest_tilt = 0.05;
+
+using Triangle = std::array<Point, 3>;
+
+// The rims of one shell as outlines of what would close it, which walk along each edge against its polygon. Nothing
+// where rims meet in a vertex.
+std::optional<std::vector<std::vector<Point>>> outlines_of(const Scene& scene, const std::vector<RimEdge>& edges) {
+  std::map<std::uint32_t, std::uint32_t> before;
+  for (const RimEdge& edge : edges) {
+    if (!before.emplace(edge.to, edge.from).second) return std::nullopt;
+  }
+  std::vector<std::vector<Point>> outlines;
+  while (!before.empty()) {
+    std::vector<Point> outline;
+    for (auto at = before.begin(); at != before.end();) {
+      outline.push_back(scene.vertices[at->first]);
+      const std::uint32_t next = at->second;
+      before.erase(at);
+      at = before.find(next);
+    }
+    outlines.push_back(std::move(outline));
+  }
+  return outlines;
+}
+
+// Looks for the faces under rims.
+struct FacesUnderRims {
+  const Scene& scene;
+  const Shells& shells;
+  FaceTree tree;
+  double near;  // metres
+
+  bool is_closed(const std::vector<Point>& outline, PolygonIndex shell) const;
+  bool shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const;
+  std::optional<std::vector<Triangle>> lids(const std::vector<RimEdge>& edges) const;
+};
+
+bool FacesUnderRims::shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const {
+  const Vector& normal = tree.face(polygon).normal;
+  const Point& on_plane = scene.vertices[scene.polygons[polygon].corners[0]];
+  return std::all_of(outline.begin(), outline.end(),
+                     [&](const Point& corner) { return std::abs(normal.dot(corner - on_plane)) <= near; });
+}
+
+// Do opaque faces of other shells fill the outline? What is left of it beside them is then narrower than `near`.
+bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex shell) const {
+  FlatFace rim = flat_face(outline);
+  const Vector margin = Vector::Constant(near);
+  const FaceQuery query{Box(rim.box.min() - margin, rim.box.max() + margin),
+                        std::numeric_limits<double>::infinity(),
+                        rim.normal,
+                        largest_tilt,
+                        rim.normal.dot(outline[0]),
+                        extent_of(scene)};
+  std::vector<std::vector<Point>> left;
+  for (const Triangle& triangle : triangles_of(outline)) left.emplace_back(triangle.begin(), triangle.end());
+  std::size_t triangles = 0;
+  tree.for_each(query, [&](PolygonIndex p) {
+    if (shells.shell[p] == shell || left.empty() || triangles > most_lid_triangles) return;
+    if (is_opening(scene, p) || !shares_plane(p, outline)) return;
+    for (const Triangle& triangle : triangles_of(corner_points(scene, p))) {
+      if (++triangles <= most_lid_triangles) left = beside(left, triangle, near);
+    }
+  });
+  return left.empty();
+}
+
+// Triangles over all rims of a shell; nothing when one of them stays open.
+std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimEdge>& edges) const {
+  if (edges.size() > most_rim_corners) return std::nullopt;
+  const auto outlines = outlines_of(scene, edges);
+  if (!outlines) return std::nullopt;
+  std::vector<Triangle> lids;
+  for (const std::vector<Point>& outline : *outlines) {
+    if (outline.size() < 3 || is_narrow(outline, near) || crosses_itself(outline)) return std::nullopt;
+    if (!is_closed(outline, shells.shell[edges.front().polygon])) return std::nullopt;
+    const std::vector<Triangle> triangles = triangles_of(outline);
+    lids.insert(lids.end(), triangles.begin(), triangles.end());
+  }
+  return lids;
+}
+
+FaceTree tree_of(const Scene& scene) {
+  std::vector<FlatFace> faces;
+  faces.reserve(scene.polygons.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) faces.push_back(flat_face(corner_points(scene, p)));
+  return FaceTree(std::move(faces));
+}
+
+}  // namespace
+
+std::vector<Solid> standing_solids(const Scene& scene, const Shells& shells) {
+  std::map<PolygonIndex, std::vector<RimEdge>> rims;  // by shell
+  for (const RimEdge& edge : shells.rim) {
+    if (shells.rimmed[edge.polygon]) rims[shells.shell[edge.polygon]].push_back(edge);
+  }
+  if (rims.empty()) return {};
+  std::map<PolygonIndex, std::vector<PolygonIndex>> members;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (shells.rimmed[p]) members[shells.shell[p]].push_back(p);
+  }
+  const FacesUnderRims search{scene, shells, tree_of(scene), weld_distance(scene)};
+  std::vector<Solid> solids;
+  for (const auto& [shell, edges] : rims) {
+    std::optional<std::vector<Triangle>> lids = search.lids(edges);
+    if (!lids) continue;
+    std::optional<Solid> solid = solid_of(scene, std::move(members[shell]), shells, std::move(*lids));
+    if (solid) solids.push_back(std::move(*solid));
+  }
+  return solids;
+}
+
+}  // namespace patchlight
