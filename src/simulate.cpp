@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
-#include "pipeline/planned.h"
+#include "pipeline/notes_on_run.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/search.h"
@@ -16,28 +16,31 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
-  const ThreadLimit threads(request.threads);
+  const ThreadLimit threads(request.resources.threads);
   StageClock clock;
 
   // 1. Refuse what cannot be.
-  check(request, scene);
+  const Given given{.form_factors = static_cast<bool>(with.exchange), .mesh = static_cast<bool>(with.mesh)};
+  check(request, scene, given);
 
   // 2. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
   //    how form factors and radiosities are found.
-  const Plan chosen = planned(scene, request, with);
-  require_memory(scene, request, chosen);
-  const Scene lit = scene_as_planned(scene, chosen);
+  const Plan plan = make_plan(scene, request, given);
+  require_memory(scene, request, plan);
+  const Scene lit = scene_as_planned(scene, plan);
   clock.finish(Stage::plan);
 
   // 3. What rays need: which polygons lie on others, and what stands between patches.
-  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, chosen.sides), blockers_of(chosen));
-  const Plan plan = with_notes_on(scene, *tracing, request, chosen);
-  const Run run{lit, request, plan, tracing, with, observer};
+  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan));
+  const std::vector<std::string> notes = notes_on_run(scene, *tracing, plan);
+  const Run run{lit, request, plan, notes, tracing, with, observer};
 
   Search search(run);
   for (std::optional<MeshToSolve> next = search.first();;) {

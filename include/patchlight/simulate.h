@@ -38,7 +38,7 @@ struct TransportFacts {
 struct AccuracyStep {
   PatchIndex patches = 0;
   PatchIndex new_patches = 0;  ///< those not in the mesh before
-  int samples = 0;             ///< Plan::samples
+  int samples = 0;             ///< AssemblyOptions::samples of its plan
   double mesh = 0;
   double form_factor = 0;
   double solver = 0;
@@ -70,7 +70,8 @@ struct Simulation {
   std::vector<SpaceErrors> spaces = {};  ///< with error bars, where closed shells with openings divide the patches of
                                          ///< interest: inside and outside; else empty
   std::vector<StageCost> costs;
-  Field direct_standard_error = {};             ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  std::vector<std::string> notes = {};  ///< of the plan, and what of the scene, when looked at, may not be as meant
+  Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
                                                 ///< the solution; never null after simulate()
 };

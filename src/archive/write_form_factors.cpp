@@ -142,7 +142,7 @@ Json counts_part(const AssemblyCounts& counts) {
 }
 
 std::string info_json(const FormFactorResult& result) {
-  const auto& [request, plan, mesh, exchange] = result.form_factors;
+  const auto& [request, plan, mesh, exchange, notes] = result.form_factors;
   Json json;
   json["kind"] = file_name::kind;
   json["version"] = version();
@@ -154,11 +154,11 @@ std::string info_json(const FormFactorResult& result) {
   json["matrix"] = result.format == MatrixFormat::npy ? "npy" : "mtx";
   json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
   json["options"] = {{"max_edge_m", plan.max_edge},
-                     {"sides", name_of(request.sides)},
-                     {"samples", plan.samples},
-                     {"estimator", name_of(plan.estimator)},
-                     {"without", left_out(plan.short_cuts)},
-                     {"seed", plan.seed},
+                     {"sides", name_of(request.mesh.sides)},
+                     {"samples", plan.assembly.samples},
+                     {"estimator", name_of(plan.assembly.estimator)},
+                     {"without", left_out(plan.assembly.short_cuts)},
+                     {"seed", plan.assembly.seed},
                      {"lost_share_rays", exchange.lost.rays_per_patch}};
   json["counts"] = counts_part(exchange.counts);
   json["sampling_error"] = json_of(exchange.error);

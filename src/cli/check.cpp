@@ -3,6 +3,7 @@
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/option_names.h"
 #include "cli/text_table.h"
 #include "light/photometry.h"
 #include "output/whole_file.h"
@@ -97,12 +98,12 @@ std::string problem_lines(const Scene& scene, const SceneReport& report) {
        << counted(count[2], "remark") << '\n';
   for (const Problem& problem : report.problems) {
     text << "  " << name_of(severity_of(problem.kind)) << ": " << name_of(problem.kind) << ": "
-         << shown_name(problem.what) << '\n';
+         << shown_name(with_option_names(problem.what)) << '\n';
   }
   for (const std::string& note : scene.notes) {
     const bool is_problem = std::any_of(report.problems.begin(), report.problems.end(),
                                         [&](const Problem& problem) { return problem.what == note; });
-    if (!is_problem) text << "  note: " << shown_name(note) << '\n';
+    if (!is_problem) text << "  note: " << shown_name(with_option_names(note)) << '\n';
   }
   return text.str();
 }

@@ -62,7 +62,7 @@ std::string not_reached(const Comparison& comparison) {
 
 ExitCode compare(const CompareArguments& arguments) {
   check_comparison_writable(arguments.output);
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
   const Observer observer = observer_on(line);
 

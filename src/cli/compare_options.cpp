@@ -15,7 +15,7 @@ namespace patchlight::cli {
 
 struct CompareCommandOptions {
   ModelOptions model;
-  MeshOptions mesh;
+  Request request;  // with the edge of patches in model units
   std::string output;
   CompareOptions compare;
   bool quiet = false;
@@ -59,7 +59,8 @@ void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
       });
   command.add_flag_callback(
       "--no-series", [&compare] { compare.keep_iterates = false; }, "no series for ParaView; default: one per solver");
-  add_equation_options(command, options.mesh.request);
+  add_closure_option(command, options.request);
+  add_relaxation_option(command, compare.relaxation);
 }
 
 }  // namespace
@@ -69,12 +70,12 @@ std::shared_ptr<CompareCommandOptions> add_compare(CLI::App& tool) {
   CompareCommandOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("compare", "solves a model with every solver: which converges how fast");
   add_model_options(command, to.model);
-  add_sides_option(command, to.mesh);
-  add_effect_options(command, to.mesh.request, effects_but({Effect::interreflection}));
+  add_sides_option(command, to.request);
+  add_effect_options(command, to.request, effects_but({Effect::interreflection}));
   add_compare_options(command, to);
-  add_patch_options(command, to.mesh);
-  add_sampling_options(command, to.mesh);
-  add_machine_options(command, to.mesh.request);
+  add_patch_options(command, to.request);
+  add_sampling_options(command, to.request);
+  add_machine_options(command, to.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
   return options;
 }
@@ -83,7 +84,7 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
   CompareArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.options = options.compare;
   arguments.output = options.output;
   arguments.quiet = options.quiet;
@@ -91,18 +92,7 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
     throw UsageError("compare: found no model; expected: patchlight compare MODEL -o FOLDER");
   }
   if (arguments.output.empty()) throw UsageError("compare: nothing would be written; give -o FOLDER");
-  const auto is_sor = [](const Contestant& contestant) { return contestant.solver == Solver::sor; };
-  const std::vector<Contestant>& all = arguments.options.contestants;
-  if (arguments.request.relaxation && std::none_of(all.begin(), all.end(), is_sor)) {
-    throw UsageError("--relaxation needs sor among --solvers");
-  }
-  require_consistent_effects(arguments.request, {});
-  const auto on_demand = [](const Contestant& contestant) { return !keeps_entries(contestant.storage); };
-  const std::vector<Contestant>& chosen = arguments.options.contestants;
-  if (std::any_of(chosen.begin(), chosen.end(), on_demand) && arguments.request.estimator != Estimator::automatic) {
-    throw UsageError(
-        "--estimator: rows on demand are found by auto only; leave progressive-on-demand out of --solvers");
-  }
+  check(arguments.request, arguments.options);
   return arguments;
 }
 

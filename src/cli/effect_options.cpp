@@ -22,13 +22,6 @@ Effect effect_named(const std::string& option, const std::string& text, const st
   return choice<Effect>(option, text, allowed);
 }
 
-// An option with one of these effects that another option rules out.
-void require_without(const std::vector<Effect>& effects, Effect effect, const std::string& option,
-                     const std::string& other) {
-  if (!contains(effects, effect)) return;
-  throw UsageError(option + " " + name_of(effect) + " and " + other + " exclude each other; give one of them");
-}
-
 // What --force and --skip have in common.
 struct EffectList {
   const std::vector<Effect>& allowed;
@@ -59,26 +52,10 @@ void add_effect_options(CLI::App& command, Request& request, const std::vector<E
   add_effects(command, "--force",
               "simulates an effect even where the scene does not call for it:\n" + names(effects, ", ") +
                   ";\nmay be repeated; default: as the scene calls for",
-              {effects, request.force});
+              {effects, request.effects.force});
   add_effects(command, "--skip",
               "leaves an effect out that the scene calls for; the same words; may be\nrepeated; default: none",
-              {effects, request.skip});
-}
-
-void require_consistent_effects(const Request& request, const std::string& form_factors) {
-  for (const Effect effect : request.force)
-    require_without(request.skip, effect, "--skip", "--force " + std::string(name_of(effect)));
-  const auto require_neither = [&request](Effect effect, const std::string& other) {
-    require_without(request.force, effect, "--force", other);
-    require_without(request.skip, effect, "--skip", other);
-  };
-  if (request.sides != Sides::automatic) {
-    require_neither(Effect::reach, "--sides");
-    require_neither(Effect::backs, "--sides");
-  }
-  if (!form_factors.empty()) require_neither(Effect::occlusion, "--form-factors");
-  if (!request.close) require_without(request.force, Effect::closure, "--force", "--no-closure");
-  if (!keeps_entries(request.storage)) require_without(request.force, Effect::closure, "--force", "--on-demand");
+              {effects, request.effects.skip});
 }
 
 }  // namespace patchlight::cli

@@ -14,8 +14,4 @@ void add_effect_options(CLI::App& command, Request& request, const std::vector<E
 /// All effects that a command may be asked for but these.
 std::vector<Effect> effects_but(const std::vector<Effect>& without);
 
-/// `form_factors` is the folder of known ones, in which occlusion is decided. \throws UsageError when the effects that
-/// are forced and skipped contradict each other or other options.
-void require_consistent_effects(const Request& request, const std::string& form_factors);
-
 }  // namespace patchlight::cli

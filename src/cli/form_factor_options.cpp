@@ -4,8 +4,10 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/option_names.h"
 #include "cli/parse_value.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,7 @@ namespace patchlight::cli {
 
 struct FormFactorOptions {
   ModelOptions model;
-  MeshOptions mesh;
+  Request request;  // with the edge of patches in model units
   std::string output;
   std::optional<MatrixFormat> format;
   std::optional<GroupBy> by;
@@ -42,8 +44,6 @@ void add_without(CLI::App& command, ShortCuts& short_cuts) {
       ->option_text("hidden|free|far");
 }
 
-bool takes_all(const ShortCuts& short_cuts) { return short_cuts.hidden && short_cuts.free && short_cuts.far; }
-
 }  // namespace
 
 std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
@@ -51,8 +51,8 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   FormFactorOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("form-factors", "computes the form factors between the patches of a model");
   add_model_options(command, to.model);
-  add_sides_option(command, to.mesh);
-  add_effect_options(command, to.mesh.request, {Effect::reach, Effect::backs, Effect::closure});
+  add_sides_option(command, to.request);
+  add_effect_options(command, to.request, {Effect::reach, Effect::backs, Effect::closure});
   command
       .add_option(
           "-o,--output", to.output,
@@ -76,11 +76,11 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
           },
           "prints the form factors between materials or objects, too;\ninto the folder as CSV; default: patches only")
       ->option_text("material|object");
-  add_without(command, to.mesh.request.short_cuts);
+  add_without(command, to.request.assembly.short_cuts);
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
-  add_patch_options(command, to.mesh);
-  add_sampling_options(command, to.mesh);
-  add_machine_options(command, to.mesh.request);
+  add_patch_options(command, to.request);
+  add_sampling_options(command, to.request);
+  add_machine_options(command, to.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and a summary");
   return options;
 }
@@ -89,12 +89,11 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   FormFactorArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
-  arguments.request.close = !options.raw;
-  require_consistent_effects(arguments.request, {});
-  arguments.request.close = !options.raw && !contains(arguments.request.skip, Effect::closure);
+  arguments.request.assembly.close = !options.raw;
+  check_with_names(arguments.request, std::array{OptionName{"assembly.close=false", "--raw"}});
   arguments.by = options.by;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {
@@ -102,10 +101,6 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   }
   if (arguments.output.empty()) {
     throw UsageError("form-factors: nothing would be written; give -o FOLDER, or -o FILE.npy for the matrix alone");
-  }
-  if (arguments.request.estimator != Estimator::automatic && !takes_all(arguments.request.short_cuts)) {
-    throw UsageError("--without: --estimator " + std::string(name_of(arguments.request.estimator)) +
-                     " takes no short cuts; give one of them");
   }
   const std::filesystem::path extension = arguments.output.extension();
   if (extension == ".npy" || extension == ".mtx") {
@@ -115,7 +110,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
     }
     arguments.format = named;
   } else {
-    arguments.request.standard_errors = arguments.request.estimator == Estimator::automatic;
+    arguments.request.assembly.keep_errors = arguments.request.assembly.estimator == Estimator::automatic;
   }
   require_not_read({{"-o", arguments.output}}, arguments.models);
   return arguments;

@@ -55,9 +55,10 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   const Eigen::ArrayXd sums = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area).array();
   std::ostringstream text;
   text << shown_name(scene.file) << ": " << form_factors.mesh.size() << " patches with edges up to "
-       << std::setprecision(3) << form_factors.plan.max_edge << " m; estimator " << name_of(form_factors.plan.estimator)
-       << "; row sums " << std::setprecision(6) << sums.minCoeff() << " to " << sums.maxCoeff() << ", before closure "
-       << exchange.raw_row_sum.minCoeff() << " to " << exchange.raw_row_sum.maxCoeff()
+       << std::setprecision(3) << form_factors.plan.max_edge << " m; estimator "
+       << name_of(form_factors.plan.assembly.estimator) << "; row sums " << std::setprecision(6) << sums.minCoeff()
+       << " to " << sums.maxCoeff() << ", before closure " << exchange.raw_row_sum.minCoeff() << " to "
+       << exchange.raw_row_sum.maxCoeff()
        << "; closure: " << (exchange.closure.empty() ? "not asked for" : exchange.closure) << '\n';
   return text.str();
 }
@@ -70,7 +71,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   } else {
     check_form_factors_writable(arguments.output);
   }
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
   const Observer observer = observer_on(line);
 
@@ -96,8 +97,10 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   line.hide();
   for (const std::string& note : scene.notes) print_message("note", note);
   for (const std::string& note : found.plan.sides.notes) print_message("note", note);
-  for (const std::string& note : found.plan.notes) print_message("note", note);
-  if (found.request.sides != arguments.request.sides) {
+  for (const auto* notes : {&found.plan.notes, &found.notes}) {
+    for (const std::string& note : *notes) print_message("note", note);
+  }
+  if (found.request.mesh.sides != arguments.request.mesh.sides) {
     print_message("note", "without a lamp --sides auto cannot tell where light gets to: the front sides are used");
   }
   if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) print_message("note", *note);

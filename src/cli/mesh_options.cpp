@@ -7,45 +7,48 @@
 
 namespace patchlight::cli {
 
-void add_sides_option(CLI::App& command, MeshOptions& options) {
+void add_sides_option(CLI::App& command, Request& request) {
   add(command, "--sides", "auto|front|both",
       "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
-      [&options](const std::string& text) { options.request.sides = sides_named(text); });
+      [&request](const std::string& text) { request.mesh.sides = sides_named(text); });
 }
 
 Sides sides_named(const std::string& text) {
   return choice<Sides>("--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
 }
 
-void add_patch_options(CLI::App& command, MeshOptions& options) {
-  Request& request = options.request;
+void add_patch_options(CLI::App& command, Request& request) {
   add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
-      [&options](const std::string& text) {
-        options.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
+      [&request](const std::string& text) {
+        request.mesh.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
       });
   add(command, "--patches", "N",
       "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
           std::to_string(default_patches),
-      [&request](const std::string& text) { request.patches = whole_number("--patches", text, 1, 1'000'000'000); });
-}
-
-void add_equation_options(CLI::App& command, Request& request) {
-  command.add_flag_callback(
-      "--no-closure", [&request] { request.close = false; },
-      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
-  add(command, "--relaxation", "NUMBER",
-      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
       [&request](const std::string& text) {
-        const auto inside = [](double x) { return x > 0 && x < 2; };
-        request.relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
+        request.mesh.patches = whole_number("--patches", text, 1, 1'000'000'000);
       });
 }
 
-void add_sampling_options(CLI::App& command, MeshOptions& options) {
-  Request& request = options.request;
+void add_closure_option(CLI::App& command, Request& request) {
+  command.add_flag_callback(
+      "--no-closure", [&request] { request.assembly.close = false; },
+      "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
+}
+
+void add_relaxation_option(CLI::App& command, std::optional<double>& relaxation) {
+  add(command, "--relaxation", "NUMBER",
+      "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
+      [&relaxation](const std::string& text) {
+        const auto inside = [](double x) { return x > 0 && x < 2; };
+        relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
+      });
+}
+
+void add_sampling_options(CLI::App& command, Request& request) {
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 8",
       [&request](const std::string& text) {
-        request.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
+        request.assembly.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
       });
   add(command, "--estimator", "auto|area|point-polygon|hemisphere|contour",
       "how form factors are found; all but auto are slow, for study: by\npoints on both patches, by points on one and "
@@ -53,34 +56,32 @@ void add_sampling_options(CLI::App& command, MeshOptions& options) {
       "integral "
       "and the visible share; default auto",
       [&request](const std::string& text) {
-        request.estimator = choice<Estimator>("--estimator", text,
-                                              {{"auto", Estimator::automatic},
-                                               {"area", Estimator::area},
-                                               {"point-polygon", Estimator::point_polygon},
-                                               {"hemisphere", Estimator::hemisphere},
-                                               {"contour", Estimator::contour}});
+        request.assembly.estimator = choice<Estimator>("--estimator", text,
+                                                       {{"auto", Estimator::automatic},
+                                                        {"area", Estimator::area},
+                                                        {"point-polygon", Estimator::point_polygon},
+                                                        {"hemisphere", Estimator::hemisphere},
+                                                        {"contour", Estimator::contour}});
       });
   add(command, "--seed", "N", "seed of the sampling; the same seed gives the same bits; default 1",
-      [&request](const std::string& text) { request.seed = whole_number("--seed", text, 0, ~std::uint64_t{0}); });
+      [&request](const std::string& text) {
+        request.assembly.seed = whole_number("--seed", text, 0, ~std::uint64_t{0});
+      });
 }
 
 void add_machine_options(CLI::App& command, Request& request) {
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&request](const std::string& text) {
-        request.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
+        request.resources.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
       });
   add(command, "--memory", "SIZE",
       "memory that may be taken, e.g. 2GB or 500MiB; what needs more is\nrefused before it begins; default: 80 % of "
       "the machine's",
-      [&request](const std::string& text) { request.memory = bytes("--memory", text); });
+      [&request](const std::string& text) { request.resources.memory = bytes("--memory", text); });
 }
 
-Request mesh_request(const MeshOptions& options, double metres_per_unit) {
-  if (options.max_edge && options.request.patches) {
-    throw UsageError("--max-edge and --patches both set the size of the patches; give one of them");
-  }
-  Request request = options.request;
-  if (options.max_edge) request.max_edge = *options.max_edge * metres_per_unit;
+Request in_metres(Request request, double metres_per_unit) {
+  if (request.mesh.max_edge) *request.mesh.max_edge *= metres_per_unit;
   return request;
 }
 

@@ -1,5 +1,7 @@
 #include "cli/messages.h"
 
+#include "cli/option_names.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -41,7 +43,7 @@ std::string visible(std::string_view character) {
 }  // namespace
 
 void print_message(const char* kind, const std::string& text) {
-  std::string line = text;
+  std::string line = with_option_names(text);
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::cerr << "patchlight: " << kind << ": " << printable(line) << '\n';
 }

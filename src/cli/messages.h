@@ -8,7 +8,8 @@ namespace patchlight::cli {
 /// How much the tool says.
 enum class Verbosity { quiet, normal, verbose };
 
-/// Prints one line "patchlight: KIND: TEXT" on stderr; line breaks in the text become spaces.
+/// Prints one line "patchlight: KIND: TEXT" on stderr; line breaks in the text become spaces, names of fields of the
+/// library those of options.
 void print_message(const char* kind, const std::string& text);
 
 /// A text in which no character acts on a terminal: control characters (C0, DEL and C1) but for line breaks are written

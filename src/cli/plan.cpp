@@ -4,6 +4,7 @@
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/option_names.h"
 #include "cli/text_table.h"
 #include "mesh/nested_mesh.h"
 #include "output/whole_file.h"
@@ -32,8 +33,8 @@ std::string lines_of(const std::vector<Decision>& decisions) {
   constexpr int width = 17;
   std::ostringstream text;
   for (const Decision& decision : decisions) {
-    text << std::left << std::setw(width) << name_of(decision.effect) << word_for(decision) << ": " << decision.reason
-         << '\n'
+    text << std::left << std::setw(width) << name_of(decision.effect) << word_for(decision) << ": "
+         << with_option_names(decision.reason) << '\n'
          << std::setw(width) << "" << (decision.simulate ? "takes: " : "saves: ") << decision.saving << '\n';
   }
   return text.str();
@@ -54,7 +55,7 @@ std::string cost_lines(const ExpectedCost& cost) {
 
 ExitCode plan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   check(arguments.request, scene);
@@ -62,7 +63,7 @@ ExitCode plan(const PlanArguments& arguments) {
   require_memory(scene, arguments.request, plan);
   const NestedMesh mesh = first_mesh(scene, plan);
   require_memory(mesh.patches.size(), arguments.request, plan);
-  const ExpectedCost cost = expected_cost(scene, plan, arguments.request, mesh.patches);
+  const ExpectedCost cost = expected_cost(scene, plan, mesh.patches);
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);

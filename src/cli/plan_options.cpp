@@ -7,6 +7,7 @@
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
+#include "plan/check_request.h"
 
 #include <filesystem>
 #include <string>
@@ -15,7 +16,7 @@ namespace patchlight::cli {
 
 struct PlanOptions {
   ModelOptions model;
-  MeshOptions mesh;
+  Request request;  // with the edge of patches in model units
   std::string json;
 };
 
@@ -25,16 +26,16 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
   CLI::App& command =
       *tool.add_subcommand("plan", "tells what a solve would simulate and leave out, why, and what it would cost");
   add_model_options(command, to.model);
-  add_sides_option(command, to.mesh);
+  add_sides_option(command, to.request);
   add(command, "--json", "FILE", "the same as JSON (.json)", [&to](const std::string& text) {
     if (!text.ends_with(".json")) throw refusal("--json", text, "a name that ends in .json");
     to.json = text;
   });
-  add_patch_options(command, to.mesh);
-  add_accuracy_options(command, to.mesh.request);
-  add_effect_options(command, to.mesh.request);
-  add_sampling_options(command, to.mesh);
-  add_machine_options(command, to.mesh.request);
+  add_patch_options(command, to.request);
+  add_accuracy_options(command, to.request);
+  add_effect_options(command, to.request);
+  add_sampling_options(command, to.request);
+  add_machine_options(command, to.request);
   return options;
 }
 
@@ -43,10 +44,9 @@ PlanArguments finish_plan(const PlanOptions& options) {
   PlanArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.json = options.json;
-  require_consistent_effects(arguments.request, {});
-  require_error_bars_possible(arguments.request, {});
+  check(arguments.request);
   require_not_read({{"--json", arguments.json}}, arguments.models);
   return arguments;
 }

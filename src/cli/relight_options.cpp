@@ -4,6 +4,7 @@
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/solution_options.h"
+#include "plan/check_request.h"
 
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@ struct RelightOptions {
   std::string folder;
   std::vector<std::string> settings;
   std::optional<Vector> up;
+  Request request;
   SolutionOptions solution;
 };
 
@@ -29,10 +31,10 @@ std::shared_ptr<RelightOptions> add_relight(CLI::App& tool) {
       ->option_text(" ");
   add_set_option(command, to.settings);
   add_up_option(command, to.up);
-  add_effect_options(command, to.solution.request, effects_but({Effect::occlusion, Effect::reach, Effect::backs}));
+  add_effect_options(command, to.request, effects_but({Effect::occlusion, Effect::reach, Effect::backs}));
   add_output_options(command, to.solution);
-  add_solver_options(command, to.solution);
-  add_machine_options(command, to.solution.request);
+  add_solver_options(command, to.solution, to.request);
+  add_machine_options(command, to.request);
   add_verbosity_options(command, to.solution);
   return options;
 }
@@ -45,9 +47,9 @@ SolveArguments finish_relight(const RelightOptions& options) {
   arguments.form_factors = options.folder;
   arguments.read.settings = material_settings(options.settings);
   arguments.read.up = options.up;
-  arguments.request = options.solution.request;
+  arguments.request = options.request;
   arguments = with_solution(std::move(arguments), "relight", options.solution);
-  require_consistent_effects(arguments.request, {});
+  check(arguments.request, {.form_factors = true});
   return arguments;
 }
 

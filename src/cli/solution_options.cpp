@@ -61,9 +61,6 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   if (options.camera && options.camera->eye == options.camera->target) {
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
   }
-  if (options.request.relaxation && options.request.solver != Solver::sor) {
-    throw UsageError("--relaxation needs --solver sor");
-  }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
   for (const std::string& file : options.points_outputs)
@@ -145,27 +142,27 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
   add_points_options(command, options);
 }
 
-void add_solver_options(CLI::App& command, SolutionOptions& options) {
-  Request& request = options.request;
-  add_equation_options(command, request);
+void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request) {
+  add_closure_option(command, request);
+  add_relaxation_option(command, request.solver.relaxation);
   add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
       [&request, &options](const std::string& text) {
         options.solver_given = true;
-        request.solver = solver_named("--solver", text);
+        request.solver.solver = solver_named("--solver", text);
       });
   add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
       [&request](const std::string& text) {
         const auto inside = [](double x) { return x > 0 && x < 1; };
-        request.tolerance = number("--tolerance", text, "a number above 0 and below 1", inside);
+        request.solver.relative_error = number("--tolerance", text, "a number above 0 and below 1", inside);
       });
   add(command, "--max-iterations", "N", "the solver gives up after so many iterations; default 1000",
       [&request](const std::string& text) {
-        request.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
+        request.solver.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
       });
   add(command, "--max-rows", "SHARE",
       "a first picture: progressive or overshooting stops after this\nshare of the rows of form factors, e.g. 5%; "
       "default: no such limit",
-      [&request](const std::string& text) { request.max_rows = share("--max-rows", text); });
+      [&request](const std::string& text) { request.solver.max_rows = share("--max-rows", text); });
 }
 
 void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
@@ -175,15 +172,7 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
 
 SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options) {
   require_consistent(command, options);
-  arguments.request.close = options.request.close;
-  arguments.request.solver = options.request.solver;
-  if (!options.series.empty() && !options.solver_given) arguments.request.solver = Solver::jacobi;
-  arguments.request.tolerance = options.request.tolerance;
-  arguments.request.max_iterations = options.request.max_iterations;
-  arguments.request.max_rows = options.request.max_rows;
-  arguments.request.relaxation = options.request.relaxation;
-  if (arguments.request.max_rows && !is_shooting(arguments.request.solver))
-    throw UsageError("--max-rows needs --solver progressive or overshooting");
+  if (!options.series.empty() && !options.solver_given) arguments.request.solver.solver = Solver::jacobi;
   arguments.results.assign(options.results.begin(), options.results.end());
   arguments.series = options.series;
   arguments.report = options.report;

@@ -15,7 +15,6 @@ inline constexpr const char* camera_example = "--camera 4,-3,1.6 0,0,1 60";
 
 /// The options that say how the equations are solved and what is written, while they are being parsed.
 struct SolutionOptions {
-  Request request;  ///< solver, tolerance, iterations, closure
   bool solver_given = false;
   std::vector<std::string> results;
   std::string series, report, picture, points, view;
@@ -30,13 +29,13 @@ struct SolutionOptions {
 /// parsed lands in `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
-/// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows.
-void add_solver_options(CLI::App& command, SolutionOptions& options);
+/// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows, which land in `request`.
+void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request);
 
 /// Adds -q and -v.
 void add_verbosity_options(CLI::App& command, SolutionOptions& options);
 
-/// `arguments` with what these options ask for, once they hold the inputs and the request for form factors. `command`
+/// `arguments` with what these options ask for, once they hold the inputs and the request. `command`
 /// is the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
 SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options);
 

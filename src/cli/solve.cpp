@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "cli/accuracy_options.h"
 #include "cli/interrupt.h"
+#include "cli/option_names.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/sensors.h"
@@ -23,6 +24,7 @@
 #include "output/write_points.h"
 #include "output/write_series.h"
 #include "pipeline/stage_clock.h"
+#include "plan/check_request.h"
 #include "render/tone_map.h"
 #include "scene/limits.h"
 
@@ -171,8 +173,8 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
 // Said of a result without error bars.
 std::string how_to_know_errors(const SolveArguments& arguments) {
   if (!arguments.form_factors.empty()) return " with stored form factors";
-  const auto other = option_without_error_bars(arguments.request, {});
-  return other ? " with " + *other : "; --error-bars tells them, in about twice the time";
+  const auto part = part_without_error_bars(arguments.request);
+  return part ? " with " + with_option_names(*part) : "; --error-bars tells them, in about twice the time";
 }
 
 }  // namespace
@@ -180,7 +182,7 @@ std::string how_to_know_errors(const SolveArguments& arguments) {
 ExitCode solve(const SolveArguments& arguments) {
   check_outputs(arguments);
 
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   const bool quiet = arguments.verbosity == Verbosity::quiet;
   if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
   const Results results = [&] {

@@ -28,7 +28,7 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
                       const Request& request) {
   const double largest = info.max_edge * info.max_edge;
   const double least = std::ceil(kept_area(scene, sides_for(scene, request)) / largest * (1 - 1e-9));
-  if (request.patches || request.max_edge != info.max_edge || least <= info.patches) return;
+  if (request.mesh.patches || request.mesh.max_edge != info.max_edge || least <= info.patches) return;
   std::ostringstream text;
   text << "found form factors of " << info.patches << " patches with edges up to " << info.max_edge << " m, made from "
        << info.model << "; this model takes at least " << least
@@ -62,14 +62,14 @@ void require_same_panes(const std::filesystem::path& folder, const Exchange& exc
 // The request with the options that the form factors were made with.
 Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& info) {
   Request request = arguments.request;
-  if (!request.max_edge && !request.patches) request.max_edge = info.max_edge;
-  if (request.sides == Sides::automatic) request.sides = info.sides;
-  request.samples = info.samples;
-  request.seed = info.seed;
-  request.estimator = info.estimator;
+  if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;
+  if (request.mesh.sides == Sides::automatic) request.mesh.sides = info.sides;
+  request.assembly.samples = info.samples;
+  request.assembly.seed = info.seed;
+  request.assembly.estimator = info.estimator;
   if (!is_closed(info)) return request;
-  if (request.close && !contains(request.skip, Effect::closure)) {
-    request.force.push_back(Effect::closure);
+  if (request.assembly.close && !contains(request.effects.skip, Effect::closure)) {
+    request.effects.force.push_back(Effect::closure);
     return request;
   }
   throw InputError(arguments.form_factors.string(),
@@ -96,7 +96,7 @@ SolveInput read_input(const SolveArguments& arguments) {
   }
   require_same_unit(folder, info, input.scene);
   input.request = request_as_then(arguments, info);
-  input.request.kept_sides = std::move(sides);
+  input.request.mesh.kept_sides = std::move(sides);
   require_room_for(folder, info, input.scene, input.request);
   input.exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
     Exchange exchange = read_exchange(folder, info, mesh);

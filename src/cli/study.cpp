@@ -57,7 +57,7 @@ std::string facts(const Scene& scene, const Study& study) {
 
 ExitCode study(const StudyArguments& arguments) {
   check_study_writable(arguments.output);
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(!arguments.quiet && stderr_is_terminal());
   const Observer observer = observer_on(line);
 
@@ -75,7 +75,7 @@ ExitCode study(const StudyArguments& arguments) {
   const WritingGuard guard;
   write_study(arguments.output, scene, study, {.command_line = arguments.command_line});
   if (!arguments.quiet) {
-    for (const std::string& note : study.plan.notes) print_message("note", note);
+    for (const std::string& note : study.notes) print_message("note", note);
     std::cout << table(study) << facts(scene, study) << conclusion(study) << "\nwrote "
               << shown_name(arguments.output.string()) << std::endl;
   }

@@ -12,7 +12,7 @@ namespace patchlight::cli {
 
 struct StudyCommandOptions {
   ModelOptions model;
-  MeshOptions mesh;
+  Request request;  // with the edge of patches in model units
   StudyOptions study;
   std::string output;
   bool quiet = false;
@@ -32,7 +32,7 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
   add(command, "--tolerance", "NUMBER", "the smallest relative error of the solver; default 1e-6",
       [&options](const std::string& text) {
         const auto inside = [](double x) { return x >= 1e-10 && x < 1; };
-        options.mesh.request.tolerance = number("--tolerance", text, "a number from 1e-10 to below 1", inside);
+        options.request.solver.relative_error = number("--tolerance", text, "a number from 1e-10 to below 1", inside);
       });
   command.add_flag_callback(
       "--no-adaptive", [&options] { options.study.adaptive = false; },
@@ -50,12 +50,12 @@ std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
   StudyCommandOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("study", "solves a model in many ways: what accuracy costs");
   add_model_options(command, to.model);
-  add_sides_option(command, to.mesh);
-  add_effect_options(command, to.mesh.request, effects_but({Effect::interreflection, Effect::closure}));
+  add_sides_option(command, to.request);
+  add_effect_options(command, to.request, effects_but({Effect::interreflection, Effect::closure}));
   add_study_options(command, to);
-  add_patch_options(command, to.mesh);
-  add_sampling_options(command, to.mesh);
-  add_machine_options(command, to.mesh.request);
+  add_patch_options(command, to.request);
+  add_sampling_options(command, to.request);
+  add_machine_options(command, to.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
   return options;
 }
@@ -64,16 +64,13 @@ StudyArguments finish_study(const StudyCommandOptions& options) {
   StudyArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.options = options.study;
   arguments.output = options.output;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) throw UsageError("study: found no model; expected: patchlight study MODEL -o FOLDER");
   if (arguments.output.empty()) throw UsageError("study: nothing would be written; give -o FOLDER");
-  if (arguments.request.estimator != Estimator::automatic) {
-    throw UsageError("--estimator: study compares all of them; leave the option out");
-  }
-  require_consistent_effects(arguments.request, {});
+  check_for_study(arguments.request);
   return arguments;
 }
 

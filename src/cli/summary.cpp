@@ -1,6 +1,7 @@
 #include "cli/summary.h"
 
 #include "cli/messages.h"
+#include "cli/option_names.h"
 #include "cli/text_table.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ std::string parts(const AccuracyStep& step) {
 // How far off the patches' means may be, and what is drawn with them.
 std::string errors(const Report& report) {
   std::string on;
-  for (const std::string& name : report.plan.interest) on += (on.empty() ? " on " : ", ") + name;
+  for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
   std::string text = "error of the patches' means" + on + " about " + parts(report.accuracy.back());
   for (const auto& [space, part] : report.spaces) {
     text += "\n  " + space + ", " + std::to_string(part.patches) +
@@ -134,9 +135,9 @@ std::string assembly(const FormFactorFacts& facts) {
 std::string details(const Report& report) {
   std::ostringstream text;
   for (const Decision& decision : report.plan.decisions) {
-    text << sentence(decision) << '\n';
+    text << with_option_names(sentence(decision)) << '\n';
   }
-  text << "estimator of form factors: " << name_of(report.plan.estimator) << '\n';
+  text << "estimator of form factors: " << name_of(report.plan.assembly.estimator) << '\n';
   if (report.form_factors.counts) return text.str() + assembly(report.form_factors);
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
@@ -174,7 +175,7 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
   std::vector<std::string> all = scene.notes;
   const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
   all.insert(all.end(), of_sides.begin(), of_sides.end());
-  all.insert(all.end(), simulation.plan.notes.begin(), simulation.plan.notes.end());
+  all.insert(all.end(), simulation.notes.begin(), simulation.notes.end());
   return all;
 }
 
@@ -206,14 +207,15 @@ std::string explain_not_accurate(const Report& report) {
   const AccuracyStep& step = report.accuracy.back();
   const bool by_mesh = step.mesh >= step.form_factor;
   const bool by_solver = step.solver > std::max(step.mesh, step.form_factor);
-  std::string text = "accuracy of " + percent(*report.plan.accuracy, 3) + " % NOT reached: the error is about " +
-                     percent(step.total, 2) + " % after " + rounded(step.seconds) + " s; most of it is from the " +
+  std::string text = "accuracy of " + percent(*report.plan.accuracy.relative_error, 3) +
+                     " % NOT reached: the error is about " + percent(step.total, 2) + " % after " +
+                     rounded(step.seconds) + " s; most of it is from the " +
                      (by_solver ? "solver"
                       : by_mesh ? "size of the patches"
                                 : "sampling of form factors") +
                      ". ";
   if (by_solver) return text + "Give a smaller --tolerance, or none: then it is what the accuracy takes";
-  if (report.plan.seconds) return text + "Give a longer --time, or more --memory if it ended before";
+  if (report.plan.accuracy.seconds) return text + "Give a longer --time, or more --memory if it ended before";
   return text + (by_mesh
                      ? "Begin with more --patches"
                      : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
@@ -228,7 +230,7 @@ std::string explain_not_converged(const Report& report) {
            " % of the rows of form factors, as asked for. A picture shows an estimate of the light still under way, "
            "other results what has arrived";
   }
-  const std::string asked = "NOT converged to " + rounded(plan.solver.relative_error, 2) + ". ";
+  const std::string asked = "NOT converged to " + rounded(tolerance_of(plan.solver), 2) + ". ";
   const Iteration& last = solution.history.back();
   constexpr double rounding = 1e-13;
   if (last.relative_residual < rounding) {

@@ -148,7 +148,7 @@ std::string verdict(const Verification& verification, const std::string& granted
 
 ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
-  const ThreadLimit limit(arguments.request.threads);
+  const ThreadLimit limit(arguments.request.resources.threads);
   if (const auto note = note_on_accuracy(arguments.request)) print_message("note", *note);
   ProgressLine line(stderr_is_terminal());
   const Observer observer = observer_on(line);

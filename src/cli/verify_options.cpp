@@ -5,8 +5,10 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/option_names.h"
 #include "cli/parse_value.h"
 
+#include <array>
 #include <string>
 
 namespace patchlight::cli {
@@ -16,7 +18,7 @@ constexpr std::size_t left_out_checked = 16;
 
 struct VerifyCommandOptions {
   ModelOptions model;
-  MeshOptions mesh;
+  Request request;  // with the edge of patches in model units
   VerifyOptions verify;
   std::optional<double> bar;
   std::string json;
@@ -57,13 +59,13 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   VerifyCommandOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("verify", "solves a model and checks the answer by path tracing");
   add_model_options(command, to.model);
-  add_sides_option(command, to.mesh);
-  add_effect_options(command, to.mesh.request);
+  add_sides_option(command, to.request);
+  add_effect_options(command, to.request);
   add_verify_options(command, to);
-  add_patch_options(command, to.mesh);
-  add_refinement_options(command, to.mesh.request);
-  add_sampling_options(command, to.mesh);
-  add_machine_options(command, to.mesh.request);
+  add_patch_options(command, to.request);
+  add_refinement_options(command, to.request);
+  add_sampling_options(command, to.request);
+  add_machine_options(command, to.request);
   return options;
 }
 
@@ -74,22 +76,14 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   VerifyArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = mesh_request(options.mesh, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.options = options.verify;
-  arguments.options.seed = arguments.request.seed;
-  arguments.options.left_out = arguments.request.sides == Sides::automatic ? left_out_checked : 0;
+  arguments.options.seed = arguments.request.assembly.seed;
+  arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
-  arguments.request.error_bars = !options.bar;
-  if (!options.bar && arguments.request.estimator != Estimator::automatic) {
-    throw UsageError("--estimator leaves the error bars unknown; give --bar PERCENT with it");
-  }
-  for (const Effect effect : {Effect::closure, Effect::interreflection}) {
-    if (options.bar || !contains(arguments.request.skip, effect)) continue;
-    throw UsageError(std::string("--skip ") + name_of(effect) +
-                     " leaves the error bars unknown; give --bar PERCENT with it");
-  }
-  require_error_bars_possible(arguments.request, {});
-  require_consistent_effects(arguments.request, {});
+  arguments.request.accuracy.error_bars = !options.bar;
+  const OptionName error_bars{"accuracy.error_bars", "the error bars that verify takes without --bar PERCENT"};
+  check_with_names(arguments.request, std::array{error_bars});
   arguments.json = options.json;
   return arguments;
 }

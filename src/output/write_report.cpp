@@ -38,27 +38,27 @@ Json names_of(const std::vector<Effect>& effects) {
 
 Json request_part(const Request& request) {
   Json part;
-  part["max_edge_m"] = json_of(request.max_edge);
-  part["patches"] = json_of(request.patches);
-  part["sides"] = name_of(request.sides);
-  part["solver"] = name_of(request.solver);
-  part["relaxation"] = json_of(request.relaxation);
-  part["tolerance"] = request.tolerance.value_or(default_tolerance);
-  part["max_iterations"] = request.max_iterations;
-  part["max_rows"] = json_of(request.max_rows);
-  part["samples"] = request.samples;
-  part["estimator"] = name_of(request.estimator);
-  part["close"] = request.close;
-  part["on_demand"] = request.storage == Storage::on_demand;
-  part["seed"] = request.seed;
-  part["threads"] = request.threads;
-  part["memory_bytes"] = json_of(request.memory);
-  part["error_bars"] = request.error_bars;
-  part["accuracy"] = json_of(request.accuracy);
-  part["time_s"] = json_of(request.seconds);
-  part["interest"] = request.interest;
-  part["force"] = names_of(request.force);
-  part["skip"] = names_of(request.skip);
+  part["max_edge_m"] = json_of(request.mesh.max_edge);
+  part["patches"] = json_of(request.mesh.patches);
+  part["sides"] = name_of(request.mesh.sides);
+  part["solver"] = name_of(request.solver.solver);
+  part["relaxation"] = json_of(request.solver.relaxation);
+  part["tolerance"] = tolerance_of(request.solver);
+  part["max_iterations"] = request.solver.max_iterations;
+  part["max_rows"] = json_of(request.solver.max_rows);
+  part["samples"] = request.assembly.samples;
+  part["estimator"] = name_of(request.assembly.estimator);
+  part["close"] = request.assembly.close;
+  part["on_demand"] = request.assembly.storage == Storage::on_demand;
+  part["seed"] = request.assembly.seed;
+  part["threads"] = request.resources.threads;
+  part["memory_bytes"] = json_of(request.resources.memory);
+  part["error_bars"] = request.accuracy.error_bars;
+  part["accuracy"] = json_of(request.accuracy.relative_error);
+  part["time_s"] = json_of(request.accuracy.seconds);
+  part["interest"] = request.accuracy.interest;
+  part["force"] = names_of(request.effects.force);
+  part["skip"] = names_of(request.effects.skip);
   return part;
 }
 
@@ -81,21 +81,22 @@ Json sampling_part(const std::optional<SamplingFacts>& sampling) {
   return part;
 }
 
-Json plan_part(const Plan& plan) {
+Json plan_part(const Report& report) {
+  const Plan& plan = report.plan;
   Json part;
   part["max_edge_m"] = plan.max_edge;
-  part["samples"] = plan.samples;
-  part["estimator"] = name_of(plan.estimator);
-  part["close"] = plan.close;
-  part["on_demand"] = plan.storage == Storage::on_demand;
-  part["lost_share_rays"] = plan.lost_share_rays;
-  part["seed"] = plan.seed;
+  part["samples"] = plan.assembly.samples;
+  part["estimator"] = name_of(plan.assembly.estimator);
+  part["close"] = plan.assembly.close;
+  part["on_demand"] = plan.assembly.storage == Storage::on_demand;
+  part["lost_share_rays"] = plan.assembly.lost_share_rays;
+  part["seed"] = plan.assembly.seed;
   part["solver"] = name_of(plan.solver.solver);
-  part["tolerance"] = plan.solver.relative_error;
+  part["tolerance"] = tolerance_of(plan.solver);
   part["max_iterations"] = plan.solver.max_iterations;
   part["emit_from_back"] = plan.sides.emit_from_back;
   part["sides_notes"] = plan.sides.notes;
-  part["notes"] = plan.notes;
+  part["notes"] = report.notes;
   part["decisions"] = decisions_part(plan.decisions);
   return part;
 }
@@ -220,7 +221,7 @@ void write_report(const std::filesystem::path& file, const Report& report, const
   json["command_line"] = provenance.command_line;
   json["input"] = scene_part(report.scene);
   json["request"] = request_part(report.request);
-  json["plan"] = plan_part(report.plan);
+  json["plan"] = plan_part(report);
   json["mesh"] = mesh_part(report);
   json["materials"] = materials_part(report.materials);
   if (!report.sensors.groups.empty()) json["sensors"] = sensors_part(report.sensors);

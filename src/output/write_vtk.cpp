@@ -142,7 +142,7 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   std::vector<std::string> decisions;
   for (const Decision& decision : simulation.plan.decisions) decisions.push_back(sentence(decision));
   facts.AddArray(strings("decisions", decisions));
-  facts.AddArray(strings("seed", {std::to_string(simulation.plan.seed)}));  // 64 bits do not fit a double
+  facts.AddArray(strings("seed", {std::to_string(simulation.plan.assembly.seed)}));  // 64 bits do not fit a double
   facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
   const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);
   up->SetNumberOfComponents(3);

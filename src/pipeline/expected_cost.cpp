@@ -35,8 +35,8 @@ double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh
 // A matrix has half of all pairs, each row has as many as there are patches.
 double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   const Occluder occluder(scene, blockers_of(plan), find_coverings(scene, plan.sides));
-  const double of_matrix = expected_assembly_seconds(mesh, occluder, assembly_options(plan));
-  const bool lamps_alone = !keeps_entries(plan.storage) && !simulates(plan, Effect::interreflection);
+  const double of_matrix = expected_assembly_seconds(mesh, occluder, plan.assembly);
+  const bool lamps_alone = !keeps_entries(plan.assembly.storage) && !simulates(plan, Effect::interreflection);
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 
@@ -50,18 +50,19 @@ double rays_per_patch(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, const PatchMesh& mesh) {
+ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   const auto n = static_cast<double>(mesh.size());
-  ExpectedCost cost{
-      .patches = mesh.size(), .bytes = memory_needed(mesh.size(), request, plan), .of_first_mesh = refines(request)};
+  ExpectedCost cost{.patches = mesh.size(),
+                    .bytes = memory_needed(mesh.size(), plan.assembly, plan.accuracy),
+                    .of_first_mesh = refines(plan.accuracy)};
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
-  cost.threads = request.threads > 0 ? request.threads : std::max(1, processors);
+  cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
 
   cost.form_factor_seconds =
-      assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.lost_share_rays * n;
+      assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.assembly.lost_share_rays * n;
   cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
   const bool solves = simulates(plan, Effect::interreflection);
-  const double products = (plan.close ? products_of_closure : 0) + (solves ? products_of_solver : 0);
+  const double products = (plan.assembly.close ? products_of_closure : 0) + (solves ? products_of_solver : 0);
   cost.solve_seconds = seconds_per_entry * products * n * n;
   return cost;
 }

@@ -24,6 +24,6 @@ struct ExpectedCost {
 
 /// An estimate for the patches of a mesh and what the plan simulates: form factors by a look at some pairs of patches,
 /// the rest by counts and rates that were measured on one machine. Right to a factor of two or so.
-ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const Request& request, const PatchMesh& mesh);
+ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh& mesh);
 
 }  // namespace patchlight

@@ -11,7 +11,7 @@ namespace {
 
 DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh) {
   const auto trace = [&](const Scene& scene) {
-    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, {.seed = plan.seed}, run.observer);
+    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, {.seed = plan.assembly.seed}, run.observer);
   };
   if (plan.lamp_colour.size() == 0) return trace(run.scene);
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.

@@ -16,22 +16,22 @@ namespace {
 // Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
 Assembly assembly_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Occluder& occluder = run.tracing->between_patches();
-  const AssemblyOptions options = assembly_options(plan);
-  if (!known.exchange) return assemble_exchange_areas(mesh, occluder, options, run.observer);
-  return assemble_exchange_areas(mesh, occluder, options, {*known.exchange, known.place}, run.observer);
+  if (!known.exchange) return assemble_exchange_areas(mesh, occluder, plan.assembly, run.observer);
+  return assemble_exchange_areas(mesh, occluder, plan.assembly, {*known.exchange, known.place}, run.observer);
 }
 
 LostShare lost_share_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Occluder& occluder = run.tracing->between_patches();
-  if (!known.lost) return measure_lost_share(mesh, occluder, plan.lost_share_rays, plan.seed, run.observer);
-  return measure_lost_share(mesh, occluder, KnownShares{*known.lost, known.place}, plan.seed, run.observer);
+  if (!known.lost)
+    return measure_lost_share(mesh, occluder, plan.assembly.lost_share_rays, plan.assembly.seed, run.observer);
+  return measure_lost_share(mesh, occluder, KnownShares{*known.lost, known.place}, plan.assembly.seed, run.observer);
 }
 
 // Exchange areas by computation, unless they are known or computed on demand.
 Exchange exchange_on(const Run& run, const Plan& plan, const PatchMesh& mesh) {
   if (run.with.exchange) return run.with.exchange(mesh);
-  const auto find = keeps_entries(plan.storage) ? trace_exchange : exchange_on_demand;
-  return find(mesh, run.tracing->between_patches(), assembly_options(plan), plan.lost_share_rays, run.observer);
+  const auto find = keeps_entries(plan.assembly.storage) ? trace_exchange : exchange_on_demand;
+  return find(mesh, run.tracing->between_patches(), plan.assembly, run.observer);
 }
 
 TransportFacts facts_of(const Exchange& exchange) {
@@ -44,15 +44,15 @@ TransportFacts facts_of(const Exchange& exchange) {
 }
 
 ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& observer) {
-  return plan.close ? close_exchange(std::move(exchange), observer)
-                    : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
+  return plan.assembly.close ? close_exchange(std::move(exchange), observer)
+                             : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
 }
 
 }  // namespace
 
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known) {
   RawTransport found;
-  if (plan.error_bars) {
+  if (plan.accuracy.error_bars) {
     found.assembly = assembly_of(run, plan, mesh, known);
     found.exchange = exchange_of(*found.assembly, mesh, lost_share_of(run, plan, mesh, known));
     found.facts = facts_of(found.exchange);
@@ -73,14 +73,14 @@ MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMes
                           .facts = std::move(raw.facts),
                           .assembly = std::move(raw.assembly),
                           .of_parents = {}};
-  if (!keeps_entries(plan.storage)) {
+  if (!keeps_entries(plan.assembly.storage)) {
     const Occluder& occluder = run.tracing->between_patches();
-    transport.rows = on_demand_transport(mesh.patches, occluder, assembly_options(plan), transport.area);
+    transport.rows = on_demand_transport(mesh.patches, occluder, plan.assembly, transport.area);
     return transport;
   }
   ClosedExchangeAreas exchange_areas = closed(std::move(raw.exchange), plan, run.observer);
   transport.facts.closure = exchange_areas.method;
-  if (plan.error_bars) transport.of_parents = merged(exchange_areas, mesh);
+  if (plan.accuracy.error_bars) transport.of_parents = merged(exchange_areas, mesh);
   transport.rows = dense_transport(std::move(exchange_areas), transport.area);
   transport.facts.row_sum = transport.rows->apply(Field::Ones(mesh.patches.size(), 1)).matrix();
   return transport;

@@ -17,7 +17,7 @@ AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weig
   const auto patches = static_cast<PatchIndex>((weight.array() > 0).count());
   return {.patches = patches,
           .new_patches = patches,
-          .samples = simulation.plan.samples,
+          .samples = simulation.plan.assembly.samples,
           .mesh = relative(bars.mesh),
           .form_factor = relative(bars.form_factor),
           .solver = relative(bars.solver),
@@ -28,7 +28,7 @@ AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weig
 std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation) {
   if (!simulation.error_bars) return {};
   const PatchMesh& mesh = simulation.mesh;
-  const Eigen::VectorXd interest = interest_of(scene, mesh, simulation.plan.interest);
+  const Eigen::VectorXd interest = interest_of(scene, mesh, simulation.plan.accuracy.interest);
   const Eigen::VectorXd inside = interest.cwiseProduct(inside_shells(scene, mesh, Dividing::with_openings));
   const Eigen::VectorXd outside = interest - inside;
   if (total(inside) == 0 || total(outside) == 0) return {};

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -17,6 +18,7 @@ struct Run {
   const Scene& scene;  ///< with the lights that the plan simulates
   const Request& request;
   const Plan& plan;
+  const std::vector<std::string>& notes;  ///< Simulation::notes
   std::shared_ptr<const Tracing> tracing;
   const Steps& with;
   const Observer& observer;

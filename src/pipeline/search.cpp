@@ -30,7 +30,7 @@ constexpr double share_of_form_factors = 0.6;
 constexpr double share_of_solver = 0.02;
 
 // What the solver may leave of the light that is of interest.
-constexpr double part_of_solver = 0.1;
+constexpr double share_of_interest = 0.1;
 
 // Shadow rays of a pair, more than which are not worth their time.
 constexpr int most_samples = 256;
@@ -133,17 +133,17 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
 }
 
 // What the usable memory allows is told, as far as it can be known.
-[[noreturn]] void refuse(const Request& request, double patches, double reachable) {
-  throw MemoryError("--accuracy " + percent(*request.accuracy) + ": found that it takes about " +
-                    std::to_string(static_cast<long>(patches)) + " patches and " +
-                    gigabytes(memory_needed(static_cast<std::size_t>(patches), request)) + ", and " +
-                    gigabytes(usable_memory(request)) + " may be taken; expected about " + percent(reachable) +
-                    " or more: ask for that, or for an --interest");
+[[noreturn]] void refuse(const Plan& plan, double patches, double reachable) {
+  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error) +
+                    ": found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
+                    gigabytes(memory_needed(static_cast<std::size_t>(patches), plan.assembly, plan.accuracy)) +
+                    ", and " + gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
+                    percent(reachable) + " or more: ask for that, or for an accuracy.interest");
 }
 
 // Once three meshes have told how the error falls with the number of patches: refuses what would take far more than
 // fits.
-void require_within_reach(const Request& request, const std::vector<AccuracyStep>& steps) {
+void require_within_reach(const Plan& plan, const std::vector<AccuracyStep>& steps) {
   constexpr double far_more = 2;
   if (steps.size() < 3) return;
   const AccuracyStep& before = steps[steps.size() - 3];
@@ -151,9 +151,9 @@ void require_within_reach(const Request& request, const std::vector<AccuracyStep
   const double finer = static_cast<double>(last.patches) / before.patches;
   const double order = finer > 1 ? std::log(before.total / last.total) / std::log(finer) : 1;
   const double at_least = std::max(order, mesh_order / 2);
-  const double most = patches_that_fit(request);
-  const double needed = last.patches * std::pow(last.total / *request.accuracy, 1 / at_least);
-  if (needed > far_more * most) refuse(request, needed, last.total * std::pow(last.patches / most, at_least));
+  const double most = patches_that_fit(plan);
+  const double needed = last.patches * std::pow(last.total / *plan.accuracy.relative_error, 1 / at_least);
+  if (needed > far_more * most) refuse(plan, needed, last.total * std::pow(last.patches / most, at_least));
 }
 
 // How many parents can be cut, each into sixteen new patches, before there are so many.
@@ -161,10 +161,16 @@ std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
+// What the solver may leave, unless that or its relative error was asked for.
+std::optional<double> part_of_solver(const Run& run, double accuracy) {
+  const std::optional<double>& asked = run.plan.accuracy.solver_part;
+  return asked || run.request.solver.relative_error ? asked : std::optional(share_of_interest * accuracy);
+}
+
 // With the samples of the next mesh, and what its solver may leave.
 Plan plan_of_next(Plan plan, int samples, const std::optional<double>& solver_part) {
-  plan.samples = samples;
-  plan.solver_part = solver_part;
+  plan.assembly.samples = samples;
+  plan.accuracy.solver_part = solver_part;
   return plan;
 }
 
@@ -191,16 +197,16 @@ MeshToSolve Search::first() const {
   } else {
     first.mesh = first_mesh(run_.scene, run_.plan);
   }
-  if (run_.plan.accuracy && !run_.request.tolerance) {
-    first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy;
-    first.plan.solver_part = part_of_solver * *run_.plan.accuracy;
+  if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {
+    first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy.relative_error;
+    first.plan.accuracy.solver_part = part_of_solver(run_, *run_.plan.accuracy.relative_error);
   }
   return first;
 }
 
 AccuracyStep Search::step_of(const SolvedMesh& solved) const {
   AccuracyStep step = accuracy_of(solved);
-  if (!refines(run_.request)) return step;
+  if (!refines(run_.plan.accuracy)) return step;
   step.new_patches -= known_;
   step.seconds = wall_seconds() - start_;
   step.cpu_seconds = cpu_seconds() - cpu_start_;
@@ -208,28 +214,28 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 }
 
 SolvedMesh Search::noted(SolvedMesh solved) {
-  if (run_.plan.error_bars) steps_.push_back(step_of(solved));
+  if (run_.plan.accuracy.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.accuracy = steps_;
-  if (refines(run_.request) && run_.with.look) run_.with.look(solved.simulation);
+  if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
 
 // The largest number of patches in the time that is left.
 double Search::patches_in_time() const {
-  if (!run_.plan.seconds) return std::numeric_limits<double>::infinity();
+  if (!run_.plan.accuracy.seconds) return std::numeric_limits<double>::infinity();
   const AccuracyStep& step = steps_.back();
   const double before = steps_.size() > 1 ? steps_[steps_.size() - 2].seconds : 0;
   const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
-  return patches_in((*run_.plan.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
+  return patches_in((*run_.plan.accuracy.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
 // that does; and those that make the noise, if they are few or nothing else is left. Else more samples.
 Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
   const AccuracyStep& step = steps_.back();
-  const bool by_time = run_.plan.seconds.has_value();
+  const bool by_time = run_.plan.accuracy.seconds.has_value();
   const std::size_t parents = solved.mesh.parents.size();
-  const std::size_t most = cuts_up_to(std::min(patches_that_fit(run_.request), patches_in_time()), step);
+  const std::size_t most = cuts_up_to(std::min(patches_that_fit(run_.plan), patches_in_time()), step);
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
@@ -241,33 +247,30 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy)
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
-  if (!refines(run_.request) || !solved.simulation.solution.converged) return std::nullopt;
-  const Request& request = run_.request;
-  const bool by_time = run_.plan.seconds.has_value();
+  if (!refines(run_.plan.accuracy) || !solved.simulation.solution.converged) return std::nullopt;
+  const bool by_time = run_.plan.accuracy.seconds.has_value();
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
-  const double accuracy = run_.plan.accuracy.value_or(step.total / 2);
+  const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
   if (enough * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
   // What a tolerance that was asked for leaves no mesh mends.
-  if (request.tolerance && step.solver > accuracy) return std::nullopt;
-  if (!by_time && step.total > accuracy) require_within_reach(request, steps_);
+  if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
+  if (!by_time && step.total > accuracy) require_within_reach(run_.plan, steps_);
 
   const Refinement by = refinement(solved, accuracy);
   const bool more_samples = by.samples > step.samples;
   const bool finer_mesh = count(by.cut) > 0;
   FinerMesh finer = refine(solved.mesh, by.cut);
-  const double most = patches_that_fit(request);
+  const double most = patches_that_fit(run_.plan);
   const double factor = mesh_factor(solved, step, accuracy);
   if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
     if (by_time || step.total <= accuracy) return std::nullopt;
-    refuse(request, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
+    refuse(run_.plan, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
   }
   if (!more_samples && !finer_mesh) return std::nullopt;
-  const std::optional<double> part =
-      request.tolerance ? solved.simulation.plan.solver_part : std::optional(part_of_solver * accuracy);
   // The solver's error is never asked to be larger than on the mesh before.
   MeshToSolve to_solve{std::move(finer.mesh),
-                       plan_of_next(solved.simulation.plan, by.samples, part),
+                       plan_of_next(solved.simulation.plan, by.samples, part_of_solver(run_, accuracy)),
                        {std::move(finer.place), {}, solved.simulation.transport.lost}};
   known_ = 0;
   if (more_samples) return to_solve;

@@ -26,20 +26,19 @@ constexpr double least_error = 1e-12;
 SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve) {
   SolverOptions options = by;
-  SolvedWith best{solve(options), options.relative_error};
-  const std::optional<double>& part = simulation.plan.solver_part;
+  SolvedWith best{solve(options), tolerance_of(options)};
+  const std::optional<double>& part = simulation.plan.accuracy.solver_part;
   if (!part || !best.solution.converged) return best;
-  const Eigen::VectorXd interest = interest_of(run.scene, simulation.mesh, simulation.plan.interest);
+  const Eigen::VectorXd interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
   for (;;) {
     const SolvedProblem solved{simulation.problem, best.solution};
     const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);
     // What is infinite has no bound, or no light: no tolerance mends that.
-    if (!(left > *part) || !std::isfinite(left) || options.relative_error <= least_error) return best;
-    options.relative_error =
-        std::max(least_error, options.relative_error * std::max(farthest, bar_margin * *part / left));
+    if (!(left > *part) || !std::isfinite(left) || best.relative_error <= least_error) return best;
+    options.relative_error = std::max(least_error, best.relative_error * std::max(farthest, bar_margin * *part / left));
     Solution next = solve(options);
     if (!next.converged) return best;
-    best = {std::move(next), options.relative_error};
+    best = {std::move(next), tolerance_of(options)};
   }
 }
 

@@ -16,8 +16,9 @@ struct SolvedWith {
 };
 
 /// The solution by some options, or with a smaller relative error than these ask for until the solver's part of the
-/// error of what is of interest is no more than Plan::solver_part: a bound on all light together says little about the
-/// light in a dim room. Ends with the last one that has converged. `simulation` has the plan, the problem and the mesh.
+/// error of what is of interest is no more than AccuracyOptions::solver_part: a bound on all light together says little
+/// about the light in a dim room. Ends with the last one that has converged. `simulation` has the plan, the problem and
+/// the mesh.
 SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve);
 

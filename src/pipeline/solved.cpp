@@ -13,13 +13,14 @@ namespace patchlight {
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
   Simulation simulation;
   simulation.plan = meshed.plan;
+  simulation.notes = run.notes;
   simulation.mesh = meshed.mesh.patches;
   simulation.transport = transport.facts;
   simulation.problem = std::move(problem.problem);
   simulation.direct_standard_error = std::move(problem.direct_standard_error);
   simulation.tracing = run.tracing;
 
-  const bool keeps = keeps_entries(meshed.plan.storage);
+  const bool keeps = keeps_entries(meshed.plan.assembly.storage);
   const TransportFacts& facts = simulation.transport;
   SolverOptions options = meshed.plan.solver;
   options.largest_row_sum = keeps ? largest(facts.row_sum) : std::numeric_limits<double>::infinity();

@@ -31,8 +31,8 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
 Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw) {
   const Field& exitance = simulation.problem.exitance;
   const Eigen::VectorXd& area = simulation.problem.area;
-  AssemblyOptions again = assembly_options(simulation.plan);
-  again.seed = hash({simulation.plan.seed, 1});
+  AssemblyOptions again = simulation.plan.assembly;
+  again.seed = hash({simulation.plan.assembly.seed, 1});
   const auto transport = on_demand_transport(simulation.mesh, run.tracing->between_patches(), again, area);
   const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, run.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
@@ -111,13 +111,13 @@ double share_of_lamps(const RadiosityProblem& problem) {
 }
 
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
-  if (!run.plan.error_bars) return result;
+  if (!run.plan.accuracy.error_bars) return result;
   result.raw = std::move(transport.assembly);
   const RowTransport& rows = *transport.rows;
   Simulation& simulation = result.simulation;
   const PatchMesh& mesh = simulation.mesh;
   const LostShare& lost = simulation.transport.lost;
-  const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.close};
+  const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.assembly.close};
 
   // 1. What patches, samples and solver err.
   const MeshBars of_mesh = mesh_bars(result, rows, solved, std::move(*transport.of_parents));
@@ -133,7 +133,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
       .display = display_errors(result.mesh, solved)};
 
   // 2. Where that matters.
-  result.interest = interest_of(run.scene, mesh, simulation.plan.interest);
+  result.interest = interest_of(run.scene, mesh, simulation.plan.accuracy.interest);
   require_reflecting(run.scene, simulation.problem, result.interest);
   const bool all = result.interest.minCoeff() == 1;
   const Eigen::VectorXd weight = all ? result.interest : importance(rows, solved.problem, result.interest);

@@ -4,23 +4,164 @@
 
 #include "accuracy/interest.h"
 
+#include <initializer_list>
+#include <vector>
+
 namespace patchlight {
 namespace {
 
-// Error bars follow from the errors of stored form factors.
-void require_stored_rows(const Request& request) {
-  if (keeps_entries(request.storage) || !(request.error_bars || refines(request))) return;
-  const std::string other = request.accuracy ? "an accuracy" : request.seconds ? "refining for a time" : "error bars";
-  throw InputError("storage", "found rows on demand together with " + other +
-                                  "; form factors that are not kept do not tell the errors that this needs; leave one "
-                                  "of them out");
+// A part of a request as messages name it, and whether it is asked for.
+struct Asked {
+  std::string part;
+  bool is_asked = true;
+};
+
+Asked forced(const Request& request, Effect effect) {
+  return {std::string("effects.force=") + name_of(effect), contains(request.effects.force, effect)};
+}
+
+Asked skipped(const Request& request, Effect effect) {
+  return {std::string("effects.skip=") + name_of(effect), contains(request.effects.skip, effect)};
+}
+
+Asked on_demand(const Request& request) {
+  return {"assembly.storage=on_demand", request.assembly.storage == Storage::on_demand};
+}
+
+Asked not_closed(const Request& request) { return {"assembly.close=false", !request.assembly.close}; }
+
+Asked form_factors(const Given& given) { return {"given.form_factors", given.form_factors}; }
+
+Asked mesh_of(const Given& given) { return {"given.mesh", given.mesh}; }
+
+Asked other_estimator(const Request& request) {
+  const Estimator estimator = request.assembly.estimator;
+  return {std::string("assembly.estimator=") + name_of(estimator), estimator != Estimator::automatic};
+}
+
+Asked max_rows(const Request& request) { return {"solver.max_rows", request.solver.max_rows.has_value()}; }
+
+// What makes error bars wanted.
+Asked error_bars(const AccuracyOptions& accuracy) {
+  if (accuracy.relative_error) return {"accuracy.relative_error"};
+  if (accuracy.seconds) return {"accuracy.seconds"};
+  return {"accuracy.error_bars", accuracy.error_bars};
+}
+
+// Refuses those of `others` that are asked for beside `one`.
+void require_alone(const Asked& one, std::initializer_list<Asked> others, const std::string& why) {
+  if (!one.is_asked) return;
+  for (const Asked& other : others) {
+    if (!other.is_asked) continue;
+    throw InputError(one.part,
+                     "found with " + other.part + "; they exclude each other, as " + why + ". Give one of them");
+  }
+}
+
+void require_one_patch_size(const MeshOptions& mesh) {
+  require_alone({"mesh.max_edge", mesh.max_edge.has_value()}, {{"mesh.patches", mesh.patches.has_value()}},
+                "both set the size of the patches");
+}
+
+void require_consistent_effects(const Request& request, const Given& given) {
+  for (const Effect effect : request.effects.force)
+    require_alone(skipped(request, effect), {forced(request, effect)}, "an effect is simulated or left out");
+  const auto decides = [&](Effect effect, const Asked& other, const std::string& why) {
+    for (const Asked& asked : {forced(request, effect), skipped(request, effect)}) require_alone(asked, {other}, why);
+  };
+  const MeshOptions& mesh = request.mesh;
+  for (const Effect effect : {Effect::reach, Effect::backs}) {
+    decides(effect, {std::string("mesh.sides=") + name_of(mesh.sides), mesh.sides != Sides::automatic},
+            "that says already which sides take part");
+    decides(effect, {"mesh.kept_sides", mesh.kept_sides.has_value()}, "these are all that take part");
+  }
+  decides(Effect::occlusion, form_factors(given), "form factors that are given decide it");
+  require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
+  require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
+}
+
+void require_solver_for(const Request& request) {
+  const Solver solver = request.solver.solver;
+  const std::string found = std::string("found with solver.solver=") + name_of(solver) + "; it needs solver.solver=";
+  if (request.solver.relaxation && solver != Solver::sor)
+    throw InputError("solver.relaxation", found + name_of(Solver::sor));
+  for (const Asked& asked : {max_rows(request), on_demand(request)}) {
+    if (!asked.is_asked || is_shooting(solver)) continue;
+    throw InputError(asked.part, found + name_of(Solver::progressive) + " or " + name_of(Solver::overshooting));
+  }
+  if (request.solver.reference)
+    throw InputError("solver.reference", "found a solution to be met; before there is a mesh expected none");
+}
+
+// Rows on demand are found by the automatic estimator, and cannot be closed, as that takes all.
+void require_rows_possible(const Request& request, const Given& given) {
+  const Asked rows = on_demand(request);
+  require_alone(not_closed(request), {rows}, "rows on demand are never closed");
+  require_alone(other_estimator(request), {rows}, "rows on demand are found by the automatic one");
+  require_alone(form_factors(given), {rows}, "these are a matrix");
+}
+
+void require_automatic_estimator(const Request& request) {
+  const AssemblyOptions& assembly = request.assembly;
+  const ShortCuts& taken = assembly.short_cuts;
+  require_alone({"assembly.short_cuts", !taken.hidden || !taken.free || !taken.far}, {other_estimator(request)},
+                "that takes no short cuts");
+  require_alone({"assembly.keep_errors", assembly.keep_errors}, {other_estimator(request)},
+                "that does not know the errors of entries");
+}
+
+// What leaves no error bars, and why.
+struct Obstacle {
+  Asked asked;
+  const char* why;
+};
+
+// Error bars take the closed matrix of the automatic estimator, made in the run, and the solution to be exact but for
+// the solver's error.
+std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Given& given) {
+  const char* const found_in_the_run = "error bars take the errors of form factors, found and kept in the run";
+  const char* const closed = "error bars are those of closed rows";
+  return {{on_demand(request), found_in_the_run},
+          {form_factors(given), found_in_the_run},
+          {mesh_of(given), "error bars take a nested mesh"},
+          {not_closed(request), closed},
+          {skipped(request, Effect::closure), closed},
+          {skipped(request, Effect::interreflection), "error bars are those of reflected light"},
+          {other_estimator(request), "error bars take the errors that the automatic one knows"},
+          {max_rows(request), "error bars are those of a solution that has converged"}};
+}
+
+void require_error_bars_possible(const Request& request, const Given& given) {
+  const Asked bars = error_bars(request.accuracy);
+  if (!bars.is_asked && !request.accuracy.interest.empty()) {
+    throw InputError("accuracy.interest",
+                     "found without an error that it could be of; it needs "
+                     "accuracy.relative_error, accuracy.seconds or accuracy.error_bars");
+  }
+  for (const auto& [asked, why] : obstacles_to_error_bars(request, given)) require_alone(bars, {asked}, why);
 }
 
 }  // namespace
 
-void check(const Request& request, const Scene& scene) {
-  require_names(scene, request.interest);
-  require_stored_rows(request);
+void check(const Request& request, const Given& given) {
+  require_one_patch_size(request.mesh);
+  require_solver_for(request);
+  require_rows_possible(request, given);
+  require_automatic_estimator(request);
+  require_consistent_effects(request, given);
+  require_error_bars_possible(request, given);
+}
+
+std::optional<std::string> part_without_error_bars(const Request& request, const Given& given) {
+  for (const auto& [asked, why] : obstacles_to_error_bars(request, given)) {
+    if (asked.is_asked) return asked.part;
+  }
+  return std::nullopt;
+}
+
+void check(const Request& request, const Scene& scene, const Given& given) {
+  check(request, given);
+  require_names(scene, request.accuracy.interest);
 }
 
 }  // namespace patchlight

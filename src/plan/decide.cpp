@@ -10,8 +10,8 @@ namespace {
 
 // The decision that the facts call for, or the one that the request asks for instead.
 Decision overruled(Decision by_facts, const Request& request) {
-  const bool wanted =
-      contains(request.force, by_facts.effect) || (by_facts.simulate && !contains(request.skip, by_facts.effect));
+  const bool wanted = contains(request.effects.force, by_facts.effect) ||
+                      (by_facts.simulate && !contains(request.effects.skip, by_facts.effect));
   by_facts.forced = wanted != by_facts.simulate;
   by_facts.simulate = wanted;
   return by_facts;
@@ -52,7 +52,7 @@ Decision interreflection(const EffectFacts& facts, const Request& request) {
             "form factors of the lamps alone, and no equations"};
   }
   return {Effect::interreflection, true, "the highest reflectance is " + number(facts.highest_reflectance),
-          bounces(facts.highest_reflectance, request.tolerance.value_or(default_tolerance))};
+          bounces(facts.highest_reflectance, tolerance_of(request.solver))};
 }
 
 std::string numbers_of(const std::vector<Eigen::Index>& bands) {
@@ -84,8 +84,8 @@ std::string first_names(const std::vector<DarkSolid>& solids) {
 }
 
 Decision reach(const EffectFacts& facts, const Request& request) {
-  if (request.kept_sides || request.sides != Sides::automatic)
-    return {Effect::reach, true, "the sides are chosen already, or by --sides", "unknown"};
+  if (request.mesh.kept_sides || request.mesh.sides != Sides::automatic)
+    return {Effect::reach, true, "the sides are chosen already, or by mesh.sides", "unknown"};
   if (facts.dark_solids.empty())
     return {Effect::reach, true, "no closed solid is without light inside",
             "nothing more than without: there is nothing to leave out"};
@@ -96,8 +96,8 @@ Decision reach(const EffectFacts& facts, const Request& request) {
 }
 
 Decision backs(const EffectFacts& facts, const Request& request) {
-  if (request.kept_sides || request.sides != Sides::automatic)
-    return {Effect::backs, true, "the sides are chosen already, or by --sides", "unknown"};
+  if (request.mesh.kept_sides || request.mesh.sides != Sides::automatic)
+    return {Effect::backs, true, "the sides are chosen already, or by mesh.sides", "unknown"};
   if (facts.turned_away == 0)
     return {Effect::backs, true, "no side is known to look into the dark",
             "nothing more than without: there is nothing to leave out"};
@@ -136,11 +136,12 @@ Decision sky(const EffectFacts& facts) {
 Decision closure(const Request& request, bool interreflects) {
   Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
                     "a few products with the matrix"};
-  if (!keeps_entries(request.storage)) return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
+  if (!keeps_entries(request.assembly.storage))
+    return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
   if (!interreflects)
     decision = {Effect::closure, false, "no light is reflected twice: no error of row sums adds up", "the matrix"};
   Request asked = request;
-  if (!request.close) asked.skip.push_back(Effect::closure);
+  if (!request.assembly.close) asked.effects.skip.push_back(Effect::closure);
   return overruled(std::move(decision), asked);
 }
 
@@ -199,14 +200,14 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
 
 std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request) {
   std::vector<std::string> notes;
-  const auto add = [&](const char* option, const std::vector<Effect>& effects) {
+  const auto add = [&](const std::string& field, const std::vector<Effect>& effects) {
     for (const Effect effect : effects) {
       if (!is_there(effect, facts))
-        notes.push_back(std::string(option) + " " + name_of(effect) + " changes nothing: the scene has nothing of it");
+        notes.push_back(field + "=" + name_of(effect) + " changes nothing: the scene has nothing of it");
     }
   };
-  add("--force", request.force);
-  add("--skip", request.skip);
+  add("effects.force", request.effects.force);
+  add("effects.skip", request.effects.skip);
   return notes;
 }
 

@@ -12,8 +12,8 @@ namespace patchlight {
 
 /// Which effects are simulated, given what the scene is like and what is asked for: one decision for each of
 /// simulated_effects(), and one for each effect that is not simulated and that the scene has. Pure.
-/// Request::force and Request::skip overrule the facts, as long as there is something to simulate: a sun that is not
-/// there cannot be forced.
+/// EffectOptions::force and EffectOptions::skip overrule the facts, as long as there is something to simulate: a sun
+/// that is not there cannot be forced.
 std::vector<Decision> decide(const EffectFacts& facts, const Request& request);
 
 /// A note on every effect that is to be forced or skipped and of which the scene has nothing.

@@ -27,76 +27,19 @@ constexpr double bytes_of_program = 50e6;
 // Share of the machine's memory that may be taken when nothing is said.
 constexpr double usable_share = 0.8;
 
-// What memory follows from beside the number of patches.
-struct Holding {
-  const Request& request;
-  Storage storage;
-};
-
-Holding holding(const Request& request) { return {request, request.storage}; }
-Holding holding(const Request& request, const Plan& plan) { return {request, plan.storage}; }
-
-double bytes_of_a_pair(const Holding& holding) {
-  if (!keeps_entries(holding.storage)) return 0;
-  if (refines(holding.request)) return bytes_per_pair + bytes_while_refining;
-  if (holding.request.error_bars) return 2 * bytes_per_pair + bytes_per_error + bytes_of_parents;
-  return bytes_per_pair + (holding.request.standard_errors ? bytes_per_error : 0);
+double bytes_of_a_pair(const AssemblyOptions& assembly, const AccuracyOptions& accuracy) {
+  if (!keeps_entries(assembly.storage)) return 0;
+  if (refines(accuracy)) return bytes_per_pair + bytes_while_refining;
+  if (accuracy.error_bars) return 2 * bytes_per_pair + bytes_per_error + bytes_of_parents;
+  return bytes_per_pair + (assembly.keep_errors ? bytes_per_error : 0);
 }
 
-double bytes_of_a_patch(const Holding& holding) {
-  return bytes_per_patch + (keeps_entries(holding.storage) ? 0 : bytes_of_coarse_transport);
+double bytes_of_a_patch(const AssemblyOptions& assembly) {
+  return bytes_per_patch + (keeps_entries(assembly.storage) ? 0 : bytes_of_coarse_transport);
 }
 
 double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-// The number of patches at first.
-std::size_t patches_asked(const Request& request) {
-  return request.patches.value_or(refines(request) ? first_patches : default_patches);
-}
-
-// The number of patches for which memory_needed() is this.
-double patches_in(double bytes, const Holding& holding) {
-  const double left = std::max(0.0, bytes - bytes_of_program);
-  const double of_a_pair = bytes_of_a_pair(holding);
-  if (of_a_pair == 0) return std::max(1.0, left / bytes_of_a_patch(holding));
-  const double half = bytes_of_a_patch(holding) / (2 * of_a_pair);
-  return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
-}
-
-double memory_needed(std::size_t patches, const Holding& holding) {
-  const auto n = static_cast<double>(patches);
-  return bytes_of_a_pair(holding) * n * n + bytes_of_a_patch(holding) * n + bytes_of_program;
-}
-
-void require_memory(std::size_t patches, const Holding& holding) {
-  const Request& request = holding.request;
-  const double needed = memory_needed(patches, holding);
-  const double usable = usable_memory(request);
-  if (needed <= usable) return;
-  const auto fitting = static_cast<long>(patches_in(usable, holding));
-  // Small faces take a patch each, however few are asked for.
-  const bool too_many_faces = !request.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
-  const std::string hint =
-      usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
-      : too_many_faces
-          ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
-          : "ask for at most " + std::to_string(fitting) + " patches with --patches";
-  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
-                    (keeps_entries(holding.storage) ? ", most of it for their form factors, and " : ", and ") +
-                    gigabytes(usable) + (request.memory ? " may be taken (--memory); " : " may be taken here; ") +
-                    hint);
-}
-
-// By the number of patches that is asked for, or the least number that an edge allows.
-void require_memory(const Scene& scene, const Holding& holding) {
-  const Request& request = holding.request;
-  if (!request.max_edge) return require_memory(patches_asked(request), holding);
-  const double largest = *request.max_edge * *request.max_edge;
-  const double least = kept_area(scene, sides_for(scene, request)) / largest;
-  // Too many to count are as good as the largest number.
-  require_memory(static_cast<std::size_t>(std::min(least, 1e18)), holding);
 }
 
 }  // namespace
@@ -107,28 +50,48 @@ std::string gigabytes(double bytes) {
   return text.str();
 }
 
-double usable_memory(const Request& request) {
-  return request.memory ? *request.memory : usable_share * installed_bytes();
+double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy) {
+  const auto n = static_cast<double>(patches);
+  return bytes_of_a_pair(assembly, accuracy) * n * n + bytes_of_a_patch(assembly) * n + bytes_of_program;
 }
 
-double patches_that_fit(const Request& request) { return patches_in(usable_memory(request), holding(request)); }
+double usable_memory(const Resources& resources) { return resources.memory.value_or(usable_share * installed_bytes()); }
 
-double memory_needed(std::size_t patches, const Request& request) { return memory_needed(patches, holding(request)); }
-
-double memory_needed(std::size_t patches, const Request& request, const Plan& plan) {
-  return memory_needed(patches, holding(request, plan));
+// The number of patches for which memory_needed() is usable.
+double patches_that_fit(const Plan& plan) {
+  const double left = std::max(0.0, usable_memory(plan.resources) - bytes_of_program);
+  const double of_a_patch = bytes_of_a_patch(plan.assembly);
+  const double of_a_pair = bytes_of_a_pair(plan.assembly, plan.accuracy);
+  if (of_a_pair == 0) return std::max(1.0, left / of_a_patch);
+  const double half = of_a_patch / (2 * of_a_pair);
+  return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
 }
-
-void require_memory(std::size_t patches, const Request& request) { require_memory(patches, holding(request)); }
 
 void require_memory(std::size_t patches, const Request& request, const Plan& plan) {
-  require_memory(patches, holding(request, plan));
+  const double needed = memory_needed(patches, plan.assembly, plan.accuracy);
+  const double usable = usable_memory(plan.resources);
+  if (needed <= usable) return;
+  const auto fitting = static_cast<long>(patches_that_fit(plan));
+  // Small faces take a patch each, however few are asked for.
+  const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
+  const std::string hint =
+      usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
+      : too_many_faces
+          ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
+          : "ask for at most " + std::to_string(fitting) + " patches with mesh.patches";
+  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
+                    (keeps_entries(plan.assembly.storage) ? ", most of it for their form factors, and " : ", and ") +
+                    gigabytes(usable) +
+                    (plan.resources.memory ? " may be taken (resources.memory); " : " may be taken here; ") + hint);
 }
 
-void require_memory(const Scene& scene, const Request& request) { require_memory(scene, holding(request)); }
-
+// By the number of patches that is asked for, or the least number that an edge allows.
 void require_memory(const Scene& scene, const Request& request, const Plan& plan) {
-  require_memory(scene, holding(request, plan));
+  if (!request.mesh.max_edge) return require_memory(patches_asked(request), request, plan);
+  const double largest = *request.mesh.max_edge * *request.mesh.max_edge;
+  const double least = kept_area(scene, plan.sides) / largest;
+  // Too many to count are as good as the largest number.
+  require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request, plan);
 }
 
 }  // namespace patchlight

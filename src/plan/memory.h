@@ -8,29 +8,24 @@
 
 namespace patchlight {
 
-/// Bytes that solving takes at its peak, all in all: rather a little too many than too few. By the request: whether
+/// Bytes that solving takes at its peak, all in all: rather a little too many than too few. It follows from whether
 /// form factors are kept, and their standard errors, too.
-double memory_needed(std::size_t patches, const Request& request);
-
-/// The same with the storage that the plan has chosen.
-double memory_needed(std::size_t patches, const Request& request, const Plan& plan);
+double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy);
 
 /// Bytes that the run may take.
-double usable_memory(const Request& request);
+double usable_memory(const Resources& resources);
 
 /// The largest number of patches for which memory_needed() is usable.
-double patches_that_fit(const Request& request);
+double patches_that_fit(const Plan& plan);
 
 /// A number of bytes as messages have it: "1.25 GB".
 std::string gigabytes(double bytes);
 
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.
-void require_memory(const Scene& scene, const Request& request);
 void require_memory(const Scene& scene, const Request& request, const Plan& plan);
 
 /// \throws MemoryError when solving for so many patches would take more memory than it may.
-void require_memory(std::size_t patches, const Request& request);
 void require_memory(std::size_t patches, const Request& request, const Plan& plan);
 
 }  // namespace patchlight

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -25,10 +26,10 @@ void require_lamp(const Scene& scene) {
 }
 
 // A run without any light is not meant.
-void require_light(const Scene& scene, const EffectFacts& facts, const Plan& plan) {
+void require_light(const Scene& scene, const EffectFacts& facts, const std::vector<Decision>& decisions) {
   if (facts.lamps > 0) return;
   std::string skipped;
-  for (const Decision& decision : plan.decisions) {
+  for (const Decision& decision : decisions) {
     const bool is_light =
         decision.effect == Effect::luminaires || decision.effect == Effect::sun || decision.effect == Effect::sky;
     if (is_light && decision.simulate) return;
@@ -38,10 +39,9 @@ void require_light(const Scene& scene, const EffectFacts& facts, const Plan& pla
   throw InputError(scene.file, "found no light left when these are skipped: " + skipped + "; expected one at least");
 }
 
-// With light that is not reflected again the rows of the lamps are enough, and no matrix is needed.
-bool takes_lamps_alone(const Plan& plan) {
-  return !simulates(plan, Effect::interreflection) && !plan.close && !plan.standard_errors &&
-         plan.estimator == Estimator::automatic;
+bool simulates(const std::vector<Decision>& decisions, Effect effect) {
+  return std::none_of(decisions.begin(), decisions.end(),
+                      [effect](const Decision& decision) { return decision.effect == effect && !decision.simulate; });
 }
 
 // A sun below the horizon gives no light.
@@ -67,87 +67,137 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
          ", for its large ones to be cut as well; a simpler model takes fewer";
 }
 
-}  // namespace
-
-Plan make_plan(const Scene& scene, const Request& request) {
-  require_lamp(scene);
-  Plan plan = plan_form_factors(scene, request);
-  const EffectFacts facts = survey_effects(scene, plan.sides);
-  plan.decisions = decide(facts, request);
-  for (std::string& note : notes_on_overruling(facts, request)) plan.notes.push_back(std::move(note));
-  require_light(scene, facts, plan);
-  plan.close = simulates(plan, Effect::closure);
-  if (takes_lamps_alone(plan)) plan.storage = Storage::on_demand;
-  // By force every pair takes its rays, also those between which nothing is found to stand.
-  if (simulates(plan, Effect::occlusion) && facts.inside_hull == 0) plan.short_cuts.free = false;
-  if (!simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour) plan.lamp_colour = *facts.lamp_colour;
-  plan.solver.every_band = simulates(plan, Effect::colour) && facts.grey && facts.lamp_colour;
-  for (std::string& note : notes_on_sun(scene)) plan.notes.push_back(std::move(note));
-  for (std::string& note : notes_on_luminaires_behind(scene)) plan.notes.push_back(std::move(note));
-  if (request.kept_sides) {
-    for (std::string& note : notes_on_left_out_sides(scene, *request.kept_sides, request.sides))
-      plan.notes.push_back(std::move(note));
-  }
-  return plan;
+std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {
+  std::vector<std::string> all;
+  for (std::vector<std::string>& list : lists)
+    all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+  return all;
 }
 
-bool refines(const Request& request) { return request.accuracy || request.seconds; }
+// How finely the kept sides are cut.
+struct PatchSize {
+  double max_edge = 0;  // metres
+  std::vector<std::string> notes;
+};
 
-KeptSides sides_for(const Scene& scene, const Request& request) {
-  assert(!request.kept_sides || request.kept_sides->front.size() == scene.polygons.size());
-  if (request.kept_sides) return *request.kept_sides;
-  return kept_sides(
-      scene, request.sides,
-      {.unreached = contains(request.force, Effect::reach), .turned_away = contains(request.force, Effect::backs)});
+// The largest edge for the number of patches that is asked for.
+PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides) {
+  const bool nested = has_error_bars(request.accuracy);
+  const std::size_t least = least_patches(scene, sides);
+  const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
+  // A nested mesh is made from parents with edges twice as long.
+  const double edge = max_edge_for(scene, sides, nested ? wanted / 4 : wanted);
+  PatchSize size{nested ? edge / 2 : edge, {}};
+  if (wanted > asked && !nested) size.notes.push_back(note_on_patches(scene, asked, wanted));
+  return size;
+}
+
+PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides) {
+  assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
+  const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
+  PatchSize size =
+      request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, {}} : patch_size_for(asked, scene, request, sides);
+  const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
+  std::vector<std::string> of_size;
+  for (Problem& problem : problems_with_size(scene)) of_size.push_back(std::move(problem.what));
+  size.notes =
+      joined({std::move(of_size), std::move(size.notes), notes_on_fine_outlines(scene, sides, asked, outline_edge)});
+  return size;
+}
+
+// Error bars follow from the errors of the entries.
+AssemblyOptions decided(AssemblyOptions assembly, const Request& request, bool close) {
+  assembly.close = close;
+  assembly.keep_errors = assembly.keep_errors || has_error_bars(request.accuracy);
+  return assembly;
+}
+
+// By what is simulated. With light that is not reflected again the rows of the lamps are enough, and no matrix is
+// needed. By force every pair takes its rays, also those between which nothing is found to stand.
+AssemblyOptions decided(const Request& request, const EffectFacts& facts, const std::vector<Decision>& decisions,
+                        const Given& given) {
+  AssemblyOptions assembly = decided(request.assembly, request, simulates(decisions, Effect::closure));
+  const bool lamps_alone = !simulates(decisions, Effect::interreflection) && !assembly.close && !assembly.keep_errors &&
+                           assembly.estimator == Estimator::automatic;
+  if (lamps_alone && !given.form_factors) assembly.storage = Storage::on_demand;
+  if (simulates(decisions, Effect::occlusion) && facts.inside_hull == 0) assembly.short_cuts.free = false;
+  return assembly;
+}
+
+SolverOptions decided(SolverOptions solver) {
+  solver.relative_error = tolerance_of(solver);
+  return solver;
+}
+
+SolverOptions decided(SolverOptions solver, bool every_band) {
+  solver.every_band = solver.every_band || every_band;
+  return decided(std::move(solver));
+}
+
+AccuracyOptions decided(AccuracyOptions accuracy) {
+  accuracy.error_bars = has_error_bars(accuracy);
+  return accuracy;
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const Request& request, const Given& given) {
+  require_lamp(scene);
+  KeptSides sides = sides_for(scene, request);
+  PatchSize size = patch_size(scene, request, sides);
+  const EffectFacts facts = survey_effects(scene, sides);
+  std::vector<Decision> decisions = decide(facts, request);
+  require_light(scene, facts, decisions);
+
+  // One band stands for all where nothing changes the colour of light.
+  const bool one_colour = facts.grey && facts.lamp_colour.has_value();
+  const bool in_colour = simulates(decisions, Effect::colour);
+  const auto left_out = [&] { return notes_on_left_out_sides(scene, *request.mesh.kept_sides, request.mesh.sides); };
+  return {.sides = std::move(sides),
+          .max_edge = size.max_edge,
+          .assembly = decided(request, facts, decisions, given),
+          .solver = decided(request.solver, in_colour && one_colour),
+          .accuracy = decided(request.accuracy),
+          .resources = request.resources,
+          .decisions = std::move(decisions),
+          .lamp_colour = !in_colour && one_colour ? *facts.lamp_colour : Spectrum(),
+          .notes = joined({std::move(size.notes), notes_on_overruling(facts, request), notes_on_sun(scene),
+                           notes_on_luminaires_behind(scene),
+                           request.mesh.kept_sides ? left_out() : std::vector<std::string>()})};
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
-  assert(!request.max_edge || *request.max_edge > 0);
-  const bool nested = request.error_bars || refines(request);
-  Plan plan;
-  plan.sides = sides_for(scene, request);
-  for (Problem& problem : problems_with_size(scene)) plan.notes.push_back(std::move(problem.what));
-  std::size_t asked = 0;
-  if (request.max_edge) {
-    plan.max_edge = *request.max_edge;
-  } else {
-    asked = request.patches.value_or(refines(request) ? first_patches : default_patches);
-    const std::size_t least = least_patches(scene, plan.sides);
-    const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
-    if (wanted > asked && !nested) plan.notes.push_back(note_on_patches(scene, asked, wanted));
-    // A nested mesh is made from parents with edges twice as long.
-    const double edge = max_edge_for(scene, plan.sides, nested ? wanted / 4 : wanted);
-    plan.max_edge = nested ? edge / 2 : edge;
-  }
-  const double outline_edge = nested ? 2 * plan.max_edge : plan.max_edge;
-  for (std::string& note : notes_on_fine_outlines(scene, plan.sides, asked, outline_edge))
-    plan.notes.push_back(std::move(note));
-  plan.samples = request.samples;
-  plan.seed = request.seed;
-  plan.estimator = request.estimator;
-  plan.short_cuts = request.short_cuts;
-  plan.error_bars = nested;
-  plan.standard_errors = request.standard_errors || nested;
-  plan.accuracy = request.accuracy;
-  plan.seconds = request.seconds;
-  plan.interest = request.interest;
-  plan.storage = request.storage;
-  plan.close = request.close && keeps_entries(request.storage);
-  plan.solver = {.solver = request.solver,
-                 .relative_error = request.tolerance.value_or(default_tolerance),
-                 .max_iterations = request.max_iterations,
-                 .max_rows = request.max_rows,
-                 .relaxation = request.relaxation};
-  return plan;
+  KeptSides sides = sides_for(scene, request);
+  PatchSize size = patch_size(scene, request, sides);
+  const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
+                     !contains(request.effects.skip, Effect::closure);
+  return {.sides = std::move(sides),
+          .max_edge = size.max_edge,
+          .assembly = decided(request.assembly, request, close),
+          .solver = decided(request.solver),
+          .accuracy = decided(request.accuracy),
+          .resources = request.resources,
+          .decisions = {},
+          .notes = std::move(size.notes)};
 }
 
-bool simulates(const Plan& plan, Effect effect) {
-  return std::none_of(plan.decisions.begin(), plan.decisions.end(),
-                      [effect](const Decision& decision) { return decision.effect == effect && !decision.simulate; });
+bool refines(const AccuracyOptions& accuracy) { return accuracy.relative_error || accuracy.seconds; }
+
+bool has_error_bars(const AccuracyOptions& accuracy) { return accuracy.error_bars || refines(accuracy); }
+
+std::size_t patches_asked(const Request& request) {
+  return request.mesh.patches.value_or(refines(request.accuracy) ? first_patches : default_patches);
 }
 
-AssemblyOptions assembly_options(const Plan& plan) {
-  return {plan.samples, plan.seed, plan.standard_errors, plan.estimator, plan.short_cuts};
+KeptSides sides_for(const Scene& scene, const Request& request) {
+  const std::optional<KeptSides>& kept = request.mesh.kept_sides;
+  assert(!kept || kept->front.size() == scene.polygons.size());
+  if (kept) return *kept;
+  return kept_sides(scene, request.mesh.sides,
+                    {.unreached = contains(request.effects.force, Effect::reach),
+                     .turned_away = contains(request.effects.force, Effect::backs)});
 }
+
+bool simulates(const Plan& plan, Effect effect) { return simulates(plan.decisions, effect); }
 
 }  // namespace patchlight

@@ -106,7 +106,7 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
   const TransportFacts& transport = simulation.transport;
   const Eigen::VectorXd& area = simulation.problem.area;
   FormFactorFacts facts;
-  if (keeps_entries(simulation.plan.storage)) facts.counts = transport.counts;
+  if (keeps_entries(simulation.plan.assembly.storage)) facts.counts = transport.counts;
   const double seconds = seconds_of(simulation.costs, Stage::form_factors);
   if (seconds > 0) facts.rays_per_second = static_cast<double>(transport.counts.shadow_rays) / seconds;
   facts.bare_rays_per_second = transport.bare_rays_per_second;
@@ -153,6 +153,7 @@ Report report_of(const Scene& scene, const Request& request, const Simulation& s
   return {.scene = scene_facts(scene),
           .request = request,
           .plan = simulation.plan,
+          .notes = simulation.notes,
           .patches = simulation.mesh.size(),
           .vertices = simulation.mesh.vertices.size(),
           .area = simulation.problem.area.sum(),
@@ -167,7 +168,7 @@ Report report_of(const Scene& scene, const Request& request, const Simulation& s
 }
 
 bool is_accurate(const Report& report) {
-  const std::optional<double>& asked = report.plan.accuracy;
+  const std::optional<double>& asked = report.plan.accuracy.relative_error;
   return !asked || (!report.accuracy.empty() && report.accuracy.back().total <= *asked);
 }
 

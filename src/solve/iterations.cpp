@@ -88,9 +88,9 @@ void Iterations::tell(const Iterate& iterate) {
   if (!observer_) return;
   // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
   const Iteration& iteration = solution_.history.back();
-  const double wanted = std::log(options_.relative_error);
+  const double wanted = std::log(tolerance_of(options_));
   const double residual = std::isfinite(iteration.relative_residual) ? iteration.relative_residual : 1;
-  const double reached = std::log(std::clamp(residual, options_.relative_error, 1.0));
+  const double reached = std::log(std::clamp(residual, tolerance_of(options_), 1.0));
   const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
   arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
@@ -116,9 +116,9 @@ bool Iterations::start(Field direct_irradiance) {
 }
 
 bool Iterations::is_good(const Iteration& iteration) const {
-  if (options_.reference) return iteration.true_error <= options_.relative_error;
+  if (options_.reference) return iteration.true_error <= tolerance_of(options_);
   const bool bounded = bounds_.contracts() || bounds_.weights;
-  return (bounded ? iteration.error_bound : iteration.relative_residual) <= options_.relative_error;
+  return (bounded ? iteration.error_bound : iteration.relative_residual) <= tolerance_of(options_);
 }
 
 bool Iterations::record(Iterate iterate, int number, Residual residual) {

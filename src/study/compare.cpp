@@ -1,7 +1,10 @@
 #include "study/compare.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/parallel.h"
 #include "base/vectors.h"
+#include "plan/check_request.h"
 #include "solve/spectral_radius.h"
 
 #include <algorithm>
@@ -66,6 +69,7 @@ SolverRun ConvergenceTest::run(const Contestant& contestant, const RowTransport&
   of_run.solver = contestant.solver;
   of_run.relative_error = options.relative_error;
   of_run.max_iterations = keeps_entries(contestant.storage) ? options.max_iterations : 1;
+  of_run.relaxation = options.relaxation;
   of_run.reference = reference;
 
   SolverRun result;
@@ -96,9 +100,10 @@ double assembly_seconds(const Simulation& simulation) {
 SolverRun run_on_demand(const Scene& scene, const Request& request, const Contestant& contestant,
                         const ConvergenceTest& test, const Observer& observer) {
   Request asked = request;
-  asked.storage = contestant.storage;
-  std::erase(asked.force, Effect::closure);
-  asked.solver = contestant.solver;
+  asked.assembly.storage = contestant.storage;
+  asked.assembly.close = true;  // where it can be
+  std::erase(asked.effects.force, Effect::closure);
+  asked.solver.solver = contestant.solver;
   SolverRun run;
   const SolveWith solve_it = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                  const SolverOptions& usual, const Observer& watch) {
@@ -122,11 +127,27 @@ std::vector<Contestant> all_contestants() {
   return all;
 }
 
+void check(const Request& request, const CompareOptions& options) {
+  check(request);
+  const std::vector<Contestant>& all = options.contestants;
+  const auto is_sor = [](const Contestant& contestant) { return contestant.solver == Solver::sor; };
+  if (options.relaxation && std::none_of(all.begin(), all.end(), is_sor))
+    throw InputError("compare.relaxation", "found without sor among compare.contestants; it needs sor");
+  const auto on_demand = [](const Contestant& contestant) { return !keeps_entries(contestant.storage); };
+  const auto rows = std::find_if(all.begin(), all.end(), on_demand);
+  if (rows == all.end() || request.assembly.estimator == Estimator::automatic) return;
+  throw InputError(std::string("assembly.estimator=") + name_of(request.assembly.estimator),
+                   "found with " + name_of(*rows) +
+                       " among compare.contestants; rows on demand are found by the automatic one only. Leave one of "
+                       "them out");
+}
+
 Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
                    const Observer& observer) {
-  const ThreadLimit threads(request.threads);
+  const ThreadLimit threads(request.resources.threads);
+  check(request, options);
   Request with_matrix = request;  // even where no light is reflected
-  with_matrix.force.push_back(Effect::interreflection);
+  with_matrix.effects.force.push_back(Effect::interreflection);
   Comparison comparison;
   // 1. Assemble once; while the matrix is there, find the reference and let the solvers run that use it.
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,

@@ -3,6 +3,7 @@
 #include "patchlight/simulate.h"
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct CompareOptions {
   std::vector<Contestant> contestants = all_contestants();
   double relative_error = 1e-6;  ///< true error that every solver is to reach
   int max_iterations = 10000;    ///< after which a solver gives up; one on demand shoots as often as there are patches
-  bool keep_iterates = true;     ///< fill SolverRun::frames
+  std::optional<double> relaxation = {};  ///< of SOR; without it estimated
+  bool keep_iterates = true;              ///< fill SolverRun::frames
 };
 
 /// An iterate that was kept.
@@ -53,6 +55,10 @@ struct Comparison {
   double spectral_radius = 0;     ///< of K, the worst band: the rate that Jacobi should have
   std::vector<SolverRun> runs;
 };
+
+/// \throws InputError when the request, or what is asked of the solvers, cannot be together; messages name the fields
+/// of the options as "compare.contestants".
+void check(const Request& request, const CompareOptions& options);
 
 /// Assembles a scene once, solves it to ten thousandths of the wanted error with conjugate gradients as the reference,
 /// and lets every solver begin from the lamps until its true error, ||B_ref - B_k||_A / ||B_ref - E||_A in the worst

@@ -13,7 +13,8 @@ double own_error(const std::vector<StudySweep>& sweeps, Swept swept, const Plan&
   for (const StudySweep& sweep : sweeps) {
     if (!sweep.competes || sweep.swept != swept) continue;
     for (const StudySetting& setting : sweep.settings) {
-      if (setting.samples == plan.samples && setting.tolerance == plan.solver.relative_error) return setting.own_error;
+      if (setting.samples == plan.assembly.samples && setting.tolerance == tolerance_of(plan.solver))
+        return setting.own_error;
     }
   }
   return 0;

@@ -4,9 +4,9 @@ namespace patchlight {
 
 Simulation Experiment::run(const SizedMesh& on, const Request& asked, const SolveWith& solve) const {
   Request of_mesh = asked;
-  of_mesh.force.push_back(Effect::interreflection);  // a matrix and a solver, even where no light is reflected
-  of_mesh.patches.reset();
-  of_mesh.max_edge = on.max_edge;
+  of_mesh.effects.force.push_back(Effect::interreflection);  // a matrix and a solver, even where no light is reflected
+  of_mesh.mesh.patches.reset();
+  of_mesh.mesh.max_edge = on.max_edge;
   return simulate(scene, of_mesh, observer, {.solve = solve, .mesh = [&on] { return on.mesh; }});
 }
 
@@ -18,9 +18,9 @@ StudySetting setting_of(const Simulation& simulation) {
   const Plan& plan = simulation.plan;
   StudySetting setting;
   setting.patches = simulation.mesh.size();
-  setting.estimator = plan.estimator;
-  setting.samples = plan.samples;
-  setting.tolerance = plan.solver.relative_error;
+  setting.estimator = plan.assembly.estimator;
+  setting.samples = plan.assembly.samples;
+  setting.tolerance = tolerance_of(plan.solver);
   setting.costs = simulation.costs;
   setting.matrix_bytes = static_cast<double>(ExchangeAreas::bytes(setting.patches));
   return setting;

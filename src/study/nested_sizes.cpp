@@ -62,9 +62,9 @@ double edge_for(const Scene& scene, const Plan& plan, int sizes) {
   return best;
 }
 
-void require_memory_for_reference(std::size_t patches, const Request& request) {
+void require_memory_for_reference(std::size_t patches, const Request& request, const Plan& plan) {
   try {
-    require_memory(patches, request);
+    require_memory(patches, request, plan);
   } catch (const MemoryError& error) {
     throw MemoryError(std::string("the reference of a study has about four times the patches asked for: ") +
                       error.what());
@@ -75,10 +75,10 @@ void require_memory_for_reference(std::size_t patches, const Request& request) {
 
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
   const Plan plan = make_plan(scene, request);
-  const double finest = request.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
+  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
   std::vector<SizedMesh> all = all_sizes(scene, plan.sides, finest / 2, sizes + 1);
   NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
-  require_memory_for_reference(result.finer.mesh.size(), request);
+  require_memory_for_reference(result.finer.mesh.size(), request, plan);
   all.pop_back();
   for (std::size_t k = 0; k < all.size(); ++k) {
     const bool last = k + 1 == all.size();

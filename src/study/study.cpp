@@ -1,6 +1,9 @@
 #include "study/study.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/parallel.h"
+#include "plan/check_request.h"
 #include "plan/memory.h"
 #include "study/error_parts.h"
 #include "study/experiment.h"
@@ -27,7 +30,8 @@ SizedMesh mesh_of_reference(const Experiment& experiment, std::vector<Simulation
   SizedMesh reference = experiment.meshes.finer;
   for (std::size_t k = 0; k < adaptive.size(); ++k) {
     PatchMesh finer = finer_than(reference.mesh, adaptive[k].mesh);
-    if (static_cast<double>(memory_needed(finer.size(), experiment.request)) > usable_memory(experiment.request)) {
+    if (memory_needed(finer.size(), experiment.request.assembly, experiment.request.accuracy) >
+        usable_memory(experiment.request.resources)) {
       adaptive.resize(k);
       break;
     }
@@ -43,8 +47,8 @@ ReferenceSolution reference_solution(const Experiment& experiment, const Simulat
   found.facts.closed_form = found.reference.uniform && finest.transport.lost.closed();
   if (found.facts.closed_form) return found;
   Request asked = experiment.request;
-  asked.samples *= 4;
-  asked.tolerance = std::max(1e-12, 0.01 * asked.tolerance.value_or(default_tolerance));
+  asked.assembly.samples *= 4;
+  asked.solver.relative_error = std::max(1e-12, 0.01 * tolerance_of(asked.solver));
   const Simulation finer = experiment.run(mesh_of_reference(experiment, adaptive), asked);
   found.reference = reference_from(finer);
   const StudySetting setting = setting_of(finer);
@@ -70,14 +74,24 @@ double cpu_seconds_of(const StudySetting& setting) {
   return sum;
 }
 
+void check_for_study(const Request& request) {
+  check(request);
+  const Estimator estimator = request.assembly.estimator;
+  if (estimator == Estimator::automatic) return;
+  throw InputError("assembly.estimator",
+                   std::string("found ") + name_of(estimator) + "; a study compares all of them: leave it out");
+}
+
 Study study(const Scene& scene, const Request& request, const StudyOptions& options, const Observer& observer) {
-  const ThreadLimit threads(request.threads);
+  const ThreadLimit threads(request.resources.threads);
+  check_for_study(request);
   // 1. The finest setting of the sweeps, and what all are judged by.
   const Experiment experiment = experiment_for(scene, request, options.sizes, observer);
   const Tolerances tolerances = solve_to_tolerances(experiment);
   const Simulation& finest = tolerances.runs.back();
   Study result;
   result.plan = finest.plan;
+  result.notes = finest.notes;
   result.trapped = finest.solution.trapped;
   if (!result.trapped.empty()) return result;
   std::vector<Simulation> adaptive;

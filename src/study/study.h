@@ -59,7 +59,8 @@ struct StudyReference {
 
 /// What accuracy costs.
 struct Study {
-  Plan plan;  ///< of the finest setting of the sweeps
+  Plan plan;                       ///< of the finest setting of the sweeps
+  std::vector<std::string> notes;  ///< of its run
   StudyReference reference;
   std::vector<StudySweep> sweeps;
   ErrorParts parts;
@@ -72,6 +73,9 @@ struct StudyOptions {
   bool adaptive = true;    ///< solve to accuracies as well, with patches that are refined where it pays
   bool estimators = true;  ///< compare them, on a small mesh
 };
+
+/// \throws InputError when the request cannot be studied.
+void check_for_study(const Request& request);
 
 /// Solves a scene in many ways, one quantity changed at a time from the setting that `request` asks for: patches from
 /// coarser ones up to its number, with its samples and with four times as many, samples around its number, tolerances

@@ -31,7 +31,7 @@ std::vector<double> tolerances_for(double finest) {
 StudySweep sweep_sizes(const Experiment& experiment, const Reference& reference, StudySetting finest) {
   StudySweep sweep{"patch size at " + std::to_string(finest.samples) + " samples", Swept::patch_size, {}};
   Request asked = experiment.request;
-  asked.samples = finest.samples;
+  asked.assembly.samples = finest.samples;
   const std::vector<SizedMesh>& sizes = experiment.meshes.sizes;
   for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
     sweep.settings.push_back(judged(experiment.run(sizes[k], asked), reference));
@@ -44,15 +44,15 @@ StudySweep sweep_sizes(const Experiment& experiment, const Reference& reference,
 // Half, once, twice and four times the samples asked for.
 StudySweep sweep_samples(const Experiment& experiment, const Reference& reference, const Simulation& finest) {
   Request asked = experiment.request;
-  const int usual = asked.samples;
-  asked.samples = 4 * finer_samples * usual;
+  const int usual = asked.assembly.samples;
+  asked.assembly.samples = 4 * finer_samples * usual;
   const Field own = experiment.run(experiment.finest(), asked).solution.radiosity;
   StudySweep sweep{"samples", Swept::samples, {}};
   for (const int samples : {std::max(1, usual / 2), usual, 2 * usual, 4 * usual}) {
-    asked.samples = samples;
-    const int used = make_plan(experiment.scene, asked).samples;
+    asked.assembly.samples = samples;
+    const int used = make_plan(experiment.scene, asked).assembly.samples;
     if (!sweep.settings.empty() && used == sweep.settings.back().samples) continue;
-    const bool known = used == finest.plan.samples;
+    const bool known = used == finest.plan.assembly.samples;
     sweep.settings.push_back(judged(known ? finest : experiment.run(experiment.finest(), asked), reference, own));
   }
   return sweep;
@@ -77,14 +77,14 @@ Tolerances solve_to_tolerances(const Experiment& experiment) {
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                   const SolverOptions& usual, const Observer& watch) {
     SolverOptions options = usual;
-    for (const double tolerance : tolerances_for(usual.relative_error)) {
+    for (const double tolerance : tolerances_for(tolerance_of(usual))) {
       options.relative_error = tolerance;
       const double wall = wall_seconds();
       const double cpu = cpu_seconds();
       Solution solution = solve(transport, problem, options, watch);
       runs.push_back({tolerance, std::move(solution), {Stage::solve, wall_seconds() - wall, cpu_seconds() - cpu}});
     }
-    options.relative_error = std::max(1e-12, 0.01 * usual.relative_error);
+    options.relative_error = std::max(1e-12, 0.01 * tolerance_of(usual));
     result.exact = solve(transport, problem, options, watch).radiosity;
     return runs.back().solution;
   };
@@ -112,17 +112,18 @@ std::vector<StudySweep> competing_sweeps(const Experiment& experiment, const Ref
 std::vector<Simulation> solve_to_accuracies(const Experiment& experiment) {
   std::vector<Simulation> solved;
   Request asked = experiment.request;
-  asked.patches.reset();
-  asked.max_edge = experiment.meshes.coarsest_edge / 2;
-  asked.error_bars = true;
+  asked.mesh.patches.reset();
+  asked.mesh.max_edge = experiment.meshes.coarsest_edge / 2;
+  asked.accuracy.error_bars = true;
   const std::size_t most = experiment.finest().mesh.size();
   for (const double accuracy : {0.1, 0.03, 0.01, 0.003}) {
-    asked.accuracy = accuracy;
-    asked.memory = std::min(usable_memory(experiment.request), memory_needed(most, asked));
+    asked.accuracy.relative_error = accuracy;
+    asked.resources.memory =
+        std::min(usable_memory(experiment.request.resources), memory_needed(most, asked.assembly, asked.accuracy));
     try {
       Simulation simulation = simulate(experiment.scene, asked, experiment.observer);
       const bool new_one = solved.empty() || simulation.mesh.size() != solved.back().mesh.size() ||
-                           simulation.plan.samples != solved.back().plan.samples;
+                           simulation.plan.assembly.samples != solved.back().plan.assembly.samples;
       if (new_one) solved.push_back(std::move(simulation));
     } catch (const MemoryError&) {
       break;  // the reference of more than that would be too large
@@ -141,16 +142,16 @@ std::vector<StudySweep> estimator_sweeps(const Experiment& experiment, const Ref
   const std::vector<SizedMesh>& sizes = experiment.meshes.sizes;
   const SizedMesh& mesh = sizes[sizes.size() - 1 - std::min(coarser_sizes, sizes.size() - 1)];
   Request asked = experiment.request;
-  const int usual = asked.samples;
-  asked.samples = finer_samples * 16 * usual;
+  const int usual = asked.assembly.samples;
+  asked.assembly.samples = finer_samples * 16 * usual;
   const Field own = experiment.run(mesh, asked).solution.radiosity;
   std::vector<StudySweep> sweeps;
   for (const Estimator estimator :
        {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
     StudySweep sweep{std::string("estimator ") + name_of(estimator), Swept::samples, {}, false};
-    asked.estimator = estimator;
+    asked.assembly.estimator = estimator;
     for (const int factor : {1, 4, 16}) {
-      asked.samples = factor * usual * (estimator == Estimator::hemisphere ? hemisphere_factor : 1);
+      asked.assembly.samples = factor * usual * (estimator == Estimator::hemisphere ? hemisphere_factor : 1);
       sweep.settings.push_back(judged(experiment.run(mesh, asked), reference, own));
     }
     sweeps.push_back(std::move(sweep));

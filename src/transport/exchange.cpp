@@ -19,8 +19,8 @@ constexpr PatchIndex most_weighed = 4096;
 }  // namespace
 
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                        int lost_share_rays, const Observer& observer) {
-  LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
+                        const Observer& observer) {
+  LostShare lost = measure_lost_share(mesh, occluder, options.lost_share_rays, options.seed, observer);
   AssemblyOptions keeping = options;
   const bool weighs = weighs_by_errors(lost, mesh.size()) && options.estimator == Estimator::automatic;
   keeping.keep_errors = options.keep_errors || weighs;
@@ -35,8 +35,8 @@ Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost) {
 }
 
 Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                            int lost_share_rays, const Observer& observer) {
-  LostShare lost = measure_lost_share(mesh, occluder, lost_share_rays, options.seed, observer);
+                            const Observer& observer) {
+  LostShare lost = measure_lost_share(mesh, occluder, options.lost_share_rays, options.seed, observer);
   const Eigen::VectorXd area = exposed_area(mesh, lost, Eigen::VectorXd::Zero(mesh.size()));
   return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, {}, "none: rows on demand"};
 }

@@ -21,10 +21,10 @@ struct Solved {
 
 Solved solved(const Scene& scene, double max_edge, const Observer& observer) {
   Request request;
-  request.max_edge = max_edge;
-  request.sides = Sides::front;
-  request.tolerance = 1e-9;
-  request.force = {Effect::closure};  // error bars take the row sums, also where nothing is reflected
+  request.mesh.max_edge = max_edge;
+  request.mesh.sides = Sides::front;
+  request.solver.relative_error = 1e-9;
+  request.effects.force = {Effect::closure};  // error bars take the row sums, also where nothing is reflected
   Solved result{repair(scene), {}};
   check(result.scene);
   result.simulation = simulate(result.scene, request, observer);

@@ -59,7 +59,7 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = free_sensors(places);
-  const std::uint64_t seed = simulation.plan.seed;
+  const std::uint64_t seed = simulation.plan.assembly.seed;
   const Tracing& tracing = *simulation.tracing;
   GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, tracing.all_faces(whole), sensors,
                                                   {.seed = seed, .errors = radiosity_errors(simulation)}, observer);

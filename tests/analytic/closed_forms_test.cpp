@@ -76,8 +76,8 @@ TEST(FormFactors, ClosureOfAnOpenSceneKeepsExactOnes) {
     for (const double size : {1.0, 1e-3}) {
       const Eigen::AngleAxisd turn(size == 1 ? 0.0 : 0.7, Vector(1, 2, 3).normalized());
       Request request;
-      request.max_edge = 2 * size;
-      request.sides = Sides::front;
+      request.mesh.max_edge = 2 * size;
+      request.mesh.sides = Sides::front;
       const Scene placed = moved(scene, Eigen::Affine3d(turn) * Eigen::Scaling(size));
       const Exchange exchange = find_form_factors(placed, request).exchange;
       EXPECT_EQ(exchange.closure, "least squares, open scene");
@@ -99,9 +99,9 @@ TEST_P(Furnace, RadiosityIsOneEverywhere) {
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
   scene = with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false);
   Request request;
-  request.max_edge = 0.5;
-  request.sides = Sides::front;
-  request.tolerance = 1e-7;
+  request.mesh.max_edge = 0.5;
+  request.mesh.sides = Sides::front;
+  request.solver.relative_error = 1e-7;
   const Simulation simulation = simulate(scene, request);
   ASSERT_TRUE(simulation.solution.converged);
   EXPECT_EQ(simulation.transport.closure, "least squares");
@@ -118,8 +118,8 @@ TEST(Simulate, IrradianceBelowASmallLampFollowsTheClosedForm) {
   scene = with_quad(std::move(scene), {Point(-1, -1, 0), Point(1, -1, 0), Point(1, 1, 0), Point(-1, 1, 0)});
   scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);
   Request request;
-  request.max_edge = 2.0 / 41;
-  request.sides = Sides::front;
+  request.mesh.max_edge = 2.0 / 41;
+  request.mesh.sides = Sides::front;
   const Simulation simulation = simulate(scene, request);
   const double root = std::sqrt(1 + 0.04);
   const double form_factor = 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);

@@ -96,8 +96,8 @@ TEST(Cie171, Case56LightReflectedByAnEvenlyLitFloor) {
   Scene scene = with_quad(empty_scene({grey(0.3)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene.sun = Sun{Vector::UnitZ(), watts(50000)};
   Request request;
-  request.max_edge = 1;
-  request.sides = Sides::front;
+  request.mesh.max_edge = 1;
+  request.mesh.sides = Sides::front;
   const Simulation simulation = simulate(scene, request);
   struct Case {
     double y, z, percent;
@@ -134,8 +134,8 @@ TEST_P(Case58, IndirectLightInAClosedCube) {
   Scene scene = with_box(empty_scene({grey(rho)}), Point(-2, -2, -2), Point(2, 2, 2), true);
   scene.luminaires = {isotropic(Point::Zero(), 10000)};
   Request request;
-  request.patches = 600;
-  request.tolerance = 1e-8;
+  request.mesh.patches = 600;
+  request.solver.relative_error = 1e-8;
   const Simulation simulation = simulate(scene, request);
   const Field indirect = simulation.solution.irradiance - simulation.solution.direct_irradiance;
   const double mean = (indirect.col(0) * simulation.problem.area.array()).sum() / simulation.problem.area.sum();
@@ -167,7 +167,7 @@ TEST(Simulate, FluxOfALuminaireInAClosedRoomIsAbsorbed) {
   Scene scene = furnished_room(0.5, 0);
   scene.luminaires = {isotropic(Point(3.2, 2.2, 1.9), 1000)};
   Request request;
-  request.patches = 1500;
+  request.mesh.patches = 1500;
   const Simulation simulation = simulate(scene, request);
   const EnergyBalance& balance = simulation.balance;
   EXPECT_EQ(balance.emitted[0], 0);

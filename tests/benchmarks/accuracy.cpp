@@ -37,12 +37,12 @@ struct Setting {
 Simulation finest(const Scene& scene, std::size_t patches) {
   const double most = 3 * static_cast<double>(patches);
   Request request;
-  request.sides = Sides::front;
-  request.samples = 32;
-  request.seed = 77;
-  request.patches = patches;
-  request.seconds = 1e9;
-  request.memory = 8 * most * most;
+  request.mesh.sides = Sides::front;
+  request.assembly.samples = 32;
+  request.assembly.seed = 77;
+  request.mesh.patches = patches;
+  request.accuracy.seconds = 1e9;
+  request.resources.memory = 8 * most * most;
   return simulate(scene, request);
 }
 
@@ -52,9 +52,9 @@ std::vector<Setting> sweep(const Scene& scene, const FinerReference& reference) 
     for (const int samples : sample_numbers) {
       const double begin = cpu_seconds();
       Request request;
-      request.patches = patches;
-      request.sides = Sides::front;
-      request.samples = samples;
+      request.mesh.patches = patches;
+      request.mesh.sides = Sides::front;
+      request.assembly.samples = samples;
       const Simulation simulation = simulate(scene, request);
       const double cost = cpu_seconds() - begin;
       settings.push_back({simulation.mesh.size(), samples, error_against(reference, simulation).relative, cost});
@@ -75,8 +75,8 @@ void print(const std::string& name, double asked, const FinerReference& referenc
            const Scene& scene) {
   const double begin = cpu_seconds();
   Request request;
-  request.sides = Sides::front;
-  request.accuracy = asked;
+  request.mesh.sides = Sides::front;
+  request.accuracy.relative_error = asked;
   try {
     const Simulation simulation = simulate(scene, request);
     const double cost = cpu_seconds() - begin;

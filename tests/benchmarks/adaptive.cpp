@@ -19,15 +19,15 @@ using namespace patchlight::test;
 
 Request asked(double percentage) {
   Request request;
-  request.sides = Sides::front;
-  request.accuracy = percentage / 100;
+  request.mesh.sides = Sides::front;
+  request.accuracy.relative_error = percentage / 100;
   return request;
 }
 
 Simulation finest(const Scene& scene, double percentage) {
   Request request = asked(percentage);
-  request.samples = 32;
-  request.seed = 77;
+  request.assembly.samples = 32;
+  request.assembly.seed = 77;
   return simulate(scene, request);
 }
 
@@ -52,8 +52,8 @@ void adaptive(const Scene& scene, const FinerReference& reference, double percen
 void uniform(const Scene& scene, const FinerReference& reference, std::size_t patches) {
   const double begin = cpu_seconds();
   Request request;
-  request.sides = Sides::front;
-  request.patches = patches;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
   const Simulation simulation = simulate(scene, request);
   print("uniform", simulation, reference, cpu_seconds() - begin);
 }

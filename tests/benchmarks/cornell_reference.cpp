@@ -97,8 +97,8 @@ int main(int argc, char** argv) {
   for (int k = 2; k < argc; ++k) {
     const double begin = cpu_seconds();
     Request request;
-    request.patches = std::strtoul(argv[k], nullptr, 10);
-    request.sides = Sides::front;
+    request.mesh.patches = std::strtoul(argv[k], nullptr, 10);
+    request.mesh.sides = Sides::front;
     const Simulation simulation = simulate(scene, request);
     const double solved = cpu_seconds();
     const Field gathered =

@@ -57,18 +57,18 @@ Cost cost_of(const Scene& scene, const Request& request) {
   const double planning = cpu_seconds();
   survey_effects(scene, simulation.plan.sides);
   cost.planning = cpu_seconds() - planning;
-  const ExpectedCost expected = expected_cost(scene, simulation.plan, request, simulation.mesh);
+  const ExpectedCost expected = expected_cost(scene, simulation.plan, simulation.mesh);
   cost.expected = expected.form_factor_seconds + expected.direct_light_seconds + expected.solve_seconds;
   return cost;
 }
 
 void print_row(const Case& test, std::size_t patches) {
   Request request;
-  request.sides = test.sides;
-  request.close = test.close;
-  request.max_edge = max_edge_for(test.built, kept_sides(test.built, test.sides), patches);
+  request.mesh.sides = test.sides;
+  request.assembly.close = test.close;
+  request.mesh.max_edge = max_edge_for(test.built, kept_sides(test.built, test.sides), patches);
   const Cost planned = cost_of(test.built, request);
-  request.force = {test.effect};
+  request.effects.force = {test.effect};
   const Cost forced = cost_of(test.built, request);
   std::printf("| %s | %s | %zu | %.2f (%.2f) | %zu | %.2f (%.2f) | %.1f | %.2f %% |\n", name_of(test.effect),
               test.scene.c_str(), forced.patches, forced.cpu, forced.expected, planned.patches, planned.cpu,

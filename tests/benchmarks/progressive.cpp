@@ -40,7 +40,7 @@ struct Room {
 Room room_of(const std::filesystem::path& file, std::size_t patches) {
   Room room{file.stem().string(), read_scene(file), {}, {}, {}};
   Request request;
-  request.patches = patches;
+  request.mesh.patches = patches;
   room.plan = make_plan(room.scene, request);
   room.mesh = tessellate(room.scene, room.plan.sides, room.plan.max_edge);
   room.coverings = find_coverings(room.scene, room.plan.sides);
@@ -59,7 +59,7 @@ struct Reference {
 Reference reference_of(const Room& room, const Occluder& occluder) {
   Reference reference;
   double begin = cpu_seconds();
-  Exchange exchange = trace_exchange(room.mesh, occluder, assembly_options(room.plan), room.plan.lost_share_rays);
+  Exchange exchange = trace_exchange(room.mesh, occluder, room.plan.assembly);
   reference.assembly = cpu_seconds() - begin;
   const Eigen::VectorXd area = exchange.area;
   reference.problem = problem_of(room.scene, room.mesh, area, room.plan.sides.emit_from_back);
@@ -99,9 +99,8 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
   std::vector<Shown> all;
   double measuring = 0;
   const double begin = cpu_seconds();
-  const Exchange exchange =
-      exchange_on_demand(room.mesh, occluder, assembly_options(room.plan), room.plan.lost_share_rays);
-  const auto transport = on_demand_transport(room.mesh, occluder, assembly_options(room.plan), exchange.area);
+  const Exchange exchange = exchange_on_demand(room.mesh, occluder, room.plan.assembly);
+  const auto transport = on_demand_transport(room.mesh, occluder, room.plan.assembly, exchange.area);
   SolverOptions options{.solver = solver, .relative_error = 1e-9, .max_iterations = 1};
   options.largest_row_sum = std::numeric_limits<double>::infinity();
   solve(*transport, problem, options, [&](const Progress& progress) {

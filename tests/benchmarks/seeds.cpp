@@ -19,10 +19,10 @@ using namespace patchlight;
 
 Simulation solved(const Scene& scene, std::size_t patches, std::uint64_t seed) {
   Request request;
-  request.sides = Sides::front;
-  request.patches = patches;
-  request.error_bars = true;
-  request.seed = seed;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
+  request.accuracy.error_bars = true;
+  request.assembly.seed = seed;
   return simulate(scene, request);
 }
 

@@ -88,8 +88,8 @@ struct Count {
 Count judged(const char* model, double accuracy, std::uint32_t paths) {
   const Scene scene = repair(read_scene(model));
   Request request;
-  request.sides = Sides::front;
-  request.accuracy = accuracy;
+  request.mesh.sides = Sides::front;
+  request.accuracy.relative_error = accuracy;
   const Simulation simulation = simulate(scene, request);
   const std::vector<Sensor> sensors = sensors_in(scene, simulation.plan.sides);
   const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, simulation.plan.sides));

@@ -157,7 +157,7 @@ class AccuracyTest(ToolTest):
                 self.assertIn(asked[0], done.stderr)
                 self.assertIn(other[-2] if other[-1] == "5%" else other[0], done.stderr)
                 self.assertIn("exclude each other", done.stderr)
-        self.assertIn("--interest needs", self.solve("-o", "a.vtp", "--interest", "white", code=USAGE).stderr)
+        self.assertIn("--interest: found without an error", self.solve("-o", "a.vtp", "--interest", "white", code=USAGE).stderr)
         done = self.run_tool("relight", "room.ff", "-o", "a.vtp", "--accuracy", "1%")
         self.assertEqual((done.returncode, "unknown option --accuracy" in done.stderr), (USAGE, True), done.stderr)
         self.assertEqual(self.names(), set())

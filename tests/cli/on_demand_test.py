@@ -97,7 +97,7 @@ class OnDemandTest(ToolTest):
             self.assertIn(f"--max-rows: found '{text}'; expected a share above 0 such as 5%", done.stderr)
         done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--max-rows", "5%")
         self.assertEqual(done.returncode, USAGE)
-        self.assertIn("--max-rows needs --solver progressive or overshooting", done.stderr)
+        self.assertIn("--max-rows: found with --solver cg; it needs --solver progressive or overshooting", done.stderr)
 
     def test_needs_no_memory_for_pairs(self):
         """4,000 patches: 32 MB for the pairs, 50 MB for the program."""

@@ -17,18 +17,18 @@ Scene varied_room(const std::string& name) { return read_scene(PATCHLIGHT_VARIED
 
 Request asked(double accuracy) {
   Request request;
-  request.sides = Sides::front;
-  request.accuracy = accuracy;
+  request.mesh.sides = Sides::front;
+  request.accuracy.relative_error = accuracy;
   return request;
 }
 
 // Uniform patches, many more and with more samples than what is tested, from other random numbers.
 FinerReference finer_reference(const Scene& scene) {
   Request request;
-  request.sides = Sides::front;
-  request.patches = 5000;
-  request.samples = 64;
-  request.seed = 77;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = 5000;
+  request.assembly.samples = 64;
+  request.assembly.seed = 77;
   return reference_of(simulate(scene, request));
 }
 
@@ -67,13 +67,13 @@ TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
   const auto lamps = [](const Simulation& s) { return (s.problem.exitance > 0).rowwise().any().count(); };
   const auto noisy = [](double accuracy) {
     Request request = asked(accuracy);
-    request.samples = 2;
+    request.assembly.samples = 2;
     return request;
   };
   const Simulation coarse = simulate(scene, noisy(0.06));
   const Simulation fine = simulate(scene, noisy(0.005));
   EXPECT_GE(2 * lamps(fine), 5 * lamps(coarse));
-  EXPECT_EQ(fine.plan.samples, coarse.plan.samples);
+  EXPECT_EQ(fine.plan.assembly.samples, coarse.plan.assembly.samples);
   // By how much depends on the patches that it begins with: to 0.57 to 0.81 for longest edges of 0.4 to 0.6 m.
   EXPECT_LT(fine.accuracy.back().form_factor, coarse.accuracy.back().form_factor);
 }
@@ -99,7 +99,7 @@ TEST(AskedAccuracyOf, NeedsNoSmallPatchesAlongTheEdgeOfTheSun) {
 TEST(AskedAccuracyOf, TakesFewerPatchesForWhatIsOfInterest) {
   const Scene scene = varied_room("blocks");
   Request request = asked(0.015);
-  request.interest = {"floor"};
+  request.accuracy.interest = {"floor"};
   const Simulation simulation = simulate(scene, request);
   Request of_all = asked(0.015);
   EXPECT_LT(simulation.mesh.size(), simulate(scene, of_all).mesh.size());

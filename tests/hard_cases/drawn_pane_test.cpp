@@ -68,8 +68,8 @@ double floor_irradiance(Scene scene, Sides sides, const Eigen::Affine3d& placing
   scene = repair(moved(std::move(scene), placing));
   scene.up = (placing.linear() * Vector::UnitZ()).normalized();
   Request request;
-  request.max_edge = 0.4 * metres_per_unit;
-  request.sides = sides;
+  request.mesh.max_edge = 0.4 * metres_per_unit;
+  request.mesh.sides = sides;
   const Simulation simulation = simulate(scene, request);
   double flux = 0;
   double area = 0;

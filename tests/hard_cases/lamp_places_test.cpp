@@ -25,7 +25,7 @@ double direct_flux(const Simulation& simulation) {
 
 Request in_patches(std::size_t patches) {
   Request request;
-  request.patches = patches;
+  request.mesh.patches = patches;
   return request;
 }
 
@@ -101,11 +101,11 @@ TEST(LampAcrossSolids, ALuminousCeilingLightsEveryRoom) {
   const Quad whole{Point(0.2, 0.2, 2.3), Point(0.2, 8.6, 2.3), Point(8.6, 8.6, 2.3), Point(8.6, 0.2, 2.3)};
   const Quad piece{Point(3, 3, 2.3), Point(3, 5.8, 2.3), Point(5.8, 5.8, 2.3), Point(5.8, 3, 2.3)};
   Request request;
-  request.max_edge = 0.8;
+  request.mesh.max_edge = 0.8;
   const double expected = floor_irradiance(simulate(with_quad(nine_rooms(), piece, 1), request), 4);
   for (const double metres : {1.0, 1000.0}) {
     const Eigen::Affine3d placing = turned_a_little * Eigen::Scaling(metres);
-    request.max_edge = 0.8 * metres;
+    request.mesh.max_edge = 0.8 * metres;
     const Simulation found = simulate(moved(with_quad(nine_rooms(), whole, 1), placing), request);
     EXPECT_NEAR(floor_irradiance(found, 4) / expected, 1, 0.05) << metres;
     for (const PolygonIndex room : {1U, 3U, 5U, 7U}) {

@@ -65,8 +65,8 @@ Flux flux_beside_the_wall(const Simulation& simulation, const Eigen::Affine3d& m
 
 Request both_sides() {
   Request request;
-  request.max_edge = 0.2501;
-  request.sides = Sides::both;
+  request.mesh.max_edge = 0.2501;
+  request.mesh.sides = Sides::both;
   return request;
 }
 

@@ -21,7 +21,7 @@ using namespace test;
 
 Request coarse(double scale = 1) {
   Request request;
-  request.max_edge = 0.5001 * scale;
+  request.mesh.max_edge = 0.5001 * scale;
   return request;
 }
 
@@ -138,7 +138,7 @@ TEST(TurnedFaces, OfOpenShellsTakePartWithBothSides) {
     EXPECT_EQ(scene.problems[0].kind, is_band ? ProblemKind::turned_faces : ProblemKind::non_manifold_edges);
     for (const Sides sides : {Sides::automatic, Sides::both}) {
       Request request = coarse();
-      request.sides = sides;
+      request.mesh.sides = sides;
       const Simulation simulation = simulate(scene, request);
       ASSERT_TRUE(simulation.solution.converged);
       EXPECT_LT(simulation.balance.imbalance, 1e-5);

@@ -20,8 +20,8 @@ Quad rectangle(double x0, double y0, double x1, double y1) {
 // Mean irradiance of walls and ceiling, polygons 1 to 5.
 double mean_of_walls(const Scene& scene) {
   Request request;
-  request.max_edge = 0.2;
-  request.sides = Sides::front;
+  request.mesh.max_edge = 0.2;
+  request.mesh.sides = Sides::front;
   const Simulation simulation = simulate(scene, request);
   double flux = 0;
   double area = 0;
@@ -64,7 +64,7 @@ TEST(Overlapping, NothingIsSeenTwice) {
   const KeptSides kept = kept_sides(scene, Sides::front);
   const PatchMesh mesh = tessellate(scene, kept, 0.1);
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, kept));
-  const Exchange exchange = trace_exchange(mesh, occluder, {}, 256);
+  const Exchange exchange = trace_exchange(mesh, occluder, {});
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (exchange.lost.covered[i] < 1) {
       EXPECT_NEAR(exchange.raw_row_sum[i], 1, 0.05) << i;
@@ -92,8 +92,8 @@ TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
                         {Point(0.25, 0.25, h), Point(0.25, 0.75, h), Point(0.75, 0.75, h), Point(0.75, 0.25, h)}, 1);
       if (lamp_first) std::swap(scene.polygons.front(), scene.polygons.back());
       Request request;
-      request.max_edge = 0.125;
-      request.sides = Sides::front;
+      request.mesh.max_edge = 0.125;
+      request.mesh.sides = Sides::front;
       const Simulation simulation = simulate(scene, request);
       EXPECT_NEAR(simulation.balance.emitted.sum(), 2.5, 2.5 * 1e-5);
       EXPECT_NEAR(simulation.balance.absorbed.sum(), 2.5, 2.5 * 1e-5);

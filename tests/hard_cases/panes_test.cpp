@@ -78,9 +78,9 @@ Scene joined_rooms(const Material& wall, const Material& pane, const Material& c
 
 Request fronts(PatchIndex patches) {
   Request request;
-  request.sides = Sides::front;
-  request.patches = patches;
-  request.tolerance = 1e-9;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
+  request.solver.relative_error = 1e-9;
   return request;
 }
 
@@ -158,8 +158,8 @@ struct Readings {
 
 Readings readings_of(const Scene& scene, const Placing& placing) {
   Request request = fronts(0);
-  request.patches.reset();
-  request.max_edge = 0.4 * placing.unit;
+  request.mesh.patches.reset();
+  request.mesh.max_edge = 0.4 * placing.unit;
   const Simulation simulation = simulate(scene, request);
   Readings readings;
   double area = 0;

@@ -104,8 +104,8 @@ TEST(RoundFace, OfManyCornersTakesAboutThePatchesAskedFor) {
   for (const int corners : {200, 1000, 10000}) {
     const Scene scene = with_polygon(empty_scene({grey(0.5, 1)}), outline(corners, 0));
     Request request;
-    request.patches = 60;
-    request.sides = Sides::front;
+    request.mesh.patches = 60;
+    request.mesh.sides = Sides::front;
     const Plan plan = make_plan(scene, request);
     EXPECT_LE(tessellate(scene, plan.sides, plan.max_edge).size(), 82U) << corners;
     EXPECT_TRUE(std::any_of(plan.notes.begin(), plan.notes.end(), [&](const std::string& note) {
@@ -163,9 +163,9 @@ TEST(RoundFace, IsTheLidOfAFurnace) {
   for (const double metres : {1.0, 0.001}) {
     const Scene scene = moved(round_room(120, 0.9, 0.1), turned(metres));
     Request request;
-    request.patches = 60;
-    request.tolerance = 1e-10;
-    request.sides = Sides::front;
+    request.mesh.patches = 60;
+    request.solver.relative_error = 1e-10;
+    request.mesh.sides = Sides::front;
     const Simulation simulation = simulate(scene, request);
     ASSERT_LE(simulation.mesh.size(), 2U * 186 + 120);
     ASSERT_TRUE(simulation.solution.converged);
@@ -194,9 +194,9 @@ TEST(RoundFace, InARoomIsPartOfAFurnace) {
   std::reverse(plate.begin(), plate.end());
   scene = repair(with_polygon(std::move(scene), plate));
   Request request;
-  request.patches = 400;
-  request.tolerance = 1e-10;
-  request.sides = Sides::front;
+  request.mesh.patches = 400;
+  request.solver.relative_error = 1e-10;
+  request.mesh.sides = Sides::front;
   std::vector<Simulation> runs;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);

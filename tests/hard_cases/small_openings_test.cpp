@@ -46,10 +46,10 @@ Mean by_paths(const Scene& scene) {
 
 Simulation simulated(const Scene& scene, double size, std::uint64_t seed = 1) {
   Request request;
-  request.max_edge = 0.2501 * size;
-  request.sides = Sides::both;
-  request.seed = seed;
-  request.error_bars = true;
+  request.mesh.max_edge = 0.2501 * size;
+  request.mesh.sides = Sides::both;
+  request.assembly.seed = seed;
+  request.accuracy.error_bars = true;
   return simulate(scene, request);
 }
 

@@ -21,9 +21,9 @@ using namespace test;
 
 Request coarse(double tolerance, int max_iterations) {
   Request request;
-  request.max_edge = 0.7501;
-  request.tolerance = tolerance;
-  request.max_iterations = max_iterations;
+  request.mesh.max_edge = 0.7501;
+  request.solver.relative_error = tolerance;
+  request.solver.max_iterations = max_iterations;
   return request;
 }
 
@@ -41,7 +41,7 @@ class Furnace : public testing::TestWithParam<double> {};
 TEST_P(Furnace, RadiosityIsOneToOneInAHundredMillion) {
   const double rho = GetParam();
   Request request = coarse(1e-10, 100'000);
-  request.sides = Sides::front;
+  request.mesh.sides = Sides::front;
   const Simulation simulation = simulate(uniform_room(rho, 1 - rho), request);
   ASSERT_TRUE(simulation.solution.converged);
   EXPECT_EQ(simulation.transport.closure, "least squares");
@@ -73,8 +73,8 @@ TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
   }));
   for (const Solver solver : all_solvers()) {
     Request request = coarse(1e-6, 30);
-    request.sides = Sides::front;
-    request.solver = solver;
+    request.mesh.sides = Sides::front;
+    request.solver.solver = solver;
     const Solution solution = simulate(scene, request).solution;
     EXPECT_FALSE(solution.converged);
     EXPECT_EQ(solution.history.size(), 1U);
@@ -93,10 +93,10 @@ TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   EXPECT_TRUE(std::any_of(problems.begin(), problems.end(),
                           [](const Problem& problem) { return problem.kind == ProblemKind::full_reflectance; }));
   Request request;
-  request.patches = 500;
-  request.tolerance = 1e-8;
+  request.mesh.patches = 500;
+  request.solver.relative_error = 1e-8;
   for (const Solver solver : all_solvers()) {
-    request.solver = solver;
+    request.solver.solver = solver;
     const Simulation simulation = simulate(scene, request);
     ASSERT_TRUE(simulation.solution.converged) << name_of(solver);
     EXPECT_GT((simulation.balance.escaped / simulation.balance.emitted).minCoeff(), 0.1);
@@ -119,7 +119,7 @@ TEST(IsolatedPatches, KeepTheirExitance) {
   const Scene alone = with_quad(empty_scene({grey(0.5, 3)}), square);
   for (const Scene& scene : {alone, with_quad(alone, behind), with_quad(alone, beside)}) {
     Request request = coarse(1e-6, 100);
-    request.sides = Sides::front;
+    request.mesh.sides = Sides::front;
     const Simulation simulation = simulate(scene, request);
     EXPECT_TRUE(simulation.solution.converged);
     EXPECT_EQ(simulation.solution.history.size(), 1U);
@@ -136,7 +136,7 @@ TEST(IsolatedPatches, KeepTheirExitanceBesideALitRoom) {
   scene.materials.push_back(grey(0.7, 5));
   scene = with_quad(std::move(scene), {Point(9, 0, 0), Point(9, 1, 0), Point(9, 1, 1), Point(9, 0, 1)}, 2);
   Request request = coarse(1e-6, 100);
-  request.sides = Sides::front;
+  request.mesh.sides = Sides::front;
   const Simulation simulation = simulate(scene, request);
   EXPECT_TRUE(simulation.solution.converged);
   const PatchRange patches = simulation.mesh.patches_on(lamp, Side::front);

@@ -52,13 +52,13 @@ TEST(Spaces, ErrorsAreStatedApart) {
   // Each as an interest in that side alone states it, on the same mesh. Of the light the room has less than a tenth.
   const Scene scene = daylight_office();
   Request request;
-  request.patches = 600;
-  request.error_bars = true;
+  request.mesh.patches = 600;
+  request.accuracy.error_bars = true;
   const Simulation simulation = simulate(scene, request);
   ASSERT_EQ(simulation.spaces.size(), 2U);
   EXPECT_EQ(simulation.spaces[0].space, "inside");
   EXPECT_EQ(simulation.spaces[0].errors.patches + simulation.spaces[1].errors.patches, simulation.mesh.size());
-  request.interest = {"room.inside", "furniture"};
+  request.accuracy.interest = {"room.inside", "furniture"};
   const Simulation inside = simulate(scene, request);
   EXPECT_NEAR(simulation.spaces[0].errors.total, inside.accuracy.back().total, 1e-9);
   EXPECT_TRUE(inside.spaces.empty());
@@ -67,8 +67,8 @@ TEST(Spaces, ErrorsAreStatedApart) {
 
 TEST(Spaces, AreOneWhereNothingDividesThem) {
   Request request;
-  request.patches = 200;
-  request.error_bars = true;
+  request.mesh.patches = 200;
+  request.accuracy.error_bars = true;
   EXPECT_TRUE(simulate(furnished_room(0.5), request).spaces.empty());
 }
 

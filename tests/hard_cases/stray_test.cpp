@@ -36,8 +36,8 @@ bool names_what_is_far(const Scene& scene) {
 
 Simulation solved(const Scene& scene, double metres_per_unit) {
   Request request;
-  request.max_edge = 0.4 * metres_per_unit;
-  request.sides = Sides::front;
+  request.mesh.max_edge = 0.4 * metres_per_unit;
+  request.mesh.sides = Sides::front;
   return simulate(scene, request);
 }
 

@@ -134,7 +134,7 @@ TEST(NearlyEqualPoints, OfAModelChangeNothing) {
   for (std::size_t v = 0; v < scene.vertices.size(); v += 2) scene.vertices[v] += Vector(1e-15, -1e-15, 1e-15);
   scene = with_polygon(std::move(scene), {Point(1, 2, 1), Point(1, 2 + 1e-15, 1), Point(1, 2, 1 + 1e-15)});
   Request request;
-  request.max_edge = 0.5001;
+  request.mesh.max_edge = 0.5001;
   const Simulation expected = simulate(repair(sound), request);
   const Simulation simulation = simulate(repair(scene), request);
   ASSERT_EQ(simulation.mesh.size(), expected.mesh.size());

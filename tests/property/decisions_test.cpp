@@ -19,8 +19,8 @@ struct LookedAt {
 };
 
 std::vector<LookedAt> looked_at(const Scene& scene, Request request) {
-  request.accuracy = 0.01;
-  request.patches = 100;
+  request.accuracy.relative_error = 0.01;
+  request.mesh.patches = 100;
   std::vector<LookedAt> meshes;
   simulate(
       scene, request, {}, {.look = [&meshes](const Simulation& simulation) {
@@ -31,7 +31,7 @@ std::vector<LookedAt> looked_at(const Scene& scene, Request request) {
 
 TEST(Decisions, HoldOnEveryMeshOnTheWayToAnAccuracy) {
   Request request;
-  request.sides = Sides::front;
+  request.mesh.sides = Sides::front;
   const Scene scene = with_point_light(lit_box(0.5), Spectrum::Constant(1, 5));
   const std::vector<LookedAt> planned = looked_at(scene, request);
   const std::vector<LookedAt> overruled =
@@ -51,7 +51,7 @@ TEST(Decisions, HoldOnEveryMeshOnTheWayToAnAccuracy) {
 // Error bars take a matrix also where the rows of the lamps would be enough.
 TEST(Decisions, BlackRoomsHaveErrorBars) {
   Request request = coarse();
-  request.error_bars = true;
+  request.accuracy.error_bars = true;
   const Simulation black = simulate(furnished_room(0), request);
   EXPECT_FALSE(decision(black, Effect::interreflection).simulate);
   ASSERT_TRUE(black.error_bars);

@@ -64,7 +64,7 @@ TEST(Occlusion, MattersInAFurnishedRoom) {
 // The rows of the lamps have the bits of the matrix: sums of some hundred terms in another order.
 TEST(Interreflection, IsNotNeededWhereNothingReflects) {
   Request raw = coarse();
-  raw.close = false;
+  raw.assembly.close = false;
   EXPECT_LT(planned_difference(furnished_room(0), Effect::interreflection, raw), 1e-12);
 }
 
@@ -76,7 +76,7 @@ TEST(Interreflection, MattersWhereSomethingReflects) {
 TEST(Interreflection, SkippedLeavesTheLightOfTheLamps) {
   const Simulation whole = simulate(furnished_room(0.5), coarse());
   Request request = skipping(Effect::interreflection, coarse());
-  request.force = {Effect::closure};
+  request.effects.force = {Effect::closure};
   const Simulation direct = simulate(furnished_room(0.5), request);
   EXPECT_LT((direct.solution.irradiance - whole.solution.direct_irradiance).abs().maxCoeff(),
             1e-12 * whole.solution.direct_irradiance.maxCoeff());
@@ -122,7 +122,7 @@ Field irradiance_on_first(const Simulation& simulation, PolygonIndex polygons) {
 
 Request automatic(double max_edge = 0.4) {
   Request request = coarse(max_edge);
-  request.sides = Sides::automatic;
+  request.mesh.sides = Sides::automatic;
   return request;
 }
 
@@ -131,7 +131,7 @@ Request automatic(double max_edge = 0.4) {
 // patches.
 double noise(const Scene& scene) {
   Request other = automatic();
-  other.seed = 2;
+  other.assembly.seed = 2;
   return 1.5 * difference(simulate(scene, automatic()), simulate(scene, other));
 }
 
@@ -155,10 +155,10 @@ TEST(Reach, RoomsWithoutLightNeedNoPatches) {
 TEST(Reach, MattersWhereALampIs) {
   Scene scene = two_rooms(0.5);
   Request left_out = automatic();
-  left_out.kept_sides = kept_sides(scene, Sides::automatic);
+  left_out.mesh.kept_sides = kept_sides(scene, Sides::automatic);
   scene = with_quad(std::move(scene), {Point(5.5, 1, 2.4), Point(5.5, 2, 2.4), Point(6, 2, 2.4), Point(6, 1, 2.4)}, 1);
-  left_out.kept_sides->front.push_back(1);
-  left_out.kept_sides->back.push_back(1);
+  left_out.mesh.kept_sides->front.push_back(1);
+  left_out.mesh.kept_sides->back.push_back(1);
   const Simulation planned = simulate(scene, automatic());
   const Simulation without = simulate(scene, left_out);
   EXPECT_GT(planned.balance.absorbed[0], (1 + clear_difference) * without.balance.absorbed[0]);
@@ -186,8 +186,8 @@ TEST(Backs, MatterWhereALampShinesOnThem) {
   const Simulation planned = simulate(scene, automatic());
   EXPECT_TRUE(planned.plan.sides.back[5]) << "the wall at low x looks at the lamp";
   Request left_out = automatic();
-  left_out.kept_sides = planned.plan.sides;
-  for (PolygonIndex p = 0; p < 6; ++p) left_out.kept_sides->back[p] = 0;
+  left_out.mesh.kept_sides = planned.plan.sides;
+  for (PolygonIndex p = 0; p < 6; ++p) left_out.mesh.kept_sides->back[p] = 0;
   const Simulation without = simulate(scene, left_out);
   EXPECT_GT(planned.balance.absorbed[0], (1 + clear_difference) * without.balance.absorbed[0]);
 }
@@ -233,7 +233,7 @@ TEST(Closure, IsNotNeededWithoutInterreflection) {
 // 1 / (1 - rho) times.
 TEST(Closure, MattersWithInterreflection) {
   Request few = automatic();
-  few.samples = 4;
+  few.assembly.samples = 4;
   const Simulation closed = simulate(furnished_room(0.98), few);
   const Simulation raw = simulate(furnished_room(0.98), skipping(Effect::closure, few));
   EXPECT_TRUE(decision(closed, Effect::closure).simulate);

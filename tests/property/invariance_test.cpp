@@ -43,8 +43,8 @@ struct Solved {
 
 Solved solved(const Scene& scene, double scale, std::uint64_t seed = 1) {
   Request request;
-  request.max_edge = 0.4 * scale;
-  request.seed = seed;
+  request.mesh.max_edge = 0.4 * scale;
+  request.assembly.seed = seed;
   Scene repaired = repair(scene);
   Simulation simulation = simulate(repaired, request);
   return {std::move(repaired), std::move(simulation)};

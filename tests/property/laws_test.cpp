@@ -23,8 +23,8 @@ using namespace test;
 
 Request coarse(double max_edge = 0.4) {
   Request request;
-  request.max_edge = max_edge;
-  request.sides = Sides::front;
+  request.mesh.max_edge = max_edge;
+  request.mesh.sides = Sides::front;
   return request;
 }
 
@@ -122,9 +122,9 @@ TEST(Closure, DoesNotCloseAnOpenRoom) {
 TEST(Simulate, GivesTheSameBitsForAnyThreadCountAndEveryRun) {
   const Scene scene = furnished_room(0.6);
   Request one = coarse();
-  one.threads = 1;
+  one.resources.threads = 1;
   Request two = coarse();
-  two.threads = 2;
+  two.resources.threads = 2;
   const Simulation first = simulate(scene, one);
   const Simulation again = simulate(scene, one);
   const Simulation threaded = simulate(scene, two);
@@ -136,7 +136,7 @@ TEST(Simulate, GivesTheSameBitsForAnyThreadCountAndEveryRun) {
 TEST(Simulate, ASeedChangesTheSamplesAndLittleElse) {
   const Scene scene = furnished_room(0.6);
   Request other = coarse();
-  other.seed = 2;
+  other.assembly.seed = 2;
   const Field first = simulate(scene, coarse()).solution.irradiance;
   const Field second = simulate(scene, other).solution.irradiance;
   const double rms = std::sqrt((first - second).square().mean()) / first.mean();
@@ -214,7 +214,7 @@ TEST_P(DividedRoom, StaysDarkBehindTheWall) {
   scene = with_quad(std::move(scene),
                     {Point(.3, .3, .7), Point(.3, .6, .7), Point(.6, .6, .7 + rise), Point(.6, .3, .7 + rise)}, 1);
   Request request = coarse(0.25);
-  request.sides = Sides::both;
+  request.mesh.sides = Sides::both;
   const Simulation simulation = simulate(scene, request);
   double lit = 0;
   double dark = 0;

@@ -34,13 +34,13 @@ double least_error_with_even_light(const Field& radiosity, const Simulation& ref
 TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
   const Scene scene = read_scene(mesh_folder() / "cornell_box.obj");
   Request request;
-  request.patches = 2000;
+  request.mesh.patches = 2000;
   const Simulation reference = simulate(scene, request);
   ASSERT_TRUE(reference.solution.converged);
-  request.storage = Storage::on_demand;
-  request.max_rows = 0.05;
+  request.assembly.storage = Storage::on_demand;
+  request.solver.max_rows = 0.05;
   for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
-    request.solver = solver;
+    request.solver.solver = solver;
     const Simulation early = simulate(scene, request);
     EXPECT_FALSE(early.solution.converged);
     EXPECT_LE(early.solution.history.back().work, 0.05);

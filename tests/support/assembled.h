@@ -23,11 +23,10 @@ struct Assembled {
 };
 
 inline Assembled assembled(const Scene& scene, double max_edge) {
-  constexpr int lost_share_rays = 256;
   const KeptSides kept = kept_sides(scene, Sides::automatic);
   PatchMesh mesh = tessellate(scene, kept, max_edge);
   const Occluder occluder(scene, Occluder::Blockers::inside_hull, find_coverings(scene, kept));
-  Exchange exchange = trace_exchange(mesh, occluder, {}, lost_share_rays);
+  Exchange exchange = trace_exchange(mesh, occluder, {});
   const bool closed = exchange.lost.closed();
   const Eigen::VectorXd area = exchange.area;
   RadiosityProblem problem = problem_of(scene, mesh, area, kept.emit_from_back);

@@ -56,18 +56,18 @@ inline Scene with_daylight(Scene scene) {
 /// The front sides of a scene in patches of this size, metres.
 inline Request coarse(double max_edge = 0.4) {
   Request request;
-  request.max_edge = max_edge;
-  request.sides = Sides::front;
+  request.mesh.max_edge = max_edge;
+  request.mesh.sides = Sides::front;
   return request;
 }
 
 inline Request forcing(Effect effect, Request request) {
-  request.force.push_back(effect);
+  request.effects.force.push_back(effect);
   return request;
 }
 
 inline Request skipping(Effect effect, Request request) {
-  request.skip.push_back(effect);
+  request.effects.skip.push_back(effect);
   return request;
 }
 

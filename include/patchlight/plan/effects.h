@@ -31,6 +31,12 @@ const char* name_of(Effect effect);
 /// True when the effect is one of the list.
 bool contains(const std::vector<Effect>& effects, Effect effect);
 
+/// Effects for which the user decides.
+struct EffectOptions {
+  std::vector<Effect> force = {};  ///< effects that are simulated whatever the scene is like
+  std::vector<Effect> skip = {};   ///< effects that are left out; none that is forced
+};
+
 /// Whether an effect is simulated, and why.
 struct Decision {
   Effect effect = Effect::occlusion;

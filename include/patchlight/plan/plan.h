@@ -14,66 +14,66 @@
 
 namespace patchlight {
 
-/// What the user asks for; what is left open the plan fills in.
-struct Request {
+/// How a scene is cut into patches, and which sides of its polygons take part.
+struct MeshOptions {
   std::optional<double> max_edge = {};      ///< longest patch edge, metres
-  std::optional<std::size_t> patches = {};  ///< or the number of kept patches
+  std::optional<std::size_t> patches = {};  ///< or the number of kept patches; left open default_patches, and where
+                                            ///< patches are refined first_patches
   Sides sides = Sides::automatic;
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
-  Solver solver = Solver::cg;
-  std::optional<double> tolerance = {};   ///< the solver's relative error; left open default_tolerance, and with an
-                                          ///< accuracy what that takes
-  int max_iterations = 1000;              ///< after which the solver gives up
-  std::optional<double> max_rows = {};    ///< or, of progressive refinement, after so many rows, as a share of all
-  std::optional<double> relaxation = {};  ///< of SOR; without it estimated
-  int samples = 8;                        ///< shadow rays of a pair of patches that rays decide
-  std::uint64_t seed = 1;
-  Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};            ///< of the automatic estimator
-  bool close = true;                    ///< correct the form factors so that rows sum up to what is seen
-  Storage storage = Storage::tiles;     ///< of form factors; with rows on demand these are not closed
-  bool standard_errors = false;         ///< keep one for each entry: a quarter more memory
-  bool error_bars = false;              ///< of every patch, from mesh, form factors and solver; keeps standard errors
-  std::optional<double> accuracy = {};  ///< relative error of the patches' mean radiosities that is asked for: patches
-                                        ///< and samples are refined until the error bars are below. `patches` and
-                                        ///< `samples` are where it starts
-  std::optional<double> seconds = {};   ///< refine for so long instead, or at most
-  std::vector<std::string> interest = {};  ///< names of materials, objects or groups, or of a side of theirs, as
-                                           ///< "room.inside" and "room.outside": the accuracy is that of their patches;
-                                           ///< none: of all
-  int threads = 0;                         ///< 0: all processors
-  std::optional<double> memory = {};       ///< bytes that the run may take; without it 0.8 of the machine's memory
-  std::vector<Effect> force = {};          ///< effects that are simulated whatever the scene is like
-  std::vector<Effect> skip = {};           ///< effects that are left out; none that is forced
 };
 
-/// How a scene is going to be solved.
+/// How far the answer may be off.
+struct AccuracyOptions {
+  bool error_bars = false;  ///< of every patch, from mesh, form factors and solver; keeps standard errors
+  std::optional<double> relative_error = {};  ///< of the patches' mean radiosities: patches and samples are refined
+                                              ///< until the error bars are below; the mesh and the samples that are
+                                              ///< asked for are where it starts
+  std::optional<double> seconds = {};         ///< refine for so long instead, or at most
+  std::vector<std::string> interest = {};     ///< names of materials, objects or groups, or of a side of theirs, as
+                                              ///< "room.inside" and "room.outside": the error is that of their patches;
+                                              ///< none: of all
+  std::optional<double> solver_part = {};     ///< what the solver may leave of the error of what is of interest: it is
+                                              ///< asked for a smaller relative error until it does. Left open: chosen
+                                              ///< where the solver's relative error is
+};
+
+/// What of the machine a run may take.
+struct Resources {
+  int threads = 0;                    ///< 0: all processors
+  std::optional<double> memory = {};  ///< bytes; without it 0.8 of the machine's memory
+};
+
+/// What the user asks for; what is left open the plan fills in.
+struct Request {
+  MeshOptions mesh = {};
+  AssemblyOptions assembly = {};
+  EffectOptions effects = {};
+  SolverOptions solver = {};  ///< with an accuracy a relative error that is left open is what that takes
+  AccuracyOptions accuracy = {};
+  Resources resources = {};
+};
+
+/// How a scene is going to be solved: the parts of the request with nothing left open, and what was decided in place of
+/// mesh and effects.
 struct Plan {
   KeptSides sides;
-  double max_edge = 0;        ///< metres
-  int samples = 8;            ///< shadow rays of a pair that rays decide, more where its form factor is large
-  int lost_share_rays = 256;  ///< hemisphere rays per patch
-  std::uint64_t seed = 1;
-  Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};
-  bool close = true;
-  Storage storage = Storage::tiles;  ///< as asked for, or on demand where the rows of the lamps are enough
-  bool standard_errors = false;
-  bool error_bars = false;
-  std::optional<double> accuracy;
-  std::optional<double> seconds;
-  std::vector<std::string> interest;
-  SolverOptions solver;
-  std::optional<double> solver_part = {};  ///< what the solver may leave of the error of what is of interest: it is
-                                           ///< asked for a smaller relative error until it does
+  double max_edge = 0;       ///< metres
+  AssemblyOptions assembly;  ///< stored as asked for, or on demand where the rows of the lamps are enough
+  SolverOptions solver;      ///< of a mesh on the way to an accuracy: its own relative error
+  AccuracyOptions accuracy;  ///< with error bars where patches are refined
+  Resources resources;
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else
                               ///< empty
   std::vector<std::string> notes;  ///< what was asked and cannot be
 };
 
-/// The solver's relative error when none is asked for.
-inline constexpr double default_tolerance = 1e-6;
+/// What of a run is given, so that it is not found anew.
+struct Given {
+  bool form_factors = false;
+  bool mesh = false;
+};
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;
@@ -82,22 +82,26 @@ inline constexpr std::size_t default_patches = 4000;
 inline constexpr std::size_t first_patches = 500;
 
 /// True when patches are refined until an accuracy is reached, or time is up.
-bool refines(const Request& request);
+bool refines(const AccuracyOptions& accuracy);
 
-/// The sides that take part: Request::kept_sides, else those that Request::sides chooses.
+/// True when the patches get error bars: when these are wanted, or patches are refined by them.
+bool has_error_bars(const AccuracyOptions& accuracy);
+
+/// The number of patches to begin with, where no edge says how finely faces are cut.
+std::size_t patches_asked(const Request& request);
+
+/// The sides that take part: MeshOptions::kept_sides, else those that MeshOptions::sides chooses.
 KeptSides sides_for(const Scene& scene, const Request& request);
 
-/// Fills the request's open ends from the facts of the scene. Pure.
-/// \throws InputError when the scene has no lamp, or none but those that Request::skip leaves out.
-Plan make_plan(const Scene& scene, const Request& request);
+/// Fills the request's open ends from the facts of the scene. Form factors that are given are a matrix, even where the
+/// rows of the lamps would do. Pure.
+/// \throws InputError when the scene has no lamp, or none but those that EffectOptions::skip leaves out.
+Plan make_plan(const Scene& scene, const Request& request, const Given& given = {});
 
 /// The same for a scene that need not have a lamp, without decisions about light: what form factors take.
 Plan plan_form_factors(const Scene& scene, const Request& request);
 
 /// False when the plan has decided to leave the effect out.
 bool simulates(const Plan& plan, Effect effect);
-
-/// What the plan says about form factors.
-AssemblyOptions assembly_options(const Plan& plan);
 
 }  // namespace patchlight

@@ -117,6 +117,7 @@ struct Report {
   SceneFacts scene;
   Request request;
   Plan plan;
+  std::vector<std::string> notes;  ///< Simulation::notes
   PatchIndex patches = 0;
   std::size_t vertices = 0;
   double area = 0;  ///< of all patches, m^2

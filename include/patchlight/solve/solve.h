@@ -37,11 +37,16 @@ bool is_shooting(Solver solver);
 /// True for those that sweep or shoot: they take a RowTransport. The others need no more than H = F B.
 bool takes_rows(Solver solver);
 
+/// The solver's relative error when none is asked for.
+inline constexpr double default_tolerance = 1e-6;
+
 /// Which solver, and when it stops.
 struct SolverOptions {
   Solver solver = Solver::cg;
-  double relative_error = 1e-6;  ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below
-  int max_iterations = 1000;     ///< for progressive refinement one iteration is as many shots as there are patches
+  std::optional<double> relative_error = {};   ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below; left
+                                               ///< open default_tolerance
+  int max_iterations = 1000;                   ///< for progressive refinement one iteration is as many shots as there
+                                               ///< are patches
   std::optional<double> max_rows = {};         ///< progressive refinement stops after so many rows of F, as a share of
                                                ///< the patches; the lamps' are among them, and always taken
   std::optional<double> relaxation = {};       ///< of SOR, above 0 and below 2; without it estimated
@@ -52,6 +57,9 @@ struct SolverOptions {
                                         ///< B_k||_A / ||B_ref - E||_A, worst band, is below relative_error
   bool every_band = false;              ///< solve bands that follow from others, too
 };
+
+/// The relative error at which a solver with these options stops.
+inline double tolerance_of(const SolverOptions& options) { return options.relative_error.value_or(default_tolerance); }
 
 /// Solves B = E + rho o F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
 /// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times

@@ -44,7 +44,7 @@ struct ShortCuts {
   bool far = true;     ///< far pairs take the quadrature of the lowest order
 };
 
-/// How form factors are found.
+/// How form factors are found, and how they are kept. Assembling all pairs takes the first five.
 struct AssemblyOptions {
   int samples = 8;  ///< shadow rays of a pair that rays decide. The automatic estimator rounds them up to an even
                     ///< number and takes sampling_effort() times as many; powers of two fill packets of rays best. The
@@ -52,7 +52,10 @@ struct AssemblyOptions {
   std::uint64_t seed = 1;
   bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
   Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};
+  ShortCuts short_cuts = {};         ///< of the automatic estimator
+  bool close = true;                 ///< correct the form factors so that rows sum up to what is seen
+  Storage storage = Storage::tiles;  ///< with rows on demand form factors are not closed
+  int lost_share_rays = 256;         ///< hemisphere rays per patch
 };
 
 /// How the entries of a matrix came about.

@@ -31,12 +31,12 @@ struct Exchange {
 /// What is known of the exchange without exchange areas, which are computed on demand: those in the result are of no
 /// patch, and row sums are empty. Areas have nothing but the lost shares to go by. \throws Cancelled.
 Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                            int lost_share_rays, const Observer& observer = {});
+                            const Observer& observer = {});
 
 /// Exchange areas before closure, and the share of each patch's hemisphere from which no patch is seen.
 /// \throws Cancelled.
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
-                        int lost_share_rays, const Observer& observer = {});
+                        const Observer& observer = {});
 
 /// The same from exchange areas that are known.
 Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);

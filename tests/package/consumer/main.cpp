@@ -6,7 +6,7 @@
 int main(int, char** arguments) {
   const patchlight::Scene scene = patchlight::read_scene(arguments[1]);
   patchlight::Request request;
-  request.patches = 100;
+  request.mesh.patches = 100;
   const patchlight::Simulation simulation = patchlight::simulate(scene, request);
   patchlight::write_result(arguments[2], patchlight::surface_of(scene, simulation), {"consumer", 1.0});
   return simulation.solution.converged ? 0 : 1;

@@ -18,8 +18,8 @@ namespace {
 
 Request with_bars(std::size_t patches) {
   Request request;
-  request.patches = patches;
-  request.error_bars = true;
+  request.mesh.patches = patches;
+  request.accuracy.error_bars = true;
   return request;
 }
 
@@ -27,7 +27,7 @@ Request with_bars(std::size_t patches) {
 // the bars have to know. What is left are the closure's and the solver's tolerance and the storage as floats.
 TEST(ErrorBars, VanishInAFurnace) {
   Request request = with_bars(400);
-  request.tolerance = 1e-9;
+  request.solver.relative_error = 1e-9;
   const Simulation simulation = simulate(test::cube_room(0.5, 0.5), request);
   ASSERT_TRUE(simulation.error_bars);
   EXPECT_LT((simulation.solution.irradiance - 1).abs().maxCoeff(), 1e-6);

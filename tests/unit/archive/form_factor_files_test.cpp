@@ -21,10 +21,10 @@ using namespace test;
 
 Request coarse(bool close = true) {
   Request request;
-  request.close = close;
-  request.max_edge = 1;
-  request.sides = Sides::front;
-  request.tolerance = 1e-9;
+  request.assembly.close = close;
+  request.mesh.max_edge = 1;
+  request.mesh.sides = Sides::front;
+  request.solver.relative_error = 1e-9;
   return request;
 }
 
@@ -89,8 +89,8 @@ TEST(StoredFormFactors, CarryTwiceTheLightOfTwiceTheExitance) {
     StoredScene stored = read_stored_scene(place);
     for (Material& material : stored.scene.materials) material.exitance *= factor;
     Request request = coarse();
-    request.max_edge = info.max_edge;
-    request.kept_sides = stored.sides;
+    request.mesh.max_edge = info.max_edge;
+    request.mesh.kept_sides = stored.sides;
     return simulate(stored.scene, request, {},
                     {.exchange = [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); }})
         .solution.irradiance;
@@ -119,8 +119,8 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   const fs::path place = folder.path() / "room.ff";
   const Scene scene = closed_room();
   Request request = coarse();
-  request.seed = ~std::uint64_t{0};
-  request.samples = 32;
+  request.assembly.seed = ~std::uint64_t{0};
+  request.assembly.samples = 32;
   const FormFactors found = find_form_factors(scene, request);
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
@@ -128,7 +128,7 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   EXPECT_EQ(info.max_edge, 1);
   EXPECT_EQ(info.sides, Sides::front);
   EXPECT_EQ(info.samples, 32);
-  EXPECT_EQ(info.seed, request.seed);
+  EXPECT_EQ(info.seed, request.assembly.seed);
   EXPECT_EQ(info.closure, "least squares");
 }
 
@@ -153,7 +153,7 @@ TEST(StoredFormFactors, HaveTheStandardErrorsThatWereKept) {
   const fs::path place = folder.path() / "room.ff";
   const Scene scene = closed_room();
   Request request = coarse();
-  request.standard_errors = true;
+  request.assembly.keep_errors = true;
   const FormFactors found = find_form_factors(scene, request);
   write_form_factors(place, {scene, found, {}, "a command"});
   const PatchIndex size = found.mesh.size();
@@ -183,8 +183,8 @@ TEST(StoredFormFactors, OfEveryEstimatorAreTaken) {
          {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
       for (const bool close : {false, true}) {
         Request request = coarse(close);
-        request.estimator = estimator;
-        request.samples = 4;
+        request.assembly.estimator = estimator;
+        request.assembly.samples = 4;
         const FormFactors found = find_form_factors(scene, request);
         write_form_factors(place, {scene, found, {}, "a command"});
         EXPECT_NO_THROW(read_exchange(place, read_form_factor_info(place), found.mesh))

@@ -29,7 +29,7 @@ class RoomIn : public Formats {
   }
   Field irradiance(const Scene& scene) const {
     Request request;
-    request.max_edge = max_edge;
+    request.mesh.max_edge = max_edge;
     return simulate(scene, request).solution.irradiance;
   }
   // The difference from the room in OBJ, relative to the mean irradiance.
@@ -43,7 +43,7 @@ class RoomIn : public Formats {
   // The same as one number: the norm of the difference over the norm of the irradiance, both by area.
   double relative_difference(const std::filesystem::path& file) const {
     Request request;
-    request.max_edge = max_edge;
+    request.mesh.max_edge = max_edge;
     const Simulation expected = simulate(read(write("reference.obj", test::as_obj(test::room()))), request);
     const Simulation found = simulate(read(file), request);
     EXPECT_EQ(found.mesh.size(), expected.mesh.size());

@@ -64,7 +64,7 @@ inline Simulation tiny_simulation() {
   transport.closure = "scaling";
   const Eigen::Array3d flux(1, 2, 3);
   simulation.balance = {flux, 2 * flux, flux, flux, flux, flux, 1e-7};
-  simulation.plan.seed = (std::uint64_t{1} << 60) + 1;
+  simulation.plan.assembly.seed = (std::uint64_t{1} << 60) + 1;
   simulation.plan.decisions = {{Effect::occlusion, false, "a reason", "a saving", true}};
   simulation.costs = {{Stage::mesh, 0.5, 1}, {Stage::solve, 0.25, 0.5}};
   return simulation;

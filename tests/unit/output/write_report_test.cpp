@@ -12,7 +12,7 @@ namespace {
 nlohmann::json written_report(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   Request request;
-  request.max_edge = 0.25;
+  request.mesh.max_edge = 0.25;
   const Provenance provenance{"patchlight solve tiny.obj", 0.125};
   write_report(folder.path() / "report.json", report_of(scene, request, simulation), provenance);
   return nlohmann::json::parse(content_of(folder.path() / "report.json"));
@@ -104,7 +104,7 @@ TEST(WriteReport, WeighsRowSumsByArea) {
 
 TEST(WriteReport, SaysWhatIsNotKnownOfRowsOnDemand) {
   Simulation simulation = tiny_simulation();
-  simulation.plan.storage = Storage::on_demand;
+  simulation.plan.assembly.storage = Storage::on_demand;
   simulation.transport.row_sum = simulation.transport.raw_row_sum = Eigen::VectorXd();
   const nlohmann::json report = written_report(tiny_scene(), simulation);
   for (const char* key : {"facing_pairs", "shadow_rays", "bare_shadow_rays_per_second", "raw_row_sum", "row_sum"}) {

@@ -86,7 +86,7 @@ TEST(Decide, ReachAndBacksWhereSidesAreLeftOut) {
   EXPECT_NE(decision(facts, Effect::reach).reason.find("'attic' (house.obj:12)"), std::string::npos);
   EXPECT_FALSE(is_on(facts, Effect::backs));
   Request front;
-  front.sides = Sides::front;
+  front.mesh.sides = Sides::front;
   EXPECT_TRUE(is_on(facts, Effect::reach, front)) << "the user has chosen";
 }
 
@@ -130,7 +130,7 @@ TEST(Decide, NamesWhatIsNotSimulatedOnlyWhereItIs) {
 
 TEST(Decide, ObeysTheRequestAndMarksIt) {
   Request request;
-  request.skip = {Effect::occlusion};
+  request.effects.skip = {Effect::occlusion};
   const Decision skipped = decision(usual_facts(), Effect::occlusion, request);
   EXPECT_FALSE(skipped.simulate);
   EXPECT_TRUE(skipped.forced);
@@ -139,16 +139,16 @@ TEST(Decide, ObeysTheRequestAndMarksIt) {
   EffectFacts convex = usual_facts();
   convex.inside_hull = 0;
   EXPECT_FALSE(decision(convex, Effect::occlusion, request).forced) << "the facts say so, too";
-  request.skip = {};
-  request.force = {Effect::occlusion};
+  request.effects.skip = {};
+  request.effects.force = {Effect::occlusion};
   EXPECT_TRUE(decision(convex, Effect::occlusion, request).simulate);
   EXPECT_TRUE(decision(convex, Effect::occlusion, request).forced);
 }
 
 TEST(Decide, CannotForceWhatIsNotThere) {
   Request request;
-  request.force = {Effect::sun, Effect::sky, Effect::luminaires};
-  for (const Effect light : request.force) {
+  request.effects.force = {Effect::sun, Effect::sky, Effect::luminaires};
+  for (const Effect light : request.effects.force) {
     EXPECT_FALSE(is_on(usual_facts(), light, request));
     EXPECT_FALSE(decision(usual_facts(), light, request).forced);
   }
@@ -156,16 +156,16 @@ TEST(Decide, CannotForceWhatIsNotThere) {
 
 TEST(Decide, ClosureFollowsItsOptions) {
   Request request;
-  request.close = false;
+  request.assembly.close = false;
   EXPECT_TRUE(decision(usual_facts(), Effect::closure, request).forced);
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request));
-  request.close = true;
-  request.storage = Storage::on_demand;
+  request.assembly.close = true;
+  request.assembly.storage = Storage::on_demand;
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request));
-  request.storage = Storage::tiles;
-  request.skip = {Effect::interreflection};
+  request.assembly.storage = Storage::tiles;
+  request.effects.skip = {Effect::interreflection};
   EXPECT_FALSE(is_on(usual_facts(), Effect::closure, request)) << "it cannot matter any more";
-  request.force = {Effect::closure};
+  request.effects.force = {Effect::closure};
   EXPECT_TRUE(is_on(usual_facts(), Effect::closure, request));
 }
 

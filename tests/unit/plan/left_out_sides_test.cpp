@@ -44,10 +44,10 @@ TEST(LeftOutSides, AreNoneWhereEveryFrontIsTaken) {
 
 TEST(LeftOutSides, StayLeftOutInThePlan) {
   Request request;
-  request.kept_sides = kept_sides(two_cells(1, 0), Sides::automatic);
+  request.mesh.kept_sides = kept_sides(two_cells(1, 0), Sides::automatic);
   const Plan plan = make_plan(two_cells(1, 1), request);
-  EXPECT_EQ(plan.sides.front, request.kept_sides->front);
-  EXPECT_EQ(plan.sides.back, request.kept_sides->back);
+  EXPECT_EQ(plan.sides.front, request.mesh.kept_sides->front);
+  EXPECT_EQ(plan.sides.back, request.mesh.kept_sides->back);
   EXPECT_EQ(plan.notes.size(), 2U);
 }
 

@@ -1,7 +1,6 @@
 #include "patchlight/plan/plan.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/simulate.h"
 
 #include "mesh/mesher.h"
 #include "support/scenes.h"
@@ -85,18 +84,18 @@ TEST(MakePlan, RefusesToSkipAllLight) {
   Scene scene = cube_room(0.5, 0);
   scene.luminaires.resize(1);
   Request request;
-  request.skip = {Effect::luminaires};
+  request.effects.skip = {Effect::luminaires};
   EXPECT_THROW(make_plan(scene, request), InputError);
 }
 
 // No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
 TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
-  EXPECT_EQ(make_plan(furnished_room(0), {}).storage, Storage::on_demand);
-  EXPECT_EQ(make_plan(furnished_room(0.5), {}).storage, Storage::tiles);
+  EXPECT_EQ(make_plan(furnished_room(0), {}).assembly.storage, Storage::on_demand);
+  EXPECT_EQ(make_plan(furnished_room(0.5), {}).assembly.storage, Storage::tiles);
   Request request;
-  request.force = {Effect::closure};
-  EXPECT_EQ(make_plan(furnished_room(0), request).storage, Storage::tiles);
-  EXPECT_TRUE(make_plan(furnished_room(0), request).close);
+  request.effects.force = {Effect::closure};
+  EXPECT_EQ(make_plan(furnished_room(0), request).assembly.storage, Storage::tiles);
+  EXPECT_TRUE(make_plan(furnished_room(0), request).assembly.close);
 }
 
 // 2,000 small faces in a room of six large ones: these have to be cut as well.
@@ -108,8 +107,8 @@ TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
                                          corner + Vector(0, 0.0002, 0)});
   }
   Request request;
-  request.patches = 500;
-  request.sides = Sides::front;
+  request.mesh.patches = 500;
+  request.mesh.sides = Sides::front;
   const Plan plan = make_plan(scene, request);
   EXPECT_EQ(plan.notes.size(), 1U);
   const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
@@ -121,7 +120,7 @@ TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
   const Scene scene = furnished_room(0.5);
   for (const std::size_t patches : {1000U, 4000U}) {
     Request request;
-    request.patches = patches;
+    request.mesh.patches = patches;
     const Plan plan = make_plan(scene, request);
     const double count = tessellate(scene, plan.sides, plan.max_edge).size();
     EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.1);
@@ -130,22 +129,42 @@ TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
 
 TEST(MakePlan, TakesTheEdgeThatIsAskedFor) {
   Request request;
-  request.max_edge = 0.123;
+  request.mesh.max_edge = 0.123;
   EXPECT_EQ(make_plan(furnished_room(0.5), request).max_edge, 0.123);
 }
 
-TEST(Simulate, RefusesErrorsOfFormFactorsThatAreNotKept) {
+// What is not open is taken as it is, and all parts are.
+TEST(MakePlan, TakesThePartsOfTheRequestOver) {
   Request request;
-  request.storage = Storage::on_demand;
-  request.solver = Solver::progressive;
-  request.accuracy = 0.1;
-  try {
-    simulate(cube_room(0.5, 1), request);
-    FAIL() << "expected an InputError";
-  } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with("storage: ")) << error.what();
-    EXPECT_NE(std::string(error.what()).find("an accuracy"), std::string::npos) << error.what();
-  }
+  request.assembly = {.samples = 16, .seed = 7, .lost_share_rays = 64};
+  request.solver = {.solver = Solver::gmres, .max_iterations = 12, .restart = 5};
+  request.accuracy.interest = {"floor"};
+  request.resources = {.threads = 3, .memory = 1e9};
+  const Plan plan = make_plan(furnished_room(0.5), request);
+  EXPECT_EQ(plan.assembly.samples, 16);
+  EXPECT_EQ(plan.assembly.seed, 7U);
+  EXPECT_EQ(plan.assembly.lost_share_rays, 64);
+  EXPECT_EQ(plan.solver.solver, Solver::gmres);
+  EXPECT_EQ(plan.solver.max_iterations, 12);
+  EXPECT_EQ(plan.solver.restart, 5);
+  EXPECT_EQ(plan.accuracy.interest, request.accuracy.interest);
+  EXPECT_EQ(plan.resources.threads, 3);
+  EXPECT_EQ(plan.resources.memory, 1e9);
+}
+
+// Nothing is left open that a step of the run would have to choose.
+TEST(MakePlan, FillsWhatIsLeftOpen) {
+  EXPECT_EQ(make_plan(furnished_room(0.5), {}).solver.relative_error, default_tolerance);
+  Request request;
+  request.accuracy.seconds = 1;
+  const Plan plan = make_plan(furnished_room(0.5), request);
+  EXPECT_TRUE(plan.accuracy.error_bars);
+  EXPECT_TRUE(plan.assembly.keep_errors);
+}
+
+// Form factors that are given are a matrix, even where the rows of lamps would do.
+TEST(MakePlan, KeepsFormFactorsThatAreGiven) {
+  EXPECT_EQ(make_plan(furnished_room(0), {}, {.form_factors = true}).assembly.storage, Storage::tiles);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(Report, LightOfTheMaterialsAddsUp) {
 TEST(Report, KnowsNoCountsOfRowsOnDemand) {
   Simulation simulation = tiny_simulation();
   EXPECT_TRUE(report_of(tiny_scene(), {}, simulation).form_factors.counts.has_value());
-  simulation.plan.storage = Storage::on_demand;
+  simulation.plan.assembly.storage = Storage::on_demand;
   EXPECT_FALSE(report_of(tiny_scene(), {}, simulation).form_factors.counts.has_value());
 }
 
@@ -52,9 +52,9 @@ TEST(Report, TellsRowsFromIterationsAsTheEnd) {
 TEST(Report, IsAccurateWhenNothingElseWasAskedFor) {
   Simulation simulation = tiny_simulation_with_bars();
   EXPECT_TRUE(is_accurate(report_of(tiny_scene(), {}, simulation)));
-  simulation.plan.accuracy = 0.05;
+  simulation.plan.accuracy.relative_error = 0.05;
   EXPECT_TRUE(is_accurate(report_of(tiny_scene(), {}, simulation)));
-  simulation.plan.accuracy = 0.04;
+  simulation.plan.accuracy.relative_error = 0.04;
   EXPECT_FALSE(is_accurate(report_of(tiny_scene(), {}, simulation)));
 }
 

@@ -13,8 +13,8 @@ using namespace test;
 
 Request with_error_bars(std::size_t patches) {
   Request request;
-  request.patches = patches;
-  request.error_bars = true;
+  request.mesh.patches = patches;
+  request.accuracy.error_bars = true;
   return request;
 }
 
@@ -76,8 +76,8 @@ struct Furnace {
   explicit Furnace(double unit) {
     scene = turned(scene, unit);
     Request request;
-    request.max_edge = 0.25 * unit;
-    request.tolerance = 1e-9;
+    request.mesh.max_edge = 0.25 * unit;
+    request.solver.relative_error = 1e-9;
     simulation = simulate(scene, request);
   }
 

@@ -18,13 +18,13 @@ TEST(FinerThan, HasFourPatchesOrMoreInEachOfBothMeshes) {
   for (const double unit : {1.0, 1e-3}) {
     const Scene scene = turned(furnished_room(0.7), unit);
     Request request;
-    request.patches = 150;
-    request.sides = Sides::front;
+    request.mesh.patches = 150;
+    request.mesh.sides = Sides::front;
     const NestedSizes sizes = nested_sizes(scene, request, 3);
     Request asked = request;
-    asked.patches.reset();
-    asked.max_edge = sizes.coarsest_edge / 2;
-    asked.accuracy = 0.01;
+    asked.mesh.patches.reset();
+    asked.mesh.max_edge = sizes.coarsest_edge / 2;
+    asked.accuracy.relative_error = 0.01;
     const PatchMesh adaptive = simulate(scene, asked).mesh;
     const PatchMesh finer = finer_than(sizes.finer.mesh, adaptive);
     EXPECT_GT(finer.size(), sizes.finer.mesh.size());

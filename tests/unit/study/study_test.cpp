@@ -14,8 +14,8 @@ using namespace test;
 
 Request request_for(std::size_t patches) {
   Request request;
-  request.patches = patches;
-  request.sides = Sides::front;
+  request.mesh.patches = patches;
+  request.mesh.sides = Sides::front;
   return request;
 }
 

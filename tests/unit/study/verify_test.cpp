@@ -20,15 +20,15 @@ Scene model(const std::string& name) { return read_scene(mesh_folder() / name); 
 
 Request request_for(std::size_t patches, Sides sides = Sides::automatic) {
   Request request;
-  request.patches = patches;
-  request.sides = sides;
+  request.mesh.patches = patches;
+  request.mesh.sides = sides;
   return request;
 }
 
 // From front sides, with bars.
 Request with_error_bars(std::size_t patches) {
   Request request = request_for(patches, Sides::front);
-  request.error_bars = true;
+  request.accuracy.error_bars = true;
   return request;
 }
 
@@ -92,8 +92,8 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   // needed.
   const Scene scene = cube_room(0.5, 0.5);
   Request request;
-  request.max_edge = 0.5;
-  request.tolerance = 1e-9;
+  request.mesh.max_edge = 0.5;
+  request.solver.relative_error = 1e-9;
   const Simulation simulation = simulate(scene, request);
   const Verification verification = verify(scene, simulation, irradiance_bar(simulation, 0));
   ASSERT_EQ(verification.patches.size(), simulation.mesh.size());
@@ -134,9 +134,9 @@ TEST(Verify, FindsLightOnASideThatWasLeftOut) {
     const Scene scene = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::Scaling(scale) * turn));
     for (const bool wrong : {false, true}) {
       Request request;
-      request.max_edge = 0.5 * scale;
-      request.kept_sides = kept_sides(scene, Sides::automatic);
-      std::vector<std::uint8_t>& front = request.kept_sides->front;
+      request.mesh.max_edge = 0.5 * scale;
+      request.mesh.kept_sides = kept_sides(scene, Sides::automatic);
+      std::vector<std::uint8_t>& front = request.mesh.kept_sides->front;
       const auto lit = static_cast<PolygonIndex>(std::find(front.begin(), front.end(), 1) - front.begin());
       if (wrong) front[lit] = 0;
       const Simulation simulation = simulate(scene, request);

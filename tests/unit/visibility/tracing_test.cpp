@@ -42,8 +42,8 @@ Scene with_pane(Scene scene) {
 TEST(Tracing, BuildsOneSceneForEachSetOfBlockersInARun) {
   const Scene scene = daylit_room();
   Request request;
-  request.patches = 100;
-  request.accuracy = 0.006;
+  request.mesh.patches = 100;
+  request.accuracy.relative_error = 0.006;
   Simulation simulation;
   // All faces, which rays meet and which block the light from outside, and those that can stand between patches.
   EXPECT_EQ(built_by([&] { simulation = simulate(scene, request); }), 2);

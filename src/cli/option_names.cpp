@@ -1,0 +1,95 @@
+#include "cli/option_names.h"
+
+#include "patchlight/base/error.h"
+
+#include "cli/arguments.h"
+#include "plan/check_request.h"
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+namespace patchlight::cli {
+namespace {
+
+// Fields with a value come before the same without one.
+const std::vector<OptionName>& usual_names() {
+  static const std::vector<OptionName> names = {{"read.settings", "--set"},
+                                                {"read.confine", "--confine"},
+                                                {"read.metres_per_unit=0.0254", "--unit in"},
+                                                {"read.metres_per_unit=0.3048", "--unit ft"},
+                                                {"read.metres_per_unit=0.001", "--unit mm"},
+                                                {"read.metres_per_unit=0.01", "--unit cm"},
+                                                {"read.metres_per_unit=1", "--unit m"},
+                                                {"read.metres_per_unit", "--unit"},
+                                                {"mesh.max_edge=", "--max-edge "},
+                                                {"mesh.max_edge", "--max-edge"},
+                                                {"mesh.patches", "--patches"},
+                                                {"mesh.sides=", "--sides "},
+                                                {"mesh.sides", "--sides"},
+                                                {"assembly.storage=on_demand", "--on-demand"},
+                                                {"assembly.close=false", "--no-closure"},
+                                                {"assembly.estimator=", "--estimator "},
+                                                {"assembly.estimator", "--estimator"},
+                                                {"assembly.short_cuts", "--without"},
+                                                {"effects.force=", "--force "},
+                                                {"effects.skip=", "--skip "},
+                                                {"solver.solver=", "--solver "},
+                                                {"solver.max_rows", "--max-rows"},
+                                                {"solver.relaxation", "--relaxation"},
+                                                {"accuracy.relative_error=", "--accuracy "},
+                                                {"accuracy.relative_error", "--accuracy"},
+                                                {"accuracy.seconds", "--time"},
+                                                {"accuracy.interest", "--interest"},
+                                                {"accuracy.error_bars", "--error-bars"},
+                                                {"resources.memory", "--memory"},
+                                                {"given.form_factors", "--form-factors"},
+                                                {"compare.relaxation", "--relaxation"},
+                                                {"compare.contestants", "--solvers"}};
+  return names;
+}
+
+bool is_of_word(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_'; }
+
+// Names in a model and of files stand in quotes, or have more before or behind them.
+bool begins_a_word(const std::string& text, std::size_t k) {
+  return k == 0 || (!is_of_word(text[k - 1]) && std::string("./\\'-").find(text[k - 1]) == std::string::npos);
+}
+
+bool ends_a_word(const std::string& text, std::size_t end) {
+  const bool goes_on = end + 1 < text.size() && text[end] == '.' && is_of_word(text[end + 1]);
+  return end == text.size() || (!is_of_word(text[end]) && !goes_on);
+}
+
+// The name of the field that the text has at `begin`, if any.
+const OptionName* name_at(const std::string& text, std::size_t begin, std::span<const OptionName> names) {
+  if (!begins_a_word(text, begin)) return nullptr;
+  const auto found = std::find_if(names.begin(), names.end(), [&](const OptionName& name) {
+    return text.compare(begin, name.field.size(), name.field) == 0 &&
+           (name.field.ends_with('=') || ends_a_word(text, begin + name.field.size()));
+  });
+  return found == names.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string with_option_names(const std::string& text, std::span<const OptionName> other) {
+  std::string result;
+  for (std::size_t k = 0; k < text.size();) {
+    const OptionName* name = name_at(text, k, other);
+    if (name == nullptr) name = name_at(text, k, usual_names());
+    result += name != nullptr ? name->option : std::string(1, text[k]);
+    k += name != nullptr ? name->field.size() : 1;
+  }
+  return result;
+}
+
+void check_with_names(const Request& request, std::span<const OptionName> other) {
+  try {
+    check(request);
+  } catch (const InputError& error) {
+    throw UsageError(with_option_names(error.what(), other));
+  }
+}
+
+}  // namespace patchlight::cli
