@@ -40,7 +40,7 @@ Estimator estimator_of(const std::string& name) {
        {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
     if (name == name_of(estimator)) return estimator;
   }
-  throw InputError("estimator", "found '" + name + "'; expected one that --estimator takes");
+  throw InputError("estimator", "found '" + name + "'; expected auto, area, point-polygon, hemisphere or contour");
 }
 
 FormFactorInfo info_of(const nlohmann::json& json) {
@@ -80,10 +80,12 @@ void require_same_geometry(const std::filesystem::path& folder, const FormFactor
   if (info.geometry_sha256 == wanted && info.patches == mesh.size()) return;
   std::ostringstream text;
   text << "found form factors of " << info.patches << " patches with geometry " << info.geometry_sha256.substr(0, 12)
-       << ", made from " << info.model << " with edges up to " << info.max_edge << " m and --sides "
-       << name_of(info.sides) << "; expected those of " << mesh.size() << " patches with geometry "
-       << wanted.substr(0, 12) << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
-       << ". Give the same model, --unit and --sides as then, and neither --max-edge nor --patches; with --sides auto "
+       << ", made from " << info.model << " with edges up to " << info.max_edge
+       << " m and mesh.sides=" << name_of(info.sides) << "; expected those of " << mesh.size()
+       << " patches with geometry " << wanted.substr(0, 12)
+       << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
+       << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
+          "mesh.patches; with mesh.sides=auto "
           "the lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
        << folder.string();
   throw InputError(folder.string(), text.str());
@@ -210,7 +212,8 @@ bool is_closed(const FormFactorInfo& info) { return !info.closure.empty() && !in
 Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
   require_same_geometry(folder, info, mesh);
   if (info.format != MatrixFormat::npy) {
-    throw InputError(folder.string(), "found F.mtx; expected F.npy. Make the form factors anew, without --matrix mtx");
+    throw InputError(folder.string(),
+                     "found F.mtx; expected F.npy. Make the form factors anew, with the matrix as npy");
   }
   const std::size_t size = info.patches;
   Eigen::VectorXd area = read_npy(folder / file_name::area, size, 1);

@@ -223,8 +223,8 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
 
 [[noreturn]] void refuse_lights(const std::filesystem::path& folder) {
   throw InputError(folder.string(),
-                   "its scene has luminaires, sun or sky, which are not kept with form factors; give the scene file "
-                   "again: patchlight solve SCENE.toml --form-factors " +
+                   "its scene has luminaires, sun or sky, which are not kept with form factors; solve the scene file "
+                   "again, with given.form_factors " +
                        folder.string());
 }
 

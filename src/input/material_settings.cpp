@@ -14,7 +14,7 @@ namespace {
 using Quantity = MaterialSetting::Quantity;
 
 [[noreturn]] void refuse_setting(const std::string& text, const std::string& message) {
-  throw InputError("--set", "found '" + text + "': " + message);
+  throw InputError("read.settings", "found '" + text + "': " + message);
 }
 
 Quantity quantity_named(const std::string& name, const std::string& text) {

@@ -24,7 +24,7 @@ Scene scene_without_materials(const std::string& file, double metres_per_unit) {
   scene.metres_per_unit = metres_per_unit;
   scene.materials.push_back(default_material());
   scene.notes.emplace_back(
-      "this format has no materials: all faces get the material 'default', reflectance 0.5; --set changes it");
+      "this format has no materials: all faces get the material 'default', reflectance 0.5; read.settings changes it");
   return scene;
 }
 

@@ -42,8 +42,8 @@ SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& optio
     require_within(options.confine, file, file.string());
     return read_scene_file(file, options.confine);
   }
-  throw InputError(
-      "--unit", "a scene file states its units itself, with the keys unit; leave the option out for " + file.string());
+  throw InputError("read.metres_per_unit",
+                   "a scene file states its units itself, with the keys unit; leave it out for " + file.string());
 }
 
 Scene read_entry(const ModelEntry& model, const std::filesystem::path& confine) {

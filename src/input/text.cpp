@@ -65,12 +65,13 @@ void require_within(const std::filesystem::path& confine, const std::filesystem:
   if (confine.empty() || file == "-") return;
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::canonical(confine, error);
-  if (error) throw InputError("--confine", "there is no folder " + confine.string() + "; expected one that is there");
+  if (error)
+    throw InputError("read.confine", "there is no folder " + confine.string() + "; expected one that is there");
   const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
   const auto [rest, ignored] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
   if (!error && rest == folder.end()) return;
   throw InputError(where, "names '" + file.string() + "', which does not lie in " + confine.string() +
-                              "; expected a file in the folder that --confine allows");
+                              "; expected a file in the folder that read.confine allows");
 }
 
 std::vector<TextLine> logical_lines(std::string_view text) {

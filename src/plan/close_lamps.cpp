@@ -37,8 +37,8 @@ std::vector<std::string> notes_on_close_lamps(const Scene& scene, const Occluder
        << " a surface nearer than its patches are large (nearest: " << place_of(scene, scene.polygons[lamp]) << ", "
        << nearest << " m, patches up to " << max_edge
        << " m): the light between them is spread too far and the answer may be wrong by a factor; compare with "
-          "--max-edge "
-       << nearest / scene.metres_per_unit << ", or cut the surface along the lamp's outline";
+          "mesh.max_edge="
+       << nearest / scene.metres_per_unit << " in the model's units, or cut the surface along the lamp's outline";
   return {note.str()};
 }
 

@@ -1,6 +1,7 @@
 #include "plan/survey.h"
 
 #include "base/lower_case.h"
+#include "base/shortest.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
@@ -51,14 +52,16 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
                                        [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
   const double guessed = in_model_units * best.metres;
   if (guessed < smallest_plausible || guessed > largest_plausible) return std::nullopt;
-  return UnitGuess{best.name, "the model would be " + rounded(guessed) + " m long instead of " + rounded(size) +
-                                  " m, the size of a room or a building"};
+  return UnitGuess{best.name, best.metres,
+                   "the model would be " + rounded(guessed) + " m long instead of " + rounded(size) +
+                       " m, the size of a room or a building"};
 }
 
 std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return {};
   const std::string advice =
-      guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason + ": --unit " + guess->unit
+      guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
+                  ": read.metres_per_unit=" + shortest(guess->metres_per_unit)
             : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
   return {
       {ProblemKind::implausible_size,
@@ -127,7 +130,7 @@ std::vector<LampHint> possible_lamps(const Scene& scene) {
 std::string setting_for(const LampHint& hint) {
   std::ostringstream text;
   const bool plain = hint.material.find_first_of(" \t'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-  text << "--set " << (plain ? "" : "'") << hint.material
+  text << "read.settings " << (plain ? "" : "'") << hint.material
        << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ",")) << (plain ? "" : "'");
   return text.str();
 }
@@ -139,7 +142,8 @@ std::string advice_without_lamp(const Scene& scene) {
   if (hints.empty()) {
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
-    return "no material emits, and none looks like a lamp; choose one with --set MATERIAL.radiance=R,G,B from " +
+    return "no material emits, and none looks like a lamp; choose one with read.settings MATERIAL.radiance=R,G,B "
+           "from " +
            first_few(names);
   }
   std::string advice = "no material emits";

@@ -20,7 +20,8 @@ struct MaterialFacts {
 
 /// A unit that makes a model of implausible size plausible.
 struct UnitGuess {
-  std::string unit;  ///< as --unit takes it
+  std::string unit;  ///< m, cm, mm, in or ft
+  double metres_per_unit = 1;
   std::string reason;
 };
 
@@ -61,7 +62,8 @@ std::vector<Problem> problems_with_size(const Scene& scene);
 /// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
 SideCounts count_sides(const Scene& scene, Sides sides);
 
-/// One sentence on a scene in which nothing emits: which material looks like a lamp, and the --set that switches it on.
+/// One sentence on a scene in which nothing emits: which material looks like a lamp, and the setting that switches it
+/// on.
 std::string advice_without_lamp(const Scene& scene);
 
 }  // namespace patchlight

@@ -212,13 +212,15 @@ Scene report_shells(Scene scene) {
   }
   for (const PolygonIndex p : shells.branched) branched.push_back(problem_face(scene, scene.polygons[p]));
   const std::string shine = lamps > 0 ? ", " + counted(lamps, "lamp") + " among them" : "";
-  scene = with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
-                       "turned against the faces next to them" + shine +
-                           "; they stay: --sides auto finds the right sides of closed shells, a lamp shines from its "
-                           "front, --sides front shows the wrong side");
+  scene =
+      with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
+                   "turned against the faces next to them" + shine +
+                       "; they stay: mesh.sides=auto finds the right sides of closed shells, a lamp shines from its "
+                       "front, mesh.sides=front shows the wrong side");
   if (branched.empty()) return scene;
   const std::string what = counted(shells.branched_edges, "edge") + " of three faces or more, " +
-                           listed(scene, branched) + " at them; --sides auto keeps both sides of shells joined there";
+                           listed(scene, branched) +
+                           " at them; mesh.sides=auto keeps both sides of shells joined there";
   scene.problems.push_back({ProblemKind::non_manifold_edges, shells.branched_edges, what, std::move(branched)});
   return scene;
 }

@@ -28,7 +28,8 @@ void check_material(const Scene& scene, const Material& material) {
     if (!(rho >= 0 && rho <= 1)) {
       std::ostringstream message;
       message << name << " has reflectance " << shortest(rho)
-              << "; expected 0 to 1 in every band. Mend Kd, or use --set " << material.name << ".reflectance=R,G,B";
+              << "; expected 0 to 1 in every band. Mend Kd, or use read.settings " << material.name
+              << ".reflectance=R,G,B";
       throw InputError(scene.file, message.str());
     }
   }
@@ -38,7 +39,7 @@ void check_material(const Scene& scene, const Material& material) {
     std::ostringstream message;
     message << name << " has transmittance " << shortest(tau) << " and reflectance "
             << shortest(material.reflectance[band])
-            << "; expected numbers not below 0 whose sum is at most 1. Use --set " << material.name
+            << "; expected numbers not below 0 whose sum is at most 1. Use read.settings " << material.name
             << ".reflectance=R,G,B";
     throw InputError(scene.file, message.str());
   }
@@ -46,7 +47,7 @@ void check_material(const Scene& scene, const Material& material) {
     if (!(exitance >= 0 && std::isfinite(exitance))) {
       std::ostringstream message;
       message << name << " has exitance " << exitance
-              << " W/m^2; expected a finite number not below 0. Mend Ke, or use --set " << material.name
+              << " W/m^2; expected a finite number not below 0. Mend Ke, or use read.settings " << material.name
               << ".exitance=R,G,B";
       throw InputError(scene.file, message.str());
     }

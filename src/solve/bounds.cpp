@@ -75,7 +75,7 @@ std::string trapped_light(const TransportOperator& transport, const RadiosityPro
   std::ostringstream text;
   text << "the light of " << patches << (patches == 1 ? " patch" : " patches")
        << " of lamps gets to surfaces only that reflect all of it, reflectance 1, and never out: it would grow without "
-          "end. Lower a reflectance with --set, or open the room";
+          "end. Lower a reflectance with read.settings, or open the room";
   return text.str();
 }
 

@@ -5,8 +5,8 @@
 
 namespace patchlight {
 
-/// The user's input cannot be used. `where` names the file and line or the option ("room.obj:12", "--tolerance");
-/// the message says what was found, what was expected and how to mend it.
+/// The user's input cannot be used. `where` names the file and line or the field of the request ("room.obj:12",
+/// "mesh.max_edge"); the message says what was found, what was expected and how to mend it.
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& where, const std::string& message) : std::runtime_error(where + ": " + message) {}

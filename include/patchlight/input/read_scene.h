@@ -15,12 +15,12 @@ struct MaterialSetting {
   enum class Quantity { reflectance, exitance, radiance, transmittance };
   std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
-  Spectrum value;               ///< one value stands for all bands
-  std::string where = "--set";  ///< where it is asked for, for messages
+  Spectrum value;                       ///< one value stands for all bands
+  std::string where = "read.settings";  ///< where it is asked for, for messages
 };
 
 /// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance= or .transmittance=.
-/// \throws InputError naming the option --set.
+/// \throws InputError naming read.settings.
 MaterialSetting parse_material_setting(const std::string& text);
 
 /// How a model file is to be taken.

@@ -40,7 +40,7 @@ TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
       parse_material_setting(text);
       FAIL() << "accepted";
     } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()).rfind("--set: ", 0), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("read.settings: ", 0), 0U) << error.what();
       EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
     }
   }

@@ -213,7 +213,7 @@ TEST_F(ReadScene, SettingsChangeMaterials) {
   EXPECT_TRUE((scene.materials[2].reflectance == rgb(0.25, 0.25, 0.25)).all()) << "the last one wins, before the check";
 
   const std::string message = refusal(file, settings({"wall.exitance=1"}));
-  EXPECT_EQ(message.rfind("--set: ", 0), 0U) << message;
+  EXPECT_EQ(message.rfind("read.settings: ", 0), 0U) << message;
   EXPECT_TRUE(contains(message, "'wall'")) << message;
   EXPECT_TRUE(contains(message, "white, light, broken")) << message;
 }

@@ -224,7 +224,7 @@ TEST_F(SceneFile, WithoutModelIsRefused) {
 TEST_F(SceneFile, UnitOptionIsRefused) {
   ReadOptions options;
   options.metres_per_unit = 0.01;
-  EXPECT_NE(refused(room, options).find("--unit"), std::string::npos);
+  EXPECT_NE(refused(room, options).find("read.metres_per_unit"), std::string::npos);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(CloseLamps, AreNamedWithTheEdgeThatWouldDo) {
   const Scene scene = uplight(0.01);
   const std::vector<std::string> notes = notes_on_close_lamps(scene, Occluder(scene), 0.3);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("--max-edge 0.01"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("mesh.max_edge=0.01"), std::string::npos) << notes[0];
 }
 
 TEST(CloseLamps, NoneWherePatchesAreSmallOrTheLampIsFar) {

@@ -82,13 +82,13 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
   EXPECT_FALSE(report.usable);
   ASSERT_TRUE(has(report, ProblemKind::no_lamp));
   EXPECT_EQ(report.problems[0].kind, ProblemKind::no_lamp) << "the worst comes first";
-  EXPECT_NE(report.problems[0].what.find("--set 'Ceiling Lamp.radiance=10'"), std::string::npos)
+  EXPECT_NE(report.problems[0].what.find("read.settings 'Ceiling Lamp.radiance=10'"), std::string::npos)
       << report.problems[0].what;
 
   scene.lamp_hints = {{"wall", rgb(20, 10, 5), "its Ka is 20, 10, 5"}};
   const std::string advice = advice_without_lamp(scene);
   EXPECT_NE(advice.find("its Ka is 20, 10, 5"), std::string::npos) << advice;
-  EXPECT_NE(advice.find("--set wall.radiance=20,10,5 "), std::string::npos) << advice;
+  EXPECT_NE(advice.find("read.settings wall.radiance=20,10,5 "), std::string::npos) << advice;
 
   scene.lamp_hints.clear();
   scene.materials[1].name = "panel";
