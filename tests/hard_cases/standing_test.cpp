@@ -28,8 +28,8 @@ Scene room_with_block(bool bottom) {
 // that around a closed block, within the bars. A bar of a patch is one standard error of either solution.
 TEST(StandingBlock, WithoutABottomIsDarkInside) {
   Request request;
-  request.patches = 300;
-  request.error_bars = true;
+  request.mesh.patches = 300;
+  request.accuracy.error_bars = true;
   const Simulation open = simulate(room_with_block(false), request);
   const Simulation closed = simulate(room_with_block(true), request);
   for (PatchIndex i = 0; i < open.mesh.size(); ++i) {
