@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Runs the tool on damaged files of every kind it reads, and reports what it must not do.
 
-usage: scripts/mutate.py TOOL [--runs N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...] [--keep FOLDER]
+usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...] [--keep FOLDER]
 
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, brackets piled
 up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s of the
 processor, or returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
-with sanitizers. Run number k of a seed is always the same. Bad inputs are kept in FOLDER (default: mutate_found).
+with sanitizers. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
+line every 500 runs says how far it has come. Bad inputs are kept in FOLDER (default: mutate_found).
 """
 import argparse
 import concurrent.futures
@@ -66,7 +67,7 @@ reflectance = [0.5, 0.4, 0.3]
 name = "desk"
 corner = [-0.5, -0.5, 0.7]
 edges = [[1, 0, 0], [0, 1, 0]]
-spacing = 0.5
+spacing = 1
 [[sensors]]
 points = [[0, 0, 0.3, 0, 0, 1]]
 [[sensors]]
@@ -74,7 +75,7 @@ file = "spots.pts"
 [[sensors]]
 floor = "walls"
 height = 0.2
-spacing = 0.5
+spacing = 1
 [[camera]]
 name = "door"
 eye = [0.8, 0, 1]
@@ -218,6 +219,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tool", type=os.path.abspath)
     parser.add_argument("--runs", type=int, default=1_000_000_000, help="default: until --seconds are over")
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -230,7 +232,7 @@ def main():
         cases = seeds(options.tool, pathlib.Path(scratch))
         kinds = options.kinds or sorted(cases)
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            numbers = iter(range(options.runs))
+            numbers = iter(range(options.first, options.first + options.runs))
             pending = set()
             while True:
                 while len(pending) < 2 * options.jobs and time.monotonic() - begin < options.seconds:
@@ -243,10 +245,13 @@ def main():
                 done, pending = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_COMPLETED)
                 for future in done:
                     count += 1
+                    if count % 500 == 0:
+                        print(f"mutate: {count} runs in {time.monotonic() - begin:.0f} s, {len(bad)} bad", flush=True)
                     if future.result():
                         bad.append(future.result())
                         print(future.result(), file=sys.stderr, flush=True)
-    print(f"mutate: {count} runs of seed {options.seed} over {', '.join(kinds)} in {time.monotonic() - begin:.0f} s, "
+    since = f" from {options.first} on" if options.first else ""
+    print(f"mutate: {count} runs{since} of seed {options.seed} over {', '.join(kinds)} in {time.monotonic() - begin:.0f} s, "
           f"{len(bad)} bad")
     return 1 if bad or count == 0 else 0
 
