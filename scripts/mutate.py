@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Runs the tool on damaged files of every kind it reads, and reports what it must not do.
 
-usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...] [--keep FOLDER]
+usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...]
+       [--commands A,B,...] [--keep FOLDER]
 
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, brackets piled
 up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s of the
 processor, or returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
-with sanitizers. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
+with sanitizers; --commands check,plan tries what reads alone, at a fraction of the time. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
 line every 500 runs says how far it has come. Bad inputs are kept in FOLDER (default: mutate_found).
 """
 import argparse
@@ -132,8 +133,8 @@ def npy_folder(tool, folder):
         shutil.copytree(pathlib.Path(place) / "F", folder)
 
 
-def seeds(tool, scratch):
-    """For every kind the good files, the one that is damaged first, and the commands that read them."""
+def seeds(tool, scratch, wanted):
+    """For every kind the good files, the one that is damaged first, and those of the wanted commands that read them."""
     everything = {"room.obj": ROOM.encode(), "room.mtl": MATERIALS.encode(), "lamp.ies": IES.encode(), "w.epw": EPW.encode(),
                   "spots.pts": POINTS.encode(), "scene.toml": (SCENE + SKIES[0]).encode()}
     solve = ["--patches", "30", "--memory", "1GB", "-q", "-o", "out.ply"]
@@ -156,10 +157,12 @@ def seeds(tool, scratch):
             cases[kind].append(({**everything, name: file.read_bytes()}, name,
                                 [["check", name], ["plan", name, "--patches", "30", *lamp], ["solve", name, *lamp, *solve]]))
     cases["obj"].append((everything, "room.obj", [["check", "room.obj"], ["solve", "room.obj", *solve]]))
-    npy_folder(tool, scratch / "F")
-    files = {f"F/{file.name}": file.read_bytes() for file in sorted((scratch / "F").iterdir())}
-    cases["npy"] = [(files, name, [["relight", "F", "-q", "-o", "out.ply"]]) for name in files if not name.endswith(".vtp")]
-    return cases
+    if "relight" in wanted:
+        npy_folder(tool, scratch / "F")
+        files = {f"F/{file.name}": file.read_bytes() for file in sorted((scratch / "F").iterdir())}
+        cases["npy"] = [(files, name, [["relight", "F", "-q", "-o", "out.ply"]]) for name in files if not name.endswith(".vtp")]
+    return {kind: [(files, name, [words for words in commands if words[0] in wanted]) for files, name, commands in some]
+            for kind, some in cases.items()}
 
 
 def damaged(data, chance):
@@ -224,12 +227,13 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--kinds", type=lambda text: text.split(","))
+    parser.add_argument("--commands", type=lambda text: text.split(","), default=["check", "plan", "solve", "relight"])
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("mutate_found"))
     options = parser.parse_args()
     begin = time.monotonic()
     bad, count = [], 0
     with tempfile.TemporaryDirectory(prefix="patchlight-mutate-") as scratch:
-        cases = seeds(options.tool, pathlib.Path(scratch))
+        cases = seeds(options.tool, pathlib.Path(scratch), options.commands)
         kinds = options.kinds or sorted(cases)
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             numbers = iter(range(options.first, options.first + options.runs))
