@@ -1,6 +1,6 @@
 #include "archive/geometry_hash.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 
 #include <array>
 #include <bit>

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/regular_file.h"
+#include "files/regular_file.h"
 #include "output/whole_file.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include "archive/row_sums.h"
 #include "archive/sampling_error_json.h"
 #include "base/parallel.h"
-#include "base/regular_file.h"
+#include "files/regular_file.h"
 #include "transport/narrow.h"
 
 #include <algorithm>

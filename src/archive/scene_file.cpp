@@ -4,7 +4,7 @@
 #include "patchlight/output/provenance.h"
 
 #include "archive/file_names.h"
-#include "base/regular_file.h"
+#include "files/regular_file.h"
 #include "output/write_bytes.h"
 
 #include <array>

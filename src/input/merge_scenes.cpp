@@ -1,6 +1,6 @@
 #include "input/merge_scenes.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 
 #include <algorithm>
 #include <cassert>

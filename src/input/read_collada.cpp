@@ -1,6 +1,6 @@
 #include "input/read_collada.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/assimp_scene.h"
 #include "input/isolated.h"
 #include "input/text.h"

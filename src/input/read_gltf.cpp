@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/gltf_material.h"
 #include "input/gltf_model.h"
 #include "input/isolated.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/at_line.h"
 #include "input/obj_libraries.h"
 #include "input/read_mtl.h"

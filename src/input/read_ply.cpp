@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/materials.h"
 #include "input/ply_body.h"
 #include "input/text.h"

@@ -1,4 +1,4 @@
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/scene_file.h"
 #include "input/text.h"
 #include "input/toml_lights.h"

@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/lower_case.h"
-#include "base/sha256.h"
+#include "files/sha256.h"
 #include "input/materials.h"
 #include "input/text.h"
 

@@ -1,4 +1,5 @@
-"""A project of a few lines finds the installed library, builds with it and solves the furnace cube.
+"""Projects of a few lines find the installed library and build with it: one solves the furnace cube, the other takes the
+core alone, which needs nothing that reads or writes files.
 
 usage: consumer_test.py BUILD_FOLDER VERSION CMAKE COMPILER
 """
@@ -15,16 +16,30 @@ def run(*words):
     subprocess.run([str(word) for word in words], check=True)
 
 
+def linked(program, libraries):
+    """Those of the libraries that the program loads, itself or by another one."""
+    loaded = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
+    return {name for name in libraries if f"lib{name}" in loaded}
+
+
 def main(build, version, cmake, compiler):
     with tempfile.TemporaryDirectory(prefix="patchlight-consumer-") as name:
         folder = pathlib.Path(name)
         installed = folder / "installed"
         run(cmake, "--install", build, "--prefix", installed)
-        run(cmake, "-S", HERE / "consumer", "-B", folder / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={installed}",
-            f"-DCMAKE_CXX_COMPILER={compiler}")
-        run(cmake, "--build", folder / "build")
-        run(folder / "build" / "consumer", MODEL, folder / "cube.ply")
+        for name in ("consumer", "consumer_of_core"):
+            run(cmake, "-S", HERE / name, "-B", folder / name, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={installed}",
+                f"-DCMAKE_CXX_COMPILER={compiler}")
+            run(cmake, "--build", folder / name)
+        run(folder / "consumer" / "consumer", MODEL, folder / "cube.ply")
         assert (folder / "cube.ply").read_bytes().startswith(b"ply\n")
+
+        # Of what the whole library is linked with, the core has what meshes and rays need.
+        core = folder / "consumer_of_core" / "consumer_of_core"
+        run(core)
+        of_files = {"vtk", "cairo", "assimp", "tinygltf", "crypto"}
+        assert linked(folder / "consumer" / "consumer", of_files | {"embree"}) == of_files | {"embree"}
+        assert linked(core, of_files | {"embree"}) == {"embree"}, linked(core, of_files)
 
         # What is installed is the tool, its manual and every public header, and it is moved as a whole.
         shown = subprocess.run([installed / "bin" / "patchlight", "--version"], check=True, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-#include "base/regular_file.h"
+#include "files/regular_file.h"
 
 #include "patchlight/base/error.h"
 
