@@ -3,7 +3,7 @@
 
 #include "accuracy/errors.h"
 #include "accuracy/means_around.h"
-#include "base/vectors.h"
+#include "base/conjugate_directions.h"
 #include "solve/scattering.h"
 #include "transport/random_errors.h"
 
@@ -32,20 +32,14 @@ Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area
   const Eigen::ArrayXd damped = (1 + damping) * diagonal;
 
   Field lambda = Field::Zero(row_errors.rows(), row_errors.cols());
-  Field r = -row_errors;
-  Field z = r.colwise() / diagonal;
-  Field p = z;
-  Eigen::ArrayXd rz = dot(r, z);
-  const Eigen::ArrayXd first = rz;
-  for (int k = 0; k < most_iterations && (rz > tolerance * tolerance * first).any(); ++k) {
+  ConjugateDirections<Field> method(-row_errors, [&](const Field& r) -> Field { return r.colwise() / diagonal; });
+  const Eigen::ArrayXd first = method.square();
+  for (int k = 0; k < most_iterations && (method.square() > tolerance * tolerance * first).any(); ++k) {
+    const Field& p = method.direction();
     const Field q = (transport.apply(p).colwise() * A) + (p.colwise() * damped);
-    const Eigen::ArrayXd step = quotient(rz, dot(p, q));
+    const Eigen::ArrayXd step = method.length(q);
     lambda += scaled(p, step);
-    r -= scaled(q, step);
-    z = r.colwise() / diagonal;
-    const Eigen::ArrayXd rz_next = dot(r, z);
-    p = z + scaled(p, quotient(rz_next, rz));
-    rz = rz_next;
+    method.advance(q, step);
   }
   return lambda;
 }

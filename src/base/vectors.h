@@ -29,7 +29,8 @@ double total(const Eigen::VectorXd& x);
 double scalar_product(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
 double largest(const Eigen::VectorXd& x);
 
-/// a / b per band; 0 where b is 0, as for bands that are solved.
+/// a / b per band; 0 where b is 0: a band that is solved exactly has residual and direction 0, and takes no further
+/// step.
 Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
 
 /// A field with each band multiplied by a factor.

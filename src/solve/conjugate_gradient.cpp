@@ -1,4 +1,4 @@
-#include "base/vectors.h"
+#include "base/conjugate_directions.h"
 #include "solve/krylov.h"
 #include "solve/scattering.h"
 
@@ -11,9 +11,9 @@ namespace {
 
 using Apply = std::function<Field(const FieldView&)>;
 
-// A direction that is kept out of the iteration: z with (I - G) z, and the radiosity and irradiance that belong to it.
+// A direction that is kept out of the iteration: z with (I - G) z.
 struct Deflation {
-  Field z, image, radiosity, irradiance;
+  Field z, image;
   Eigen::ArrayXd energy;  // z . (I - G) z
 };
 
@@ -26,7 +26,7 @@ class ConjugateGradient {
         root_(problem.scattering, problem.area),
         B_(problem.exitance),
         H_(std::move(direct_irradiance)),
-        s_(root_.of_irradiance(H_)) {}
+        directions_(root_.of_irradiance(H_)) {}
 
   // Deflates the mode of constant irradiance, h = 1: z = R^1/2 A^1/2.
   void deflate();
@@ -35,21 +35,24 @@ class ConjugateGradient {
   const Field& irradiance() const { return H_; }
 
  private:
-  void advance(const Field& radiosity, const Field& irradiance, const Field& image, const Eigen::ArrayXd& length);
+  void advance(const Field& radiosity, const Field& irradiance, const Eigen::ArrayXd& length);
+  void keep_deflated();
 
   Apply apply_;
   SymmetricRoot root_;
   Field B_, H_;
-  Field s_;  // residual of w
-  Field p_;  // direction
+  ConjugateDirections<Field> directions_;  // of w
   std::optional<Deflation> deflation_;
 };
 
-void ConjugateGradient::advance(const Field& radiosity, const Field& irradiance, const Field& image,
-                                const Eigen::ArrayXd& length) {
+void ConjugateGradient::advance(const Field& radiosity, const Field& irradiance, const Eigen::ArrayXd& length) {
   B_ += scaled(radiosity, length);
   H_ += scaled(irradiance, length);
-  s_ -= scaled(image, length);
+}
+
+// No direction has a part along z in the product of I - G.
+void ConjugateGradient::keep_deflated() {
+  directions_.take_out(deflation_->z, quotient(dot(deflation_->image, directions_.residual()), deflation_->energy));
 }
 
 void ConjugateGradient::deflate() {
@@ -57,23 +60,23 @@ void ConjugateGradient::deflate() {
   const Field y = root_.radiosity_of(z);
   const Field Hy = apply_(y);
   const Field image = z - root_.of_irradiance(Hy);
-  deflation_ = {z, image, y, Hy, dot(z, image)};
-  advance(y, Hy, image, quotient(dot(z, s_), deflation_->energy));
+  deflation_ = {z, image, dot(z, image)};
+  const Field& s = directions_.residual();
+  const Eigen::ArrayXd length = quotient(dot(z, s), deflation_->energy);
+  advance(y, Hy, length);
+  directions_ = ConjugateDirections<Field>(s - scaled(image, length));
+  keep_deflated();
 }
 
 void ConjugateGradient::step() {
-  const Eigen::ArrayXd ss = dot(s_, s_);
-  if (p_.size() == 0) {
-    p_ = s_;
-    if (deflation_) p_ -= scaled(deflation_->z, quotient(dot(deflation_->image, s_), deflation_->energy));
-  }
   // q = (I - G) p
-  const Field y = root_.radiosity_of(p_);
+  const Field y = root_.radiosity_of(directions_.direction());
   const Field Hy = apply_(y);
-  const Field q = p_ - root_.of_irradiance(Hy);
-  advance(y, Hy, q, quotient(ss, dot(p_, q)));
-  p_ = s_ + scaled(p_, quotient(dot(s_, s_), ss));
-  if (deflation_) p_ -= scaled(deflation_->z, quotient(dot(deflation_->image, s_), deflation_->energy));
+  const Field q = directions_.direction() - root_.of_irradiance(Hy);
+  const Eigen::ArrayXd length = directions_.length(q);
+  advance(y, Hy, length);
+  directions_.advance(q, length);
+  if (deflation_) keep_deflated();
 }
 
 Solution solved(Iterations iterations, bool deflated) {

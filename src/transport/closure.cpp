@@ -2,8 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/conjugate_directions.h"
 #include "base/parallel.h"
-#include "base/vectors.h"
 #include "transport/entries.h"
 
 #include <algorithm>
@@ -116,22 +116,17 @@ std::optional<Eigen::VectorXd> row_multipliers(const EntryWeights& W, const Eige
   const auto apply = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return W.times(x) + diagonal.cwiseProduct(x); };
 
   Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n);
-  Eigen::VectorXd r = (defect.array() * active).matrix();
-  Eigen::VectorXd z = (r.array() * inverse).matrix();
-  Eigen::VectorXd p = z;
-  double rz = scalar_product(r, z);
+  ConjugateDirections<Eigen::VectorXd> method(
+      (defect.array() * active).matrix(),
+      [&](const Eigen::VectorXd& r) -> Eigen::VectorXd { return (r.array() * inverse).matrix(); });
   for (int k = 0; k < max_iterations; ++k) {
-    if ((r.array().abs() <= row_tolerance * area.array()).all()) return lambda;
+    if ((method.residual().array().abs() <= row_tolerance * area.array()).all()) return lambda;
     report(observer, 0);
-    const Eigen::VectorXd q = apply(p);
-    const double step = rz / scalar_product(p, q);
+    const Eigen::VectorXd q = apply(method.direction());
+    const double step = method.length(q);
     if (!std::isfinite(step)) return std::nullopt;
-    lambda += step * p;
-    r -= step * q;
-    z = (r.array() * inverse).matrix();
-    const double rz_next = scalar_product(r, z);
-    p = z + rz_next / rz * p;
-    rz = rz_next;
+    lambda += step * method.direction();
+    method.advance(q, step);
   }
   return std::nullopt;
 }
