@@ -29,12 +29,14 @@ struct TransportFacts {
   Eigen::VectorXd row_sum;      ///< after; empty as well
   LostShare lost;
   AssemblyCounts counts;            ///< zero with rows on demand
-  double bare_rays_per_second = 0;  ///< bare_ray_rate(); 0 when few rays were traced, or with error bars
+  double bare_rays_per_second = 0;  ///< shadow rays alone between patches that face each other, on all threads; 0 when
+                                    ///< few rays were traced, or with error bars
   SamplingError error;              ///< of the sampled exchange areas, before closure
   std::string closure;              ///< which method closed the rows
 };
 
-/// One of the meshes on the way to an accuracy, and what it gave; relative errors as relative_bar() has them.
+/// One of the meshes on the way to an accuracy, and what it gave. Errors are relative: the error of the radiosity in
+/// the norm of the areas as a share of the reflected radiosity, ||dB||_A / ||B - E||_A, of the worst band.
 struct AccuracyStep {
   PatchIndex patches = 0;
   PatchIndex new_patches = 0;  ///< those not in the mesh before

@@ -62,9 +62,9 @@ inline constexpr double form_factor_scale = 1.5;
 Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
 
 /// What no comparison with larger patches shows, either: in a gap that is narrower than its patches are wide, light
-/// that gets in at the rim is spread over all of a patch, however large. There H_i times how much of the hemisphere
-/// above 0.35, the view of a face 0.6 edges away, is taken by faces that are so near and look back. `S` as the
-/// transport has it, m^2. O(size^2).
+/// that gets in at the rim is spread over all of a patch, however large. There (s - 0.35) / (1 - 0.35) H_i / 2, where s
+/// is the share of the hemisphere that faces take which are nearer than 0.6 edges and look back: 0.35 is what one face
+/// at that distance takes, and the half is measured. 0 where s is smaller. `S` as the transport has it, m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are

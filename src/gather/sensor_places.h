@@ -10,8 +10,6 @@
 
 namespace patchlight {
 
-class Occluder;
-
 /// What a sensor's place means for its reading.
 enum class Standing : std::uint8_t {
   free,         ///< light that reaches the place is what is asked for

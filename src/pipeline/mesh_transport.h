@@ -11,7 +11,7 @@
 
 namespace patchlight {
 
-/// Exchange areas S_ij = A_i F_ij of a mesh before closure.
+/// Exchange areas S_ij = A_i F_ij of a mesh before closure; with rows on demand there are none.
 struct RawTransport {
   Exchange exchange;
   TransportFacts facts;
@@ -27,13 +27,16 @@ struct MeshTransport {
   std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed up over parents
 };
 
-/// All pairs, with visibility from shadow rays, unless Steps::exchange knows them or their rows are computed on demand;
-/// and the share of each patch's hemisphere from which no patch is seen. What is known of the mesh before is taken
-/// over. \throws Cancelled.
+/// All pairs, with visibility from shadow rays, unless Steps::exchange knows them; and the share of each patch's
+/// hemisphere from which no patch is seen. With rows on demand (AssemblyOptions::storage) the lost shares alone: the
+/// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars what is known of the
+/// mesh before is taken over; without them `known` is not looked at, and the rate of bare rays is measured. \throws
+/// Cancelled.
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known);
 
-/// The same after closure: each row sums up to what its patch sees. The mesh has to outlive the transport.
-/// \throws Cancelled.
+/// The same after closure: each row sums up to what its patch sees. Without AssemblyOptions::close the rows are as they
+/// were found. Rows on demand are not closed, either, whatever the plan says; their facts stay those of `raw`. The
+/// mesh, and for rows on demand the run's tracing, have to outlive the transport. \throws Cancelled.
 MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMesh& mesh, RawTransport raw);
 
 }  // namespace patchlight

@@ -124,8 +124,9 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
 
 bool stopped_by_rows(const Simulation& simulation) {
   const SolverOptions& options = simulation.plan.solver;
-  if (simulation.solution.history.empty()) return false;
-  const auto shots = static_cast<double>(simulation.solution.history.back().number);
+  const Solution& solution = simulation.solution;
+  if (solution.converged || !solution.trapped.empty() || solution.history.empty()) return false;
+  const auto shots = static_cast<double>(solution.history.back().number);
   return options.max_rows && shots < static_cast<double>(options.max_iterations) * simulation.mesh.size();
 }
 

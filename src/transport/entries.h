@@ -8,8 +8,9 @@
 
 namespace patchlight {
 
-// What closure, the merging of parents, the draws of errors and the writers ask of a storage of exchange areas: beside
-// multiply(), row_sums(), at() and set() the following. Another storage has these functions, too.
+// What closure, the merging of parents, the draws of errors and the writers ask of a storage of exchange areas:
+// ExchangeAreas::at() and set(), multiply() and row_sums() of exchange_areas.h, and entry_parts(), for_entries() and
+// changed() of this file. Another storage has functions of these names, too.
 
 /// In how many parts for_entries() goes through the entries: every pair of patches is in one of them.
 PatchIndex entry_parts(const ExchangeAreas& S);

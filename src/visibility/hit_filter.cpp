@@ -48,6 +48,32 @@ bool is_covered(const TrianglePlane& plane, const ExactRay& ray, const CoveredPl
 
 }  // namespace
 
+RTCRay16 new_rays() {
+  RTCRay16 rays;
+  for (unsigned k = 0; k < packet_size; ++k) {
+    rays.tnear[k] = 0;
+    rays.tfar[k] = 1;
+    rays.time[k] = 0;
+    rays.mask[k] = ~0U;
+    rays.id[k] = k;
+    rays.flags[k] = 0;
+  }
+  return rays;
+}
+
+RTCRay16 rays_of(const ShadowPacket& packet) {
+  RTCRay16 rays = new_rays();
+  for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
+    rays.org_x[k] = packet.from_x[k];
+    rays.org_y[k] = packet.from_y[k];
+    rays.org_z[k] = packet.from_z[k];
+    rays.dir_x[k] = packet.toward_x[k];
+    rays.dir_y[k] = packet.toward_y[k];
+    rays.dir_z[k] = packet.toward_z[k];
+  }
+  return rays;
+}
+
 ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
   const Point from(rays.from_x[k], rays.from_y[k], rays.from_z[k]);
   const Vector toward(rays.toward_x[k], rays.toward_y[k], rays.toward_z[k]);

@@ -32,6 +32,12 @@ struct ExactRay {
   PolygonIndex to_polygon = no_polygon;
 };
 
+/// Sixteen rays from 0 to 1 as Embree takes them, of which origins and directions are still to be set.
+RTCRay16 new_rays();
+
+/// The rays of a packet as Embree takes them.
+RTCRay16 rays_of(const ShadowPacket& packet);
+
 /// Ray k of a packet.
 ExactRay exact_ray(const ShadowPacket& rays, std::size_t k);
 

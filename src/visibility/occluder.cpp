@@ -1,35 +1,25 @@
 #include "visibility/occluder.h"
 
 #include "base/sampling.h"
-#include "scene/extent.h"
 #include "scene/transmittance.h"
-#include "scene/triangulate.h"
-#include "visibility/convex_hull.h"
+#include "visibility/blockers.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
+#include "visibility/traced_faces.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <embree3/rtcore.h>
-#include <iterator>
 #include <limits>
-#include <new>
 #include <numeric>
-#include <stdexcept>
-#include <string>
 
 namespace patchlight {
 namespace {
 
 // Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
 constexpr double beyond = 1e6;
-
-void fail_on_error(void*, RTCError code, const char* message) {
-  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-  throw std::runtime_error(std::string("Embree: ") + message);
-}
 
 RTCIntersectContext new_context() {
   RTCIntersectContext context;
@@ -47,138 +37,14 @@ RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
   return query;
 }
 
-std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
-
-// Whether clear polygons let light through.
-bool lets_through(Occluder::Blockers which) {
-  return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
-}
-
-// The mean transmittances of all polygons; none where no polygon is clear.
-std::vector<double> transmittances(const Scene& scene) {
-  std::vector<double> shares;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) shares.push_back(mean_transmittance(scene, p));
-  if (std::none_of(shares.begin(), shares.end(), [](double share) { return share > 0; })) return {};
-  return shares;
-}
-
-// Left out besides: clear polygons, or all others.
-std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const std::vector<double>& transmittance,
-                                       bool clear) {
-  for (std::size_t p = 0; p < transmittance.size(); ++p)
-    if ((transmittance[p] > 0) == clear) left_out[p] = 1;
-  return left_out;
-}
-
-// The polygons that cannot stand in the way of a segment.
-std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
-  if (which == Occluder::Blockers::all) return none_of(scene);
-  if (which == Occluder::Blockers::none) return std::vector<std::uint8_t>(scene.polygons.size(), 1);
-  if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
-  std::vector<std::uint8_t> left_out;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    left_out.push_back(is_opening(scene, p) == (which == Occluder::Blockers::opaque));
-  return left_out;
-}
-
-// The triangles of some polygons, ready to be traced.
-struct TriangleScene {
-  RTCScene scene = nullptr;
-  std::vector<TrianglePlane> planes;  // per triangle
-
-  TriangleScene() = default;
-  TriangleScene(const TriangleScene&) = delete;
-  TriangleScene& operator=(const TriangleScene&) = delete;
-  ~TriangleScene() {
-    if (scene) rtcReleaseScene(scene);
-  }
-};
-
-// All polygons of a scene, which rays meet, in a scene of about unit size.
-struct Faces {
-  RTCDevice device = rtcNewDevice(nullptr);
-  Point centre;
-  double scale;  // 1 / extent
-  TriangleScene triangles;
-  CoveredPlaces covered_places;
-
-  Faces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings);
-  ~Faces() { rtcReleaseDevice(device); }
-  Faces(const Faces&) = delete;
-  Faces& operator=(const Faces&) = delete;
-
-  Point recentred(const Point& point) const { return scale * (point - centre); }
-  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
-             RTCFilterFunctionN filter = keep_separating_hits) const;
-};
-
-Faces::Faces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings) {
-  // The memory may not do for its threads.
-  if (device == nullptr) throw std::bad_alloc();
-  rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
-  const Box box = main_bounds(scene);
-  centre = box.center();
-  scale = 1 / box.diagonal().norm();
-  build(triangles, scene, without);
-  covered_places.coverings = std::move(coverings);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    std::vector<Point> points = corner_points(scene, p);
-    for (Point& point : points) point = recentred(point);
-    covered_places.polygons.push_back(flat_polygon(points));
-  }
-}
-
-void Faces::build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
-                  RTCFilterFunctionN filter) const {
-  std::vector<Eigen::Vector3f> corners;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (without[p]) continue;
-    std::vector<Point> points = corner_points(scene, p);
-    for (Point& point : points) point = recentred(point);
-    for (const auto& [a, b, c] : triangulate(points)) {
-      for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
-      const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
-      target.planes.push_back({normal, normal.dot(points[a]), p});
-    }
-  }
-  target.scene = rtcNewScene(device);
-  // Robust: rays do not slip between two triangles that share an edge.
-  rtcSetSceneFlags(target.scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(target.scene, RTC_BUILD_QUALITY_HIGH);
-  if (!target.planes.empty()) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), corners.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), target.planes.size()));
-    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      for (int d = 0; d < 3; ++d) vertices[3 * k + static_cast<std::size_t>(d)] = corners[k][d];
-      indices[k] = static_cast<unsigned>(k);
-    }
-    rtcSetGeometryUserData(geometry, target.planes.data());
-    rtcSetGeometryOccludedFilterFunction(geometry, filter);
-    rtcSetGeometryIntersectFilterFunction(geometry, filter);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(target.scene, geometry);
-    rtcReleaseGeometry(geometry);
-  }
-  rtcCommitScene(target.scene);
-}
-
 bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
   return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
-}
-
-// Polygons that rays do not meet: those of the other kind, where only one kind is asked for.
-std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
-  return lets_through(which) ? none_of(scene) : left_out_by(which, scene);
 }
 
 }  // namespace
 
 struct Occluder::Tracer {
-  std::shared_ptr<const Faces> faces;
+  std::shared_ptr<const TracedFaces> faces;
   const TriangleScene* blockers = nullptr;  // those that can block a segment
   TriangleScene own_blockers;               // unless these are all faces
   TriangleScene panes;                      // those that can weaken it
@@ -186,7 +52,7 @@ struct Occluder::Tracer {
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
 
-  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const Faces> met);
+  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met);
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
   float transmittance_of(Crossed crossed) const;
@@ -194,7 +60,7 @@ struct Occluder::Tracer {
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const Faces> met)
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const TracedFaces> met)
     : faces(std::move(met)),
       blockers(&faces->triangles),
       transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
@@ -219,7 +85,7 @@ float Occluder::Tracer::transmittance_of(Crossed crossed) const {
 // What arrives along segments: 0 for one that is blocked, else the product of the transmittances on its way.
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* arriving) const {
   const CoveredPlaces& covered_places = faces->covered_places;
-  alignas(64) RTCRay16 rays;
+  alignas(64) RTCRay16 rays = new_rays();
   alignas(64) int valid[packet_size];
   ExactRay exact[packet_size];
   for (unsigned k = 0; k < packet_size; ++k) {
@@ -234,12 +100,6 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     rays.dir_x[k] = direction.x();
     rays.dir_y[k] = direction.y();
     rays.dir_z[k] = direction.z();
-    rays.tnear[k] = 0;
-    rays.tfar[k] = 1;
-    rays.time[k] = 0;
-    rays.mask[k] = ~0U;
-    rays.id[k] = k;
-    rays.flags[k] = 0;
     // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
     const bool covered = covered_places.any() && covers_end(covered_places, exact[k]);
     valid[k] = k < segments.size() && !covered ? -1 : 0;
@@ -260,29 +120,6 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
   for (std::size_t k = 0; k < segments.size(); ++k)
     if (valid[k] != 0) arriving[k] = transmittance_of(crossed[k]);
 }
-
-namespace {
-
-RTCRay16 rays_of(const ShadowPacket& packet) {
-  RTCRay16 rays;
-  for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
-    rays.org_x[k] = packet.from_x[k];
-    rays.org_y[k] = packet.from_y[k];
-    rays.org_z[k] = packet.from_z[k];
-    rays.dir_x[k] = packet.toward_x[k];
-    rays.dir_y[k] = packet.toward_y[k];
-    rays.dir_z[k] = packet.toward_z[k];
-    rays.tnear[k] = 0;
-    rays.tfar[k] = 1;
-    rays.time[k] = 0;
-    rays.mask[k] = ~0U;
-    rays.id[k] = static_cast<unsigned>(k);
-    rays.flags[k] = 0;
-  }
-  return rays;
-}
-
-}  // namespace
 
 std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
@@ -352,7 +189,8 @@ TracingFrame Occluder::frame() const { return {tracer_->faces->centre, tracer_->
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings)
     : tracer_(std::make_unique<Tracer>(
-          scene, blockers, std::make_shared<const Faces>(scene, never_met(blockers, scene), std::move(coverings)))) {}
+          scene, blockers,
+          std::make_shared<const TracedFaces>(scene, never_met(blockers, scene), std::move(coverings)))) {}
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, const Occluder& like)
     : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces)) {

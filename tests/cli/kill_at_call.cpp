@@ -1,5 +1,6 @@
-// Ends the process just before its KILL_AT_CALL-th call of those that change what stands in a folder: loaded in front
-// of the C library (LD_PRELOAD), so that a test can stop a run between any two of them.
+// Counts the process's calls of the functions below, which rename, remove, create and flush files and folders, and
+// kills it just before call number KILL_AT_CALL. Loaded in front of the C library (LD_PRELOAD), so that a test can stop
+// a run between any two of them.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

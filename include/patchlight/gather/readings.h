@@ -36,7 +36,7 @@ struct SensorValue {
 /// The parts of standard errors by name.
 std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors& errors);
 
-/// True for a sensor inside a wall (place_sensors()): it has no part in statistics.
+/// True for a sensor inside a wall, from which nothing but the backs of surfaces is seen: it has no part in statistics.
 bool is_inside_wall(const Readings& readings, std::size_t sensor);
 
 /// What one of the sensors reads.

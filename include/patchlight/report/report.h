@@ -109,7 +109,7 @@ struct SolutionFacts {
   double patch_bound = 0;          ///< Solution::patch_bound
   std::vector<Iteration> history;  ///< from iteration 0
   double highest_reflectance = 0;  ///< of all patches and bands
-  bool stopped_by_rows = false;    ///< SolverOptions::max_rows ended it, not max_iterations
+  bool stopped_by_rows = false;    ///< not converged, as SolverOptions::max_rows ended it before
 };
 
 /// All that is told of a run. Text, JSON and whatever else prints a run take their numbers from here.

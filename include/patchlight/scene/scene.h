@@ -33,10 +33,10 @@ const char* name_of(Side side);
 struct Polygon {
   std::vector<std::uint32_t> corners;  ///< indices into Scene::vertices, at least three
   MaterialIndex material = 0;
-  std::uint32_t group = 0;                       ///< index into Scene::groups
-  std::uint32_t line = 0;                        ///< in the model file, from 1; 0 if unknown
-  std::uint32_t file = 0;                        ///< index into Scene::files
-  std::uint32_t face = 0;                        ///< number of its face in the model's files, from 0; given by repair()
+  std::uint32_t group = 0;  ///< index into Scene::groups
+  std::uint32_t line = 0;   ///< in the model file, from 1; 0 if unknown
+  std::uint32_t file = 0;   ///< index into Scene::files
+  std::uint32_t face = 0;   ///< number of its face in the model's files, from 0; given by read_scene()
   std::optional<MaterialIndex> back_material{};  ///< of its back side, when that is a face of its own
 };
 
@@ -130,7 +130,7 @@ std::string group_name(const Scene& scene, std::uint32_t group);
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
 
-/// Checks what repair() relies on: finite vertices, corners in range, at most 10,000 corners per polygon.
+/// Checks what mending a model relies on: finite vertices, corners in range, at most 10,000 corners per polygon.
 /// \throws InputError naming the file and line.
 void check_vertices(const Scene& scene);
 

@@ -44,8 +44,9 @@ Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);
 /// True when closure weighs the entries by their errors: in an open scene of not too many patches.
 bool weighs_by_errors(const LostShare& lost, PatchIndex patches);
 
-/// Closes what is not closed yet, see close_exchange_areas(). In a closed scene what the storage of closed rows as
-/// floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws
+/// Changes the exchange areas least so that each row sums up to what its patch sees: all of its hemisphere less the
+/// lost share. Those that are closed already stay (Exchange::closure). In a closed scene what the storage of closed
+/// rows as floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign. \throws
 /// Cancelled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 

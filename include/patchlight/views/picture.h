@@ -18,7 +18,7 @@ enum class PictureColors : std::uint8_t {
 
 /// How a picture is taken.
 struct PictureOptions {
-  std::optional<Camera> camera = {};  ///< in metres; without it default_camera()
+  std::optional<Camera> camera = {};  ///< in metres; none: a view that shows most of the scene
   PictureColors colors = PictureColors::natural;
 };
 
@@ -32,7 +32,8 @@ struct Picture {
 /// also an estimate of the light still under way.
 Field display_radiance(const Simulation& simulation);
 
-/// A picture of the smoothed radiance of a solved scene. \throws Cancelled.
+/// A picture of the smoothed radiance of a solved scene. `scene` is the one that was solved, and `simulation` comes
+/// from simulate(). \throws Cancelled.
 Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options = {},
                      const Observer& observer = {});
 

@@ -15,7 +15,8 @@ struct SensorView {
 };
 
 /// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from
-/// luminaires, sun and sky. \throws Cancelled.
+/// luminaires, sun and sky. `scene` is the one that was solved, and `simulation` comes from simulate(). \throws
+/// Cancelled.
 SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -44,7 +44,11 @@ TEST(Report, TellsRowsFromIterationsAsTheEnd) {
   simulation.plan.solver.max_iterations = 1;
   simulation.plan.solver.max_rows = 0.5;
   simulation.solution.history.back().number = 2;
+  simulation.solution.converged = false;
   EXPECT_TRUE(report_of(tiny_scene(), {}, simulation).solution.stopped_by_rows);
+  simulation.solution.converged = true;
+  EXPECT_FALSE(report_of(tiny_scene(), {}, simulation).solution.stopped_by_rows);
+  simulation.solution.converged = false;
   simulation.solution.history.back().number = 3;
   EXPECT_FALSE(report_of(tiny_scene(), {}, simulation).solution.stopped_by_rows);
 }
