@@ -1,8 +1,8 @@
 #include "cli/accuracy_options.h"
 
+#include "base/rounded.h"
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
-#include "cli/text_table.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "cli/compare.h"
 
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"

@@ -1,11 +1,11 @@
 #include "cli/plan.h"
 
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/text_table.h"
 #include "mesh/nested_mesh.h"
 #include "output/whole_file.h"
 #include "output/write_plan.h"

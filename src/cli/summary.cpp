@@ -1,5 +1,6 @@
 #include "cli/summary.h"
 
+#include "base/rounded.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/text_table.h"

@@ -3,20 +3,10 @@
 #include "cli/messages.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace patchlight::cli {
-
-std::string rounded(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
-std::string percent(double share, int digits) { return rounded(100 * share, digits); }
 
 std::string text_table(const std::vector<TextRow>& cells) {
   std::vector<std::size_t> width(cells.front().size());

@@ -1,6 +1,7 @@
 #include "cli/validate.h"
 
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/text_table.h"

@@ -1,6 +1,7 @@
 #include "cli/verify.h"
 
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/accuracy_options.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"

@@ -121,38 +121,40 @@ void stroke_line(cairo_t* cairo, const Pixel& from, const Pixel& to) {
   cairo_stroke(cairo);
 }
 
-// Lines at the ticks; lighter ones at those without a label.
-void draw_grid(cairo_t* cairo, const PlotView& view) {
+// A place `along` an axis and `across` it.
+Pixel place(bool upright, double along, double across) { return upright ? Pixel{across, along} : Pixel{along, across}; }
+
+// Lines at the ticks of an axis, from end to end of the other one; lighter ones at those without a label.
+void draw_grid(cairo_t* cairo, const AxisView& axis, const AxisView& other, bool upright) {
   cairo_set_line_width(cairo, 1);
-  const auto grey = [](const Tick& tick) { return tick.text.empty() ? 0.945 : 0.85; };
-  for (const Tick& tick : view.x.ticks) {
-    const double x = view.x.pixel(tick.value);
-    set_grey(cairo, grey(tick));
-    stroke_line(cairo, {x, view.y.from}, {x, view.y.to});
+  for (const Tick& tick : axis.ticks) {
+    const double along = axis.pixel(tick.value);
+    set_grey(cairo, tick.text.empty() ? 0.945 : 0.85);
+    stroke_line(cairo, place(upright, along, other.from), place(upright, along, other.to));
   }
-  for (const Tick& tick : view.y.ticks) {
-    const double y = view.y.pixel(tick.value);
-    set_grey(cairo, grey(tick));
-    stroke_line(cairo, {view.x.from, y}, {view.x.to, y});
+}
+
+// Ticks out of the frame, with their numbers: below the axis, or left of the upright one.
+void draw_ticks(cairo_t* cairo, const AxisView& axis, double edge_of_frame, bool upright) {
+  const double out = upright ? -1 : 1;
+  const double to_number = tick_length + (upright ? gap / 2 : gap + number_size / 2);
+  for (const Tick& tick : axis.ticks) {
+    const double along = axis.pixel(tick.value), length = tick.text.empty() ? tick_length / 2 : tick_length;
+    stroke_line(cairo, place(upright, along, edge_of_frame), place(upright, along, edge_of_frame + out * length));
+    draw_label(cairo, place(upright, along, edge_of_frame + out * to_number), tick,
+               upright ? Align::right : Align::centre);
   }
 }
 
 void draw_frame(cairo_t* cairo, const PlotView& view) {
+  draw_grid(cairo, view.x, view.y, false);
+  draw_grid(cairo, view.y, view.x, true);
   set_grey(cairo, 0.2);
-  cairo_set_line_width(cairo, 1);
   cairo_rectangle(cairo, view.x.from, view.y.to, view.x.to - view.x.from, view.y.from - view.y.to);
   cairo_stroke(cairo);
   set_text_size(cairo, number_size);
-  for (const Tick& tick : view.x.ticks) {
-    const double x = view.x.pixel(tick.value), length = tick.text.empty() ? tick_length / 2 : tick_length;
-    stroke_line(cairo, {x, view.y.from}, {x, view.y.from + length});
-    draw_label(cairo, {x, view.y.from + tick_length + gap + number_size / 2}, tick, Align::centre);
-  }
-  for (const Tick& tick : view.y.ticks) {
-    const double y = view.y.pixel(tick.value), length = tick.text.empty() ? tick_length / 2 : tick_length;
-    stroke_line(cairo, {view.x.from - length, y}, {view.x.from, y});
-    draw_label(cairo, {view.x.from - tick_length - gap / 2, y}, tick, Align::right);
-  }
+  draw_ticks(cairo, view.x, view.y.from, false);
+  draw_ticks(cairo, view.y, view.x.from, true);
 }
 
 void draw_texts(cairo_t* cairo, const Plot& plot, const PlotView& view) {
@@ -203,7 +205,6 @@ void draw_plot(cairo_t* cairo, const Plot& plot) {
   cairo_set_source_rgb(cairo, 1, 1, 1);
   cairo_paint(cairo);
   const PlotView view = plot_view(cairo, plot);
-  draw_grid(cairo, view);
   draw_frame(cairo, view);
   draw_curves(cairo, plot, view);
   draw_texts(cairo, plot, view);

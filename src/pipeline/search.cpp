@@ -4,6 +4,7 @@
 
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/refine.h"
 #include "pipeline/first_mesh.h"
@@ -14,10 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iomanip>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace patchlight {
@@ -37,12 +36,6 @@ constexpr int most_samples = 256;
 
 // So many meshes at most.
 constexpr int most_steps = 20;
-
-std::string percent(double share) {
-  std::ostringstream text;
-  text << std::setprecision(2) << 100 * share << '%';
-  return text.str();
-}
 
 // The number of patches for which the mesh error is expected to be `factor` times smaller.
 double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
@@ -134,11 +127,11 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
 
 // What the usable memory allows is told, as far as it can be known.
 [[noreturn]] void refuse(const Plan& plan, double patches, double reachable) {
-  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error) +
-                    ": found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
+  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) +
+                    "%: found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
                     gigabytes(memory_needed(static_cast<std::size_t>(patches), plan.assembly, plan.accuracy)) +
                     ", and " + gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
-                    percent(reachable) + " or more: ask for that, or for an accuracy.interest");
+                    percent(reachable, 2) + "% or more: ask for that, or for an accuracy.interest");
 }
 
 // Once three meshes have told how the error falls with the number of patches: refuses what would take far more than

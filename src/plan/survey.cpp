@@ -1,6 +1,7 @@
 #include "plan/survey.h"
 
 #include "base/lower_case.h"
+#include "base/rounded.h"
 #include "base/shortest.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
@@ -34,13 +35,6 @@ struct Unit {
 };
 constexpr std::array<Unit, 5> units = {
     {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
-
-std::string rounded(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
 
 std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return std::nullopt;

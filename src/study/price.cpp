@@ -1,10 +1,10 @@
 #include "study/price.h"
 
+#include "base/rounded.h"
+
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 namespace patchlight {
 namespace {
@@ -91,18 +91,16 @@ Price extrapolated(double error, const Study& study) {
 }
 
 // With so many digits, and never fewer than stand before the point.
-std::string rounded(double value, int digits) {
+std::string without_exponent(double value, int digits) {
   const int before_point = value >= 1 ? static_cast<int>(std::log10(value)) + 1 : 1;
-  std::ostringstream text;
-  text << std::setprecision(std::max(digits, before_point)) << value;
-  return text.str();
+  return rounded(value, std::max(digits, before_point));
 }
 
-std::string percent(double share, int digits) { return rounded(100 * share, digits) + " %"; }
+std::string in_percent(double share, int digits) { return without_exponent(100 * share, digits) + " %"; }
 
 std::string text_of(const Price& price, PatchIndex patches) {
-  const std::string error = percent(price.error, 2);
-  const std::string seconds = rounded(price.cpu_seconds, 2);
+  const std::string error = in_percent(price.error, 2);
+  const std::string seconds = without_exponent(price.cpu_seconds, 2);
   switch (price.finding) {
     case Finding::interpolated:
       return error + " costs " + seconds + " CPU seconds here";
@@ -121,12 +119,12 @@ std::string text_of(const Price& price, PatchIndex patches) {
 std::string limit_of(const ErrorParts& parts, double bar) {
   const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
   if (!(largest > least_error)) return "nothing limits you";
-  const std::string size = " (" + percent(largest, 2) + " of the light at the finest setting)";
+  const std::string size = " (" + in_percent(largest, 2) + " of the light at the finest setting)";
   if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
   if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;
-  const std::string known = parts.mesh > bar ? "" : ", by a reference that is itself good to " + percent(bar, 2);
+  const std::string known = parts.mesh > bar ? "" : ", by a reference that is itself good to " + in_percent(bar, 2);
   return "what limits you is the size of the patches" + size + known + ", most of all on `" + parts.worst_place +
-         "`, " + percent(parts.worst_share, 2) + " of the squared error";
+         "`, " + in_percent(parts.worst_share, 2) + " of the squared error";
 }
 
 }  // namespace

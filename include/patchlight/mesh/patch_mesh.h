@@ -27,8 +27,8 @@ struct Middle {
   std::array<std::uint32_t, 2> ends;
 };
 
-/// The patches of a scene: triangles and planar convex quadrilaterals, each on one side of one polygon. Frozen: made by
-/// tessellate() or refine(), never changed. Every per-patch array has size() entries.
+/// The patches of a scene: triangles and planar convex quadrilaterals, each on one side of one polygon. simulate()
+/// makes it, and nothing changes it. Every per-patch array has size() entries.
 struct PatchMesh {
   std::vector<Point> vertices;                        ///< metres
   std::vector<std::array<std::uint32_t, 4>> corners;  ///< counter-clockwise from the front; a triangle repeats its last

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace patchlight {
+
+/// A number with so many digits, for people to read; "-" for what is not finite.
+std::string rounded(double value, int digits = 3);
+
+/// A share in percent, without the sign, with so many digits.
+std::string percent(double share, int digits = 3);
+
+}  // namespace patchlight
