@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/provenance.h"
 
+#include "archive/bands_json.h"
 #include "archive/file_names.h"
 #include "files/regular_file.h"
 #include "output/write_bytes.h"
@@ -239,6 +240,7 @@ StoredScene stored_scene_of(const Json& json) {
   scene.up_stated = json.at("up_stated").get<bool>();
   scene.notes = texts_of(json.at("notes"));
   scene.materials = materials_of(json.at("materials"));
+  if (json.contains("bands")) scene.bands = bands_from(json.at("bands"));
   scene.lamp_hints = lamp_hints_of(json.at("lamp_hints"));
   scene.groups = texts_of(json.at("groups"));
   scene.vertices = vertices_of(json.at("vertices"));
@@ -264,6 +266,7 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["up_stated"] = scene.up_stated;
   json["notes"] = json_of(scene.notes);
   json["materials"] = materials_part(scene);
+  if (!scene.bands.empty()) json["bands"] = json_of(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);
   json["has_point_or_daylight"] = has_point_or_daylight(scene);
   json["groups"] = json_of(scene.groups);

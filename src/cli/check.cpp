@@ -5,7 +5,6 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "light/photometry.h"
 #include "output/whole_file.h"
 #include "output/write_problems.h"
 #include "output/write_survey.h"
@@ -85,7 +84,7 @@ std::string lamp_lines(const SceneReport& report) {
   for (const MaterialFacts& facts : report.materials) {
     if (!(facts.material.exitance > 0).any()) continue;
     text << "  " << shown_name(facts.material.name) << "  flux " << listed(facts.flux, ", ") << " W, "
-         << rounded(luminance(facts.flux), digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
+         << rounded(facts.luminous_flux, digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }

@@ -79,7 +79,8 @@ ExitCode compare(const CompareArguments& arguments) {
   }
 
   // 2. Write tables, plots and series
-  const double exposure = exposure_for(simulation.solution.radiosity / std::numbers::pi, simulation.problem.area);
+  const double exposure =
+      exposure_for(simulation.solution.radiosity / std::numbers::pi, simulation.problem.area, bands_of(scene));
   const WritingGuard guard;
   write_comparison(arguments.output, scene, comparison, {arguments.command_line, exposure}, observer);
   line.hide();

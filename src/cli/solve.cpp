@@ -121,7 +121,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   simulation = simulate(results.scene, input.request, keep_iterates, {.exchange = input.exchange});
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
-  const double exposure = exposure_for(display_radiance(simulation), area);
+  const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
   results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
 
   // 3. Look at the solution, and tell of it

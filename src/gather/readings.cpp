@@ -18,7 +18,8 @@ bool is_inside_wall(const Readings& readings, std::size_t sensor) {
 SensorValue sensor_value(const Readings& readings, std::size_t sensor) {
   const auto row = static_cast<Eigen::Index>(sensor);
   const double per_lux = readings.photometric ? 1 : 1 / luminous_efficacy;
-  return {per_lux * luminance(readings.irradiance.row(row)), per_lux * luminance(readings.standard_error.row(row))};
+  return {per_lux * luminance(readings.irradiance.row(row), readings.bands),
+          per_lux * luminance(readings.standard_error.row(row), readings.bands)};
 }
 
 const char* sensor_unit(const Readings& readings) { return readings.photometric ? "lx" : "W/m^2"; }
@@ -26,7 +27,8 @@ const char* sensor_unit(const Readings& readings) { return readings.photometric 
 double daylight_factor(const Readings& readings, std::size_t sensor) {
   assert(readings.outside_by_sky);
   const auto row = static_cast<Eigen::Index>(sensor);
-  return 100 * luminance(readings.irradiance.row(row)) / luminance(*readings.outside_by_sky);
+  return 100 * luminance(readings.irradiance.row(row), readings.bands) /
+         luminance(*readings.outside_by_sky, readings.bands);
 }
 
 namespace {

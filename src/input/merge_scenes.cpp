@@ -90,6 +90,7 @@ Scene merge_scenes(std::vector<Scene> scenes) {
   Scene merged;
   std::vector<std::string> checksums;
   std::string names;
+  merged.bands = scenes[0].bands;
   merged.metres_per_unit = scenes[0].metres_per_unit;
   merged.up = scenes[0].up;
   merged.up_stated = scenes[0].up_stated;

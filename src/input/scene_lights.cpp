@@ -86,7 +86,7 @@ Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index band
 }  // namespace
 
 Scene with_lights(Scene scene, const LightEntries& lights) {
-  const Eigen::Index bands = scene.materials.front().reflectance.size();
+  const Eigen::Index bands = number_of_bands(scene);
   scene.photometric = scene.photometric || lights.photometric;
   scene.north = north_of(scene, lights);
   for (const LuminaireEntry& entry : lights.luminaires) scene.luminaires.push_back(luminaire_of(entry, scene, bands));

@@ -1,14 +1,17 @@
 #include "light/photometry.h"
 
-#include "light/bands.h"
+#include <cassert>
 
 namespace patchlight {
 
-double luminance(const Spectrum& radiance) {
-  const Bands bands{radiance.size()};
+double luminance(const Spectrum& radiance, const Bands& bands) {
+  assert(static_cast<std::size_t>(radiance.size()) == bands.size());
   double visible = 0;
-  for (Eigen::Index band = 0; band < bands.number; ++band) visible += bands.luminous_weight(band) * radiance[band];
+  for (std::size_t band = 0; band < bands.size(); ++band)
+    visible += bands[band].luminous_weight * radiance[static_cast<Eigen::Index>(band)];
   return luminous_efficacy * visible;
 }
+
+double luminance(const Spectrum& radiance) { return luminance(radiance, usual_bands(radiance.size())); }
 
 }  // namespace patchlight

@@ -7,8 +7,11 @@ namespace patchlight {
 /// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance).
 inline constexpr double luminous_efficacy = 179.0;
 
-/// Luminance in cd/m^2 of a radiance in W/(m^2 sr): 179 lm/W (0.2126 R + 0.7152 G + 0.0722 B) for three bands, the mean
-/// of the bands times 179 lm/W for any other number. The same weights turn irradiance into illuminance.
+/// Luminance in cd/m^2 of a radiance in W/(m^2 sr): 179 lm/W times the sum of the bands by their luminous weights. The
+/// same turns irradiance into illuminance, and flux into luminous flux. There is a band for each value.
+double luminance(const Spectrum& radiance, const Bands& bands);
+
+/// The same of usual_bands().
 double luminance(const Spectrum& radiance);
 
 }  // namespace patchlight

@@ -17,7 +17,7 @@ LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
     : bounds_(bounds(scene)),
       opaque_(tracing.opaque_faces(scene)),
       clear_(tracing.clear_faces(scene)),
-      bands_(scene.materials.front().reflectance.size()) {
+      bands_(number_of_bands(scene)) {
   if (!clear_) return;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     openings_.push_back({transmittance_of(scene, p, Side::front), transmittance_of(scene, p, Side::back)});

@@ -87,7 +87,7 @@ Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
                     .sky = {},
                     .openings = {},
                     .up = scene.up,
-                    .bands = scene.materials.front().reflectance.size(),
+                    .bands = number_of_bands(scene),
                     .paths = LightPaths(scene, tracing),
                     .shades = {}};
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;

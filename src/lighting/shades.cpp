@@ -108,7 +108,7 @@ bool lies_in(const Box& box, const HalfSpace& below) {
 
 Shades::Shades(const Scene& scene, const Coverings& coverings)
     : tolerance_(shade_in_plane * extent_of(scene)),
-      bands_(scene.materials.front().reflectance.size()),
+      bands_(number_of_bands(scene)),
       coverings_(coverings),
       transmittances_(scene.polygons.size()) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {

@@ -60,7 +60,7 @@ Buffer buffer_of(const SolvedSurface& surface, const Point& centre, double expos
   }
   buffer.positions = buffer.bytes.size();
   // Vertex colours are linear in glTF: sixteen bits keep all eight of sRGB. Opaque.
-  for (const auto& colour : tone_map(surface.radiance_at_vertices, exposure)) {
+  for (const auto& colour : tone_map(surface.radiance_at_vertices, exposure, bands_of(surface.scene))) {
     for (const std::uint8_t channel : colour) append_bytes(buffer.bytes, linear(channel));
     append_bytes(buffer.bytes, std::numeric_limits<std::uint16_t>::max());
   }

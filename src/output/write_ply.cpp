@@ -34,7 +34,7 @@ std::string header(const PatchMesh& mesh, const Provenance& provenance) {
 
 void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
   const PatchMesh& mesh = surface.simulation.mesh;
-  const auto colours = tone_map(surface.radiance_at_vertices, provenance.exposure);
+  const auto colours = tone_map(surface.radiance_at_vertices, provenance.exposure, bands_of(surface.scene));
   std::string bytes = header(mesh, provenance);
   for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
     for (const double coordinate : mesh.vertices[k]) append_bytes(bytes, coordinate);

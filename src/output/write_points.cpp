@@ -1,6 +1,5 @@
 #include "output/write_points.h"
 
-#include "light/bands.h"
 #include "output/csv_cell.h"
 #include "output/vtk_points.h"
 #include "output/write_bytes.h"
@@ -15,12 +14,12 @@ namespace {
 // ",E_r,E_g,E_b", or ",E_1,E_2" for other bands than three.
 std::string band_columns(const std::string& quantity, const Bands& bands) {
   std::string names;
-  for (Eigen::Index band = 0; band < bands.number; ++band) names += "," + quantity + "_" + bands.name(band);
+  for (const Band& band : bands) names += "," + csv_cell(quantity + "_" + band.name);
   return names;
 }
 
 std::string header(const Readings& readings) {
-  const Bands bands{readings.irradiance.cols()};
+  const Bands& bands = readings.bands;
   std::string names = "x,y,z,nx,ny,nz" + band_columns("E", bands) + band_columns("SE", bands);
   for (const auto& [name, part] : parts_of(readings.errors)) {
     if (part->size() > 0) names += band_columns(std::string("SE_") + name, bands);

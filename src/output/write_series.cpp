@@ -89,12 +89,15 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Iteration& iterati
   facts.AddArray(strings("unit_rgb", {"sRGB, 8 bits, at the recorded exposure"}));
 }
 
-void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field& irradiance, double exposure) {
+// `colours_of` maps a radiance to colours.
+template <typename ColoursOf>
+void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field& irradiance,
+                const ColoursOf& colours_of) {
   // B_k = E + rho o H_k, L_k = B_k / pi
   const Field radiance = radiosity_from(problem, irradiance) / std::numbers::pi;
   cells.AddArray(floats("radiance", radiance));
   cells.AddArray(floats("irradiance", irradiance));
-  cells.AddArray(colours("rgb", tone_map(radiance, exposure)));
+  cells.AddArray(colours("rgb", colours_of(radiance)));
 }
 
 bool is_utf8(const std::string& text) {
@@ -216,6 +219,9 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
   assert(iterates.size() == history.size());
   const fs::path folder = series_folder(pvd);
   const std::string values = name_of_values(simulation, iterates, provenance);
+  const auto exposed = [&, bands = bands_of(scene)](const Field& radiance) {
+    return tone_map(radiance, provenance.exposure, bands);
+  };
 
   // 1. The files, under names that only a series of equal values has.
   std::vector<std::string> names;
@@ -226,7 +232,7 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
     const double fraction = static_cast<double>(k) / static_cast<double>(iterates.size());
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
     const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
-    add_values(*polygons->GetCellData(), simulation.problem, iterates[k].cast<double>(), provenance.exposure);
+    add_values(*polygons->GetCellData(), simulation.problem, iterates[k].cast<double>(), exposed);
     add_facts(*polygons->GetFieldData(), scene, history[k], provenance);
     names.push_back(file_name(pvd, k, values));
     if (!fs::exists(folder / names.back())) unfinished.made.push_back(folder / names.back());

@@ -2,7 +2,6 @@
 
 #include "patchlight/output/provenance.h"
 
-#include "light/photometry.h"
 #include "output/json_array.h"
 #include "output/write_bytes.h"
 
@@ -25,7 +24,7 @@ Json material_part(const MaterialFacts& facts) {
   part["faces"] = facts.faces;
   part["area_m2"] = facts.area;
   part["flux_W"] = json_array(facts.flux);
-  part["flux_lm"] = luminance(facts.flux);
+  part["flux_lm"] = facts.luminous_flux;
   return part;
 }
 

@@ -62,8 +62,9 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   const Simulation& simulation = surface.simulation;
   const PatchMesh& mesh = simulation.mesh;
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
+  const Bands bands = bands_of(surface.scene);
   Field luminances(radiance.rows(), 1);
-  for (Eigen::Index row = 0; row < radiance.rows(); ++row) luminances(row, 0) = luminance(radiance.row(row));
+  for (Eigen::Index row = 0; row < radiance.rows(); ++row) luminances(row, 0) = luminance(radiance.row(row), bands);
 
   vtkCellData& cell_data = *polygons.GetCellData();
   cell_data.AddArray(floats("radiance", radiance));
@@ -88,7 +89,7 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
     cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
     cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
   }
-  cell_data.AddArray(colours("rgb", tone_map(radiance, exposure)));
+  cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
   polygons.GetPointData()->AddArray(floats("radiance_smooth", surface.radiance_at_vertices));

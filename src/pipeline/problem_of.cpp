@@ -6,7 +6,7 @@ namespace patchlight {
 
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back) {
-  const Eigen::Index bands = scene.materials.front().reflectance.size();
+  const Eigen::Index bands = number_of_bands(scene);
   RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];

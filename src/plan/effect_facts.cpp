@@ -126,7 +126,7 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   const std::vector<const Material*> in_use = materials_in_use(scene, kept);
   for (const Material* material : in_use)
     facts.highest_reflectance = std::max(facts.highest_reflectance, material->reflectance.maxCoeff());
-  facts.bands = scene.materials.front().reflectance.size();
+  facts.bands = number_of_bands(scene);
   facts.grey = is_grey(scene, in_use);
   const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
   facts.lamp_colour = common_colour(spectra);

@@ -45,8 +45,11 @@ Scene with_spectra(Scene scene, const Change& change) {
 }
 
 // The same luminance without colour.
-Spectrum without_colour(const Spectrum& spectrum) {
-  return Spectrum::Constant(spectrum.size(), luminance(spectrum) / luminous_efficacy);
+Scene without_colour(Scene scene) {
+  const Bands bands = bands_of(scene);
+  return with_spectra(std::move(scene), [&](const Spectrum& spectrum) -> Spectrum {
+    return Spectrum::Constant(spectrum.size(), luminance(spectrum, bands) / luminous_efficacy);
+  });
 }
 
 bool is_skipped_by_force(const Plan& plan, Effect effect) {
@@ -67,7 +70,7 @@ Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
   if (left_out(Effect::luminaires)) scene.luminaires.clear();
   if (left_out(Effect::sun)) scene.sun.reset();
   if (left_out(Effect::sky)) scene.sky.reset();
-  return is_skipped_by_force(plan, Effect::colour) ? with_spectra(std::move(scene), without_colour) : scene;
+  return is_skipped_by_force(plan, Effect::colour) ? without_colour(std::move(scene)) : scene;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/lower_case.h"
 #include "base/rounded.h"
 #include "base/shortest.h"
+#include "light/photometry.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
@@ -87,7 +88,7 @@ std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>&
 std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
   std::vector<MaterialFacts> all;
   for (const Material& material : scene.materials) {
-    all.push_back({material, 0, 0, Spectrum::Zero(material.exitance.size())});
+    all.push_back({material, 0, 0, Spectrum::Zero(material.exitance.size()), 0});
   }
   const auto add = [&all](MaterialIndex index, double area) {
     MaterialFacts& facts = all[index];
@@ -102,6 +103,8 @@ std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
     if (polygon.back_material) add(*polygon.back_material, area);
   }
   std::erase_if(all, [](const MaterialFacts& facts) { return facts.faces == 0; });
+  const Bands bands = bands_of(scene);
+  for (MaterialFacts& facts : all) facts.luminous_flux = luminance(facts.flux, bands);
   return all;
 }
 

@@ -16,6 +16,7 @@ struct MaterialFacts {
   std::size_t faces = 0;
   double area = 0;  ///< m^2, of the sides that have this material: backs count only where they have one of their own
   Spectrum flux;    ///< W, emitted by these sides
+  double luminous_flux = 0;  ///< lm, of all bands
 };
 
 /// A unit that makes a model of implausible size plausible.

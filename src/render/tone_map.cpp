@@ -1,6 +1,5 @@
 #include "render/tone_map.h"
 
-#include "light/bands.h"
 #include "light/photometry.h"
 
 #include <algorithm>
@@ -15,15 +14,16 @@ constexpr double percentile_value = 0.7;  // ... is shown as this share of white
 constexpr double shoulder = 0.8;          // luminances above this share of white are compressed
 
 // Luminance in units in which a grey radiance of 1 has luminance 1.
-double display_luminance(const Spectrum& radiance) { return luminance(radiance) / luminous_efficacy; }
+double display_luminance(const Spectrum& radiance, const Bands& bands) {
+  return luminance(radiance, bands) / luminous_efficacy;
+}
 
 // What a radiance is shown as.
-std::array<double, 3> linear_rgb(const Spectrum& radiance) {
-  const Bands bands{radiance.size()};
+std::array<double, 3> linear_rgb(const Spectrum& radiance, const Bands& bands) {
   std::array<double, 3> sum{};
-  for (Eigen::Index band = 0; band < bands.number; ++band) {
-    const std::array<double, 3> colour = bands.rgb(band);
-    for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += colour[channel] * radiance[band];
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum[channel] += bands[band].rgb[channel] * radiance[static_cast<Eigen::Index>(band)];
   }
   return sum;
 }
@@ -43,10 +43,10 @@ std::uint8_t srgb(double linear) {
 
 }  // namespace
 
-double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight) {
+double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight, const Bands& bands) {
   std::vector<std::pair<double, double>> luminances;  // with their weights
   for (Eigen::Index row = 0; row < radiance.rows(); ++row) {
-    const double value = display_luminance(radiance.row(row));
+    const double value = display_luminance(radiance.row(row), bands);
     if (value > 0 && std::isfinite(value) && weight[row] > 0) luminances.emplace_back(value, weight[row]);
   }
   if (luminances.empty()) return 1;
@@ -62,14 +62,14 @@ double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight) {
   return percentile_value / luminances.back().first;
 }
 
-std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure) {
+std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure, const Bands& bands) {
   std::vector<std::array<std::uint8_t, 3>> colours(static_cast<std::size_t>(radiance.rows()));
   for (Eigen::Index row = 0; row < radiance.rows(); ++row) {
     const Spectrum exposed = exposure * radiance.row(row);
-    const double value = display_luminance(exposed);
+    const double value = display_luminance(exposed, bands);
     // One factor for all channels keeps the hue.
     const double scale = value > 0 ? roll_off(value) / value : 0;
-    const std::array<double, 3> linear = linear_rgb(exposed);
+    const std::array<double, 3> linear = linear_rgb(exposed, bands);
     auto& colour = colours[static_cast<std::size_t>(row)];
     for (std::size_t channel = 0; channel < 3; ++channel) colour[channel] = srgb(scale * linear[channel]);
   }

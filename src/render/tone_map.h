@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/light/spectrum.h"
 #include "patchlight/render/image.h"
 
 #include <array>
@@ -12,11 +13,11 @@ namespace patchlight {
 /// Scale that maps radiance in W/(m^2 sr) to display values: the 90th percentile, by weight, of the luminances above 0
 /// becomes 0.7 of the display's white. `weight` has one entry per row: the area of a patch, or 1 per pixel. 1 when all
 /// is dark.
-double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight);
+double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight, const Bands& bands);
 
-/// Exposes linear radiance, one row each, rolls highlights off above 0.8 of white, and encodes as sRGB. One band
-/// gives grey; of three bands each is a channel; any other number is shown by its mean as grey.
-std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure);
+/// Exposes linear radiance, one row each, rolls highlights off above 0.8 of white, and encodes as sRGB. Each band
+/// adds its colour (Band::rgb).
+std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure, const Bands& bands);
 
 /// False colours of one value per row, from blue (lower) over green and yellow to red (upper).
 std::vector<std::array<std::uint8_t, 3>> false_color(const Eigen::VectorXd& values, double lower, double upper);

@@ -22,6 +22,15 @@ constexpr double farthest_vertex = 1e15;
 // The checks of a polygon's outline take a time that goes as the square of this: a second for so many.
 constexpr std::size_t most_corners = 10000;
 
+void check_bands(const Scene& scene) {
+  if (scene.bands.empty()) return;
+  const auto number = static_cast<std::size_t>(number_of_bands(scene));
+  if (scene.bands.size() == number) return;
+  throw InputError(scene.file, "the scene says what " + std::to_string(scene.bands.size()) +
+                                   " bands stand for, and its materials have " + std::to_string(number) +
+                                   "; expected as many");
+}
+
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
@@ -79,6 +88,10 @@ void check_polygon(const Scene& scene, PolygonIndex index) {
 }  // namespace
 
 const char* name_of(Side side) { return side == Side::front ? "front" : "back"; }
+
+Eigen::Index number_of_bands(const Scene& scene) { return scene.materials.front().reflectance.size(); }
+
+Bands bands_of(const Scene& scene) { return scene.bands.empty() ? usual_bands(number_of_bands(scene)) : scene.bands; }
 
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon) {
   const auto& corners = scene.polygons[polygon].corners;
@@ -186,6 +199,7 @@ void check(const Scene& scene) {
     throw InputError(scene.file, "found no faces; expected at least one polygon");
   }
   check_vertices(scene);
+  check_bands(scene);
   for (const Material& material : scene.materials) check_material(scene, material);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) check_polygon(scene, p);
 }

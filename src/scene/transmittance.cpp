@@ -10,7 +10,7 @@ double mean_transmittance(const Scene& scene, PolygonIndex polygon) {
   double sum = 0;
   for (const Side side : {Side::front, Side::back}) {
     const Spectrum& share = scene.materials[material_on(scene.polygons[polygon], side)].transmittance;
-    if (share.size() > 0) sum += luminance(share) / luminous_efficacy;
+    if (share.size() > 0) sum += luminance(share, bands_of(scene)) / luminous_efficacy;
   }
   return sum / 2;
 }

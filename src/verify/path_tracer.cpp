@@ -283,7 +283,7 @@ PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
   const Surfaces surfaces = surfaces_of(scene, sides);
   const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, sides), Occluder::Blockers::all);
   PathTracer tracer{tracing, tracing->all_faces(scene),   surfaces, lamps_of(scene, surfaces),
-                    {},      LightPaths(scene, *tracing), {},       scene.materials.front().reflectance.size()};
+                    {},      LightPaths(scene, *tracing), {},       number_of_bands(scene)};
   if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, *tracing);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);
   return tracer;

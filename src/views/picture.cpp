@@ -15,9 +15,10 @@
 namespace patchlight {
 namespace {
 
-Eigen::VectorXd pixel_luminance(const Image& image) {
+Eigen::VectorXd pixel_luminance(const Image& image, const Bands& bands) {
   Eigen::VectorXd values(image.pixels.rows());
-  for (Eigen::Index pixel = 0; pixel < values.size(); ++pixel) values[pixel] = luminance(image.pixels.row(pixel));
+  for (Eigen::Index pixel = 0; pixel < values.size(); ++pixel)
+    values[pixel] = luminance(image.pixels.row(pixel), bands);
   return values;
 }
 
@@ -59,11 +60,12 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
   const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Image image = render(simulation.mesh, radiance, occluder, camera, scene.up, {}, observer);
+  const Bands bands = bands_of(scene);
   if (options.colors == PictureColors::natural) {
-    const double exposure = exposure_for(image.pixels, Eigen::VectorXd::Ones(image.pixels.rows()));
-    return {{.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure)}};
+    const double exposure = exposure_for(image.pixels, Eigen::VectorXd::Ones(image.pixels.rows()), bands);
+    return {{.width = image.width, .height = image.height, .pixels = tone_map(image.pixels, exposure, bands)}};
   }
-  const Eigen::VectorXd values = pixel_luminance(image);
+  const Eigen::VectorXd values = pixel_luminance(image, bands);
   const double end = end_of_scale(values);
   return {{.width = image.width, .height = image.height, .pixels = false_color(values, 0, end)}, end};
 }

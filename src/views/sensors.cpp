@@ -77,6 +77,7 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
                                   .sampling = at_places(errors.sampling, places),
                                   .mesh = at_places(errors.mesh, places),
                                   .solver = at_places(errors.solver, places)},
+                       .bands = bands_of(scene),
                        .photometric = scene.photometric,
                        .outside_by_sky = only_overcast_sky(scene)};
   for (const SensorPlace& place : places) readings.inside_wall.push_back(place.standing == Standing::inside_wall);

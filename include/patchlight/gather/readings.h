@@ -21,13 +21,14 @@ struct Readings {
   Field standard_error;                      ///< in all
   SensorErrors errors{};                     ///< what it is made of; empty fields: not known
   std::vector<std::uint8_t> inside_wall{};   ///< per sensor: 1 where there is nothing to read, values are NaN; or empty
+  Bands bands{};                             ///< what the columns stand for
   bool photometric = false;                  ///< the lights are stated in lumens or lux: illuminance has a meaning
   std::optional<Spectrum> outside_by_sky{};  ///< irradiance of an unobstructed horizontal plane; given when a CIE
                                              ///< overcast sky is the only light: then there are daylight factors
 };
 
 /// The one value that statistics and pictures show for each sensor: illuminance in lx when the lights are photometric,
-/// else irradiance in W/m^2, the bands weighted as for luminance (light/photometry.h).
+/// else irradiance in W/m^2, the bands by their luminous weights.
 struct SensorValue {
   double value = 0;
   double standard_error = 0;  ///< that of bands whose errors go together, as those of the same shadow rays do

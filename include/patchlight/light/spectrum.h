@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -13,5 +16,20 @@ inline Spectrum rgb(double red, double green, double blue) {
   spectrum << red, green, blue;
   return spectrum;
 }
+
+/// What one band stands for.
+struct Band {
+  std::string name;             ///< in tables: "r", "550 nm"
+  double luminous_weight = 0;   ///< the share of its radiance in luminance; those of all bands sum up to 1
+  std::array<double, 3> rgb{};  ///< the linear RGB (Rec. 709) that a radiance of 1 is shown as; those of all bands sum
+                                ///< up to white
+};
+
+/// What the bands of a scene's spectra, and the columns of its fields, stand for, in their order.
+using Bands = std::vector<Band>;
+
+/// What so many bands stand for when nothing is said of them: three are linear RGB with Rec. 709 primaries, "r", "g"
+/// and "b"; any other number are equal parts of the visible light, "1", "2", and so on.
+Bands usual_bands(Eigen::Index number);
 
 }  // namespace patchlight

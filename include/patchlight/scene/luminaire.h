@@ -26,7 +26,7 @@ struct SpotLight {
 /// A measured distribution.
 struct WebLight {
   std::shared_ptr<const PhotometricWeb> web;  ///< never null
-  Spectrum watts_per_lumen;                   ///< per band; 1 / luminous_efficacy (light/photometry.h) for white light
+  Spectrum watts_per_lumen;                   ///< per band; 1/179 for white light
 };
 
 /// A sphere that emits evenly. Its centre is the luminaire's position. It casts no shadows.

@@ -70,6 +70,7 @@ struct Scene {
   std::vector<Point> vertices;  ///< metres
   std::vector<Polygon> polygons;
   std::vector<Material> materials;
+  Bands bands;                                ///< what the bands of all spectra stand for; empty: bands_of() tells
   std::vector<std::string> groups;            ///< names of objects and groups
   std::string file;                           ///< the model file's name, for messages
   std::vector<std::string> files;             ///< the files the polygons come from; empty when `file` is the only one
@@ -90,6 +91,12 @@ struct Scene {
   std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
   std::vector<Camera> cameras;                    ///< where pictures are taken from
 };
+
+/// How many bands the scene's spectra have. There must be a material.
+Eigen::Index number_of_bands(const Scene& scene);
+
+/// What they stand for: as the scene says, else usual_bands().
+Bands bands_of(const Scene& scene);
 
 /// The corner points of a polygon.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);
@@ -135,8 +142,8 @@ Box bounds(const Scene& scene);
 void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, reflectance in [0, 1], transmittance not negative and with the reflectance at most 1, exitance finite and
-/// not negative. \throws InputError naming the file and line, or
+/// with area, one of Scene::bands for each band if there are any, reflectance in [0, 1], transmittance not negative and
+/// with the reflectance at most 1, exitance finite and not negative. \throws InputError naming the file and line, or
 /// the material.
 void check(const Scene& scene);
 

@@ -45,9 +45,9 @@ Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);
 bool weighs_by_errors(const LostShare& lost, PatchIndex patches);
 
 /// Changes the exchange areas least so that each row sums up to what its patch sees: all of its hemisphere less the
-/// lost share. Those that are closed already (Exchange::closure) stay; in a closed scene what the storage of closed rows
-/// as floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign, and rows that
-/// are farther off are closed again. \throws Cancelled.
+/// lost share. Those that are closed already (Exchange::closure) stay; in a closed scene what the storage of closed
+/// rows as floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign, and rows
+/// that are farther off are closed again. \throws Cancelled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -37,6 +37,11 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
     EXPECT_TRUE(same(a.materials[m].transmittance, b.materials[m].transmittance));
   }
+  ASSERT_EQ(a.bands.size(), b.bands.size());
+  for (std::size_t k = 0; k < a.bands.size(); ++k) {
+    EXPECT_EQ(std::tie(a.bands[k].name, a.bands[k].luminous_weight, a.bands[k].rgb),
+              std::tie(b.bands[k].name, b.bands[k].luminous_weight, b.bands[k].rgb));
+  }
   ASSERT_EQ(a.lamp_hints.size(), b.lamp_hints.size());
   for (std::size_t h = 0; h < a.lamp_hints.size(); ++h) {
     EXPECT_EQ(a.lamp_hints[h].material, b.lamp_hints[h].material);
@@ -83,6 +88,7 @@ Scene odd_scene() {
       "e";
   scene.materials[1].name = "\xff\x00\"\n";
   scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
+  scene.bands = {{"650 nm", 1.0 / 3, {1, 0, 0}}};
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";
   scene.files = {scene.file, "b.obj"};

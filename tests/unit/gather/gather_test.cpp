@@ -166,6 +166,7 @@ Readings constant_readings(std::initializer_list<double> values) {
   Readings readings;
   readings.irradiance = Eigen::Map<const Field>(values.begin(), static_cast<Eigen::Index>(values.size()), 1);
   readings.standard_error = 0.1 * readings.irradiance;
+  readings.bands = usual_bands(1);
   return readings;
 }
 

@@ -137,8 +137,9 @@ TEST(WriteGlb, ColoursAreLinearAndComeBackAsTheBytesOfTheToneMap) {
   const Simulation simulation = tiny_simulation();
   const Glb glb = written(tiny_scene(), simulation);
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;
-  const auto expected = tone_map(
-      smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices, exposure);
+  const auto expected =
+      tone_map(smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices, exposure,
+               usual_bands(3));
   EXPECT_EQ(glb.json["accessors"][1]["normalized"], true);
   const std::size_t first = view_offset(glb, "COLOR_0");
   for (std::size_t k = 0; k < 5; ++k) {

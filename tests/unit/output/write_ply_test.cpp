@@ -75,8 +75,9 @@ TEST(WritePly, AnotherReaderFindsFacesAndColours) {
   EXPECT_EQ(polygons->GetCell(2)->GetPointId(1), 1);
 
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;
-  const auto colours = tone_map(
-      smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices, exposure);
+  const auto colours =
+      tone_map(smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices, exposure,
+               usual_bands(3));
   vtkDataArray* const read = polygons->GetPointData()->GetScalars();
   ASSERT_NE(read, nullptr);
   for (int k = 0; k < 5; ++k) {

@@ -23,7 +23,9 @@ SensorGroup points(const std::vector<std::string>& columns) {
 }
 
 Readings readings_of(const Field& irradiance) {
-  return {.irradiance = irradiance, .standard_error = Field::Zero(irradiance.rows(), irradiance.cols())};
+  return {.irradiance = irradiance,
+          .standard_error = Field::Zero(irradiance.rows(), irradiance.cols()),
+          .bands = usual_bands(irradiance.cols())};
 }
 
 TEST(WritePoints, RepeatsTheInputAndAddsIrradiance) {
@@ -47,6 +49,14 @@ TEST(WritePoints, NumbersOtherBandsAndQuotesNames) {
   write_points(folder.path() / "points.csv", groups, readings_of(Field::Constant(1, 2, 0.5)));
   EXPECT_EQ(content_of(folder.path() / "points.csv"),
             "x,y,z,nx,ny,nz,E_1,E_2,SE_1,SE_2,inside_wall,group\n0,0,0,0,0,1,0.5,0.5,0,0,0,\"a \"\"b\"\", c\"\n");
+}
+
+TEST(WritePoints, TakesTheNamesOfTheScenesBands) {
+  const TemporaryFolder folder;
+  Readings readings = readings_of(Field::Constant(1, 2, 0.5));
+  readings.bands[0].name = "450 nm";
+  write_points(folder.path() / "points.csv", std::vector{points({"0,0,0,0,0,1"})}, readings);
+  EXPECT_NE(content_of(folder.path() / "points.csv").find(",E_450 nm,E_2,SE_450 nm,SE_2,"), std::string::npos);
 }
 
 TEST(WritePoints, PhotometricLightsGiveLuxAndAnOvercastSkyDaylightFactors) {

@@ -164,7 +164,7 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), 10 + i);
   }
-  const auto colours = tone_map(radiance, exposure);
+  const auto colours = tone_map(radiance, exposure, usual_bands(3));
   vtkDataArray* const rgb = cells->GetArray("rgb");
   EXPECT_EQ(rgb->GetDataType(), VTK_UNSIGNED_CHAR);
   for (int i = 0; i < 3; ++i) {
@@ -207,8 +207,9 @@ TEST(WriteVtk, EveryArrayOfValuesHasAUnit) {
   }
 }
 
-TEST(WriteVtk, TakesAnyNumberOfBands) {
+TEST(WriteVtk, TakesBandsAsTheSceneStatesThem) {
   Scene scene = tiny_scene();
+  scene.bands = {{"450 nm", 0.25, {0, 0, 1}}, {"570 nm", 0.75, {1, 1, 0}}};
   Simulation simulation = tiny_simulation();
   for (Material& material : scene.materials) {
     material.reflectance = material.reflectance.head(2).eval();
@@ -221,6 +222,9 @@ TEST(WriteVtk, TakesAnyNumberOfBands) {
   }
   const auto polygons = written_and_read(scene, simulation);
   expect_floats(polygons->GetCellData()->GetArray("radiosity"), simulation.solution.radiosity);
+  const Field radiance = simulation.solution.radiosity / std::numbers::pi;
+  const Field luminances = luminous_efficacy * (0.25 * radiance.col(0) + 0.75 * radiance.col(1));
+  expect_floats(polygons->GetCellData()->GetArray("luminance"), luminances);
   EXPECT_EQ(polygons->GetCellData()->GetArray("rgb")->GetNumberOfComponents(), 3);
 }
 

@@ -8,6 +8,15 @@
 namespace patchlight::tone_map_test {
 namespace {
 
+// Of bands of which nothing is said.
+auto tone_map(const Field& radiance, double exposure) {
+  return patchlight::tone_map(radiance, exposure, usual_bands(radiance.cols()));
+}
+
+double exposure_for(const Field& radiance, const Eigen::VectorXd& weight) {
+  return patchlight::exposure_for(radiance, weight, usual_bands(radiance.cols()));
+}
+
 Field grey(const Eigen::ArrayXd& values) { return values.replicate(1, 3); }
 
 // IEC 61966-2-1: 255 (1.055 v^(1/2.4) - 0.055), below 0.0031308 255 * 12.92 v. Computed by hand:
@@ -53,6 +62,19 @@ TEST(ToneMap, ShowsOtherBandNumbersAsGrey) {
   radiance << 0.25, 0.75;  // mean 0.5
   EXPECT_EQ(tone_map(radiance, 1)[0], (std::array<std::uint8_t, 3>{188, 188, 188}));
   EXPECT_EQ(tone_map(Field::Constant(1, 1, 0.25), 2)[0], (std::array<std::uint8_t, 3>{188, 188, 188}));
+}
+
+// All luminances are below the shoulder, so that 0.5 is shown as 188 in the channels of its band.
+TEST(ToneMap, ShowsBandsAsTheSceneSays) {
+  const Bands bands = {{"450 nm", 0.2, {0, 0, 1}}, {"570 nm", 0.8, {1, 1, 0}}};
+  const auto shown = [&](double blue, double yellow) {
+    Field radiance(1, 2);
+    radiance << blue, yellow;
+    return patchlight::tone_map(radiance, 1, bands)[0];
+  };
+  EXPECT_EQ(shown(0.5, 0), (std::array<std::uint8_t, 3>{0, 0, 188}));
+  EXPECT_EQ(shown(0, 0.5), (std::array<std::uint8_t, 3>{188, 188, 0}));
+  EXPECT_EQ(shown(0.5, 0.5), (std::array<std::uint8_t, 3>{188, 188, 188}));
 }
 
 TEST(ToneMap, ShowsNonsenseAsBlack) {

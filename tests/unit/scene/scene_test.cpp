@@ -95,6 +95,14 @@ TEST(CheckScene, NamesTheMaterialThatIsOutOfRange) {
   }
 }
 
+TEST(CheckScene, WantsOneOfTheStatedBandsForEachValue) {
+  Scene scene = square_scene();
+  scene.bands = usual_bands(3);
+  EXPECT_EQ(refusal(scene), "");
+  scene.bands.pop_back();
+  EXPECT_TRUE(begins(refusal(scene), "room.obj: the scene says what 2 bands stand for, and its materials have 3"));
+}
+
 TEST(CheckScene, NamesTheLineOfABadPolygon) {
   Scene scene = square_scene();
   scene.polygons[0].corners = {0, 1};
