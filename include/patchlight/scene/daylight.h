@@ -45,7 +45,7 @@ struct Daylight {
 
 /// The sun and the Perez sky of measured irradiances: clearness and brightness of Perez, Ineichen, Seals, Michalsky and
 /// Stewart 1990, eqs. 1 and 2, whose luminous efficacies (eqs. 6 to 8) turn what was measured into visible light: all
-/// `bands` are equal, with 179 lm/W (light/photometry.h). The ground is black. While the sun is below the horizon the
+/// `bands` are equal, with 179 lm/W. The ground is black. While the sun is below the horizon the
 /// sky is uniform and has the efficacy of a sun at the horizon.
 Daylight measured_daylight(const SolarIrradiance& measured, const Vector& sun_direction, const Vector& up,
                            Eigen::Index bands);

@@ -35,8 +35,7 @@ struct SphericalLamp {
   Spectrum exitance;  ///< W/m^2
 };
 
-/// A lamp that is no polygon. Spectra have the scene's number of bands; lumens are W by 179 lm/W
-/// (light/photometry.h).
+/// A lamp that is no polygon. Spectra have the scene's number of bands; lumens are W by 179 lm/W.
 struct Luminaire {
   std::string name;
   std::string place;                    ///< where it is stated, for messages: "office.toml:31"

@@ -43,11 +43,12 @@ struct KeptInTheDark {
   bool turned_away = false;  ///< those that face the dark outside of a closed solid
 };
 
-/// Chooses the sides. A solid is a closed shell (scene/shells.h) with a volume, or one with rims that opaque faces of
-/// others close, as a block without a bottom that stands on a floor; its turned polygons are seen as if turned back. It holds a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1;
-/// what crosses its surface, or comes within 5e-7 of the scene's extent of it, where rounding decides, is inside and
-/// outside: no light is lost for it. Sun and sky shine from outside. Clear openings let light in and out.
-/// Sides::automatic keeps a side unless
+/// Chooses the sides. A solid is a closed shell of polygons with a volume, or one with rims that opaque faces of others
+/// close, as a block without a bottom that stands on a floor; its turned polygons are seen as if turned back. It holds
+/// a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1; what crosses its
+/// surface, or comes within 5e-7 of the scene's extent of it, where rounding decides, is inside and outside: no light
+/// is lost for it. Sun and sky shine from outside. Clear openings let light in and out. Sides::automatic keeps a side
+/// unless
 /// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
 ///   belongs to the solid itself, or there is light elsewhere and the point just before its middle and all its corners
 ///   lie within, or
