@@ -111,14 +111,12 @@ ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uin
     : mesh_(mesh), occluder_(occluder), seed_(seed), points_(scrambled_sobol(most_points, hash({seed}))) {}
 
 // Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
-std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const Source> sources,
-                                                     std::span<const RayCounts> counts, std::uint32_t stage) const {
-  // 1. The rays of all sources
+ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> sources,
+                                  std::span<const RayCounts> counts, std::uint32_t stage) const {
   const TracingFrame frame = occluder_.frame();
   const std::uint64_t key =
       hash({seed_, key_of(frame.scale * (sensor.point - frame.centre)), key_of(sensor.normal), stage});
-  std::vector<Segment> segments;
-  std::vector<double> weights;
+  Rays all;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const PatchIndex j = sources[s].patch;
     for (std::uint32_t r = 0; r < counts[s].replicates; ++r) {
@@ -128,13 +126,17 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
           for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, j, 2 * r + d, k / most_points});
         const auto& point = points_[k % most_points];
         const Point y = point_in(sources[s].outline, shifted(point[0], shift[0]), shifted(point[1], shift[1]));
-        segments.push_back({sensor.point, y, no_polygon, mesh_.polygon[j]});
-        weights.push_back(geometry_term(sensor.point, sensor.normal, y, mesh_.normal[j]));
+        all.segments.push_back({sensor.point, y, no_polygon, mesh_.polygon[j]});
+        all.weights.push_back(geometry_term(sensor.point, sensor.normal, y, mesh_.normal[j]));
       }
     }
   }
+  return all;
+}
 
-  // 2. What they reach
+std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const Source> sources,
+                                                     std::span<const RayCounts> counts, std::uint32_t stage) const {
+  const auto [segments, weights] = rays(sensor, sources, counts, stage);
   const std::vector<float> arriving = occluder_.transmittance(segments);
   std::vector<VisibleShare> shares;
   std::size_t ray = 0;

@@ -53,6 +53,13 @@ class ShadowRays {
                                            std::span<const RayCounts> counts, std::uint32_t stage) const;
 
  private:
+  struct Rays {
+    std::vector<Segment> segments;
+    std::vector<double> weights;
+  };
+  Rays rays(const Sensor& sensor, std::span<const Source> sources, std::span<const RayCounts> counts,
+            std::uint32_t stage) const;
+
   const PatchMesh& mesh_;
   const Occluder& occluder_;
   std::uint64_t seed_;

@@ -19,11 +19,59 @@ std::vector<double> list(const Values& values) {
 
 std::vector<double> row(const Field& field, Eigen::Index i) { return list(Spectrum(field.row(i))); }
 
+Json part_of(const VerifiedPart& part) {
+  return {{"part", part.name},
+          {"checked", part.rows.size()},
+          {"chi_square", list(part.chi_square)},
+          {"mean_difference", list(part.mean_difference)},
+          {"offset", list(part.offset)},
+          {"width", part.width}};
+}
+
+Json checked_part(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
+  Json part = Json::array();
+  const Field z = deviations_by_noise(verification);
+  const Field with_bar = deviations(verification);
+  for (std::size_t k = 0; k < verification.patches.size(); ++k) {
+    const PatchIndex patch = verification.patches[k];
+    const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
+    const auto i = static_cast<Eigen::Index>(k);
+    part.push_back({{"patch", patch},
+                    {"place", place_of(scene, polygon)},
+                    {"source_polygon", polygon.face},
+                    {"group", group_name(scene, polygon.group)},
+                    {"material", scene.materials[mesh.material[patch]].name},
+                    {"side", name_of(mesh.side[patch])},
+                    {"centre_m", list(mesh.centroid[patch])},
+                    {"area_m2", mesh.area[patch]},
+                    {"irradiance_W_m2", row(verification.irradiance, i)},
+                    {"bar_W_m2", row(verification.bar, i)},
+                    {"traced_W_m2", row(verification.paths.irradiance, i)},
+                    {"standard_error_W_m2", row(verification.paths.standard_error, i)},
+                    {"z", row(z, i)},
+                    {"z_with_bar", row(with_bar, i)}});
+  }
+  return part;
+}
+
+Json left_out_part(const Scene& scene, const Verification& verification) {
+  Json part = Json::array();
+  for (const LeftOutSide& side : verification.left_out) {
+    const Polygon& polygon = scene.polygons[side.polygon];
+    part.push_back({{"place", place_of(scene, polygon)},
+                    {"source_polygon", polygon.face},
+                    {"side", name_of(side.side)},
+                    {"traced_W_m2", list(side.irradiance)},
+                    {"standard_error_W_m2", list(side.standard_error)},
+                    {"lit", side.is_lit}});
+  }
+  return part;
+}
+
 }  // namespace
 
 void write_verification(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                         const Verification& verification, const Provenance& provenance) {
-  const PatchMesh& mesh = simulation.mesh;
   Json json;
   json["version"] = version();
   json["command_line"] = provenance.command_line;
@@ -36,49 +84,12 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["relative_error_by_space"] = relative_errors_by_space(simulation.spaces);
   json["widest_bar"] = widest_bar;
   json["parts"] = Json::array();
-  for (const VerifiedPart& part : verification.parts) {
-    json["parts"].push_back({{"part", part.name},
-                             {"checked", part.rows.size()},
-                             {"chi_square", list(part.chi_square)},
-                             {"mean_difference", list(part.mean_difference)},
-                             {"offset", list(part.offset)},
-                             {"width", part.width}});
-  }
-  json["patches"] = mesh.size();
+  for (const VerifiedPart& part : verification.parts) json["parts"].push_back(part_of(part));
+  json["patches"] = simulation.mesh.size();
   json["paths_per_patch"] = verification.paths.paths;
   json["rays"] = verification.paths.rays;
-  json["checked"] = Json::array();
-  const Field z = deviations_by_noise(verification);
-  const Field with_bar = deviations(verification);
-  for (std::size_t k = 0; k < verification.patches.size(); ++k) {
-    const PatchIndex patch = verification.patches[k];
-    const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
-    const auto i = static_cast<Eigen::Index>(k);
-    json["checked"].push_back({{"patch", patch},
-                               {"place", place_of(scene, polygon)},
-                               {"source_polygon", polygon.face},
-                               {"group", group_name(scene, polygon.group)},
-                               {"material", scene.materials[mesh.material[patch]].name},
-                               {"side", name_of(mesh.side[patch])},
-                               {"centre_m", list(mesh.centroid[patch])},
-                               {"area_m2", mesh.area[patch]},
-                               {"irradiance_W_m2", row(verification.irradiance, i)},
-                               {"bar_W_m2", row(verification.bar, i)},
-                               {"traced_W_m2", row(verification.paths.irradiance, i)},
-                               {"standard_error_W_m2", row(verification.paths.standard_error, i)},
-                               {"z", row(z, i)},
-                               {"z_with_bar", row(with_bar, i)}});
-  }
-  json["left_out_sides"] = Json::array();
-  for (const LeftOutSide& side : verification.left_out) {
-    const Polygon& polygon = scene.polygons[side.polygon];
-    json["left_out_sides"].push_back({{"place", place_of(scene, polygon)},
-                                      {"source_polygon", polygon.face},
-                                      {"side", name_of(side.side)},
-                                      {"traced_W_m2", list(side.irradiance)},
-                                      {"standard_error_W_m2", list(side.standard_error)},
-                                      {"lit", side.is_lit}});
-  }
+  json["checked"] = checked_part(scene, simulation.mesh, verification);
+  json["left_out_sides"] = left_out_part(scene, verification);
   write_bytes(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -157,6 +157,15 @@ Scene make_simple(Scene scene) {
                       "with an outline that crosses itself so that no area can be told; left out");
 }
 
+std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {
+  std::vector<Polygon> kept;
+  kept.reserve(polygons.size());
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    if (marked[p] == 0) kept.push_back(std::move(polygons[p]));
+  }
+  return kept;
+}
+
 Scene merge_coincident(Scene scene) {
   const Coincidence found = find_coincident(scene);
   Faces duplicates, covered, two_sided, opened;
@@ -182,12 +191,7 @@ Scene merge_coincident(Scene scene) {
       covered.push_back(problem_face(scene, second));
     }
   }
-  std::vector<Polygon> kept;
-  kept.reserve(scene.polygons.size());
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (!found.is_second[p]) kept.push_back(std::move(scene.polygons[p]));
-  }
-  scene.polygons = std::move(kept);
+  scene.polygons = without_marked(std::move(scene.polygons), found.is_second);
   const std::string others =
       other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
   scene = with_problem(std::move(scene), ProblemKind::overlapping_faces, std::move(opened),

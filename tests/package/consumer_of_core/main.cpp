@@ -4,9 +4,7 @@
 int main() {
   using namespace patchlight;
   Scene scene;
-  for (const double z : {0.0, 1.0}) {
-    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) scene.vertices.emplace_back(x, y, z);
-  }
+  scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   scene.materials = {{"floor", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {"lamp", rgb(0, 0, 0), rgb(1, 1, 1)}};
   scene.polygons = {{{0, 1, 2, 3}, 0}, {{7, 6, 5, 4}, 1}};
   scene.groups = {""};
