@@ -28,6 +28,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"mesh.sides=", "--sides "},
                                                 {"mesh.sides", "--sides"},
                                                 {"assembly.storage=on_demand", "--on-demand"},
+                                                {"assembly.storage=rays", "--storage rays"},
                                                 {"assembly.close=false", "--no-closure"},
                                                 {"assembly.estimator=", "--estimator "},
                                                 {"assembly.estimator", "--estimator"},

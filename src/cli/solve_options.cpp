@@ -20,6 +20,17 @@ struct SolveOptions {
   std::string form_factors;
 };
 
+namespace {
+
+Storage storage_named(const std::string& text) {
+  if (text == "tiles") return Storage::tiles;
+  if (text == "rays") return Storage::rays;
+  if (text == "on-demand") return Storage::on_demand;
+  throw refusal("--storage", text, "tiles, rays or on-demand");
+}
+
+}  // namespace
+
 std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   auto options = std::make_shared<SolveOptions>();
   SolveOptions& to = *options;
@@ -40,6 +51,11 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
       "--on-demand", [&to] { to.request.assembly.storage = Storage::on_demand; },
       "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
       "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
+  add(command, "--storage", "tiles|rays|on-demand",
+      "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
+      "many "
+      "patches, with a\nstandard error for each; or not at all, as --on-demand; default tiles",
+      [&to](const std::string& text) { to.request.assembly.storage = storage_named(text); });
   add_effect_options(command, to.request);
   add_solver_options(command, to.solution, to.request);
   add_sampling_options(command, to.request);
@@ -58,6 +74,9 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.form_factors = options.form_factors;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
+  Request& request = arguments.request;
+  if (request.assembly.storage == Storage::rays && !options.solution.solver_given && options.solution.series.empty())
+    request.solver.solver = Solver::gmres;
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;
 }

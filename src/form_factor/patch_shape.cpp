@@ -69,8 +69,8 @@ Quadrature<capacity> quadrilateral(const PatchCorners& corners, const Vector& no
   return rule;
 }
 
-PatchShape shape_of(const PatchMesh& mesh, PatchIndex patch) {
-  PatchShape shape{mesh.corner_points(patch), mesh.centroid[patch], mesh.normal[patch], mesh.area[patch], 0, {}, {}};
+// With the centroid, the normal and the area as they are.
+PatchShape finished(PatchShape shape) {
   const auto& p = shape.corners.points;
   for (int k = 0; k < shape.corners.count; ++k) {
     shape.radius = std::max(shape.radius, (p[static_cast<std::size_t>(k)] - shape.centroid).norm());
@@ -147,10 +147,19 @@ bool closer_than(const PatchShape& first, const PatchShape& second, double diame
 
 }  // namespace
 
+PatchShape patch_shape(const PatchMesh& mesh, PatchIndex patch) {
+  return finished({mesh.corner_points(patch), mesh.centroid[patch], mesh.normal[patch], mesh.area[patch], 0, {}, {}});
+}
+
+PatchShape patch_shape(const PatchCorners& corners) {
+  const Vector area = area_vector(corners);
+  return finished({corners, area_centroid(corners), area.normalized(), area.norm(), 0, {}, {}});
+}
+
 std::vector<PatchShape> patch_shapes(const PatchMesh& mesh) {
   std::vector<PatchShape> shapes;
   shapes.reserve(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) shapes.push_back(shape_of(mesh, i));
+  for (PatchIndex i = 0; i < mesh.size(); ++i) shapes.push_back(patch_shape(mesh, i));
   return shapes;
 }
 

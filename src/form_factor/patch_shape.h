@@ -26,6 +26,12 @@ struct PatchShape {
   Quadrature<9> fine;    ///< of degree 4 or 5
 };
 
+/// The shape of one patch.
+PatchShape patch_shape(const PatchMesh& mesh, PatchIndex patch);
+
+/// That of a triangle or a planar convex quadrilateral, counter-clockwise from its front.
+PatchShape patch_shape(const PatchCorners& corners);
+
 /// The shapes of all patches.
 std::vector<PatchShape> patch_shapes(const PatchMesh& mesh);
 

@@ -1,6 +1,7 @@
 #include "mesh/patch_lookup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -10,6 +11,9 @@ namespace {
 
 // Points this share of the polygon side's extent outside of a patch still find it.
 constexpr double lookup_slack = 4e-6;
+
+// The patches of a lattice are at their places up to this share of their edges.
+constexpr double lattice_tolerance = 1e-6;
 
 using Flat = Eigen::Vector2d;
 
@@ -88,16 +92,63 @@ Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
   return grid;
 }
 
+// Do the corners of a parallelogram lie at -1/2 and 1/2 along both directions, counted from its centroid?
+bool is_cell(const PatchMesh& mesh, PatchIndex patch, const Vector& to_u, const Vector& to_v) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  return corners.count == 4 && std::all_of(corners.points.begin(), corners.points.end(), [&](const Point& corner) {
+           const Vector from = corner - mesh.centroid[patch];
+           return std::abs(std::abs(from.dot(to_u)) - 0.5) <= lattice_tolerance &&
+                  std::abs(std::abs(from.dot(to_v)) - 0.5) <= lattice_tolerance;
+         });
+}
+
 }  // namespace
+
+std::optional<PatchLookup::Lattice> PatchLookup::lattice_of(PatchRange range) const {
+  // 1. The first row, as long as centroids are evenly spaced; then the step from row to row.
+  const PatchIndex count = range.end - range.begin;
+  const Point& first = mesh_.centroid[range.begin];
+  const Vector u = mesh_.centroid[range.begin + 1] - first;
+  const auto is_at = [&](PatchIndex k, const Point& place) {
+    return (mesh_.centroid[range.begin + k] - place).norm() <= lattice_tolerance * u.norm();
+  };
+  PatchIndex row = 1;
+  while (row < count && is_at(row, first + row * u)) ++row;
+  if (count % row != 0) return std::nullopt;
+  const PatchCorners corners = mesh_.corner_points(range.begin);
+  const Vector edge = corners.points[1] - corners.points[0];
+  const Vector other = corners.points[3] - corners.points[0];
+  const Vector v = row < count                                    ? Vector(mesh_.centroid[range.begin + row] - first)
+                   : edge.cross(u).norm() > other.cross(u).norm() ? edge
+                                                                  : other;
+
+  // 2. All of them are parallelograms in their places. The dual vectors: u . to_u = 1, v . to_u = 0.
+  const Vector normal = u.cross(v);
+  const double squared = normal.squaredNorm();
+  if (!(squared > 0)) return std::nullopt;
+  const Vector to_u = v.cross(normal) / squared;
+  const Vector to_v = normal.cross(u) / squared;
+  for (PatchIndex k = 0; k < count; ++k) {
+    if (!is_at(k, first + k % row * u + k / row * v) || !is_cell(mesh_, range.begin + k, to_u, to_v))
+      return std::nullopt;
+  }
+  return Lattice{first - 0.5 * u - 0.5 * v, to_u, to_v, static_cast<int>(row), static_cast<int>(count / row)};
+}
 
 PatchLookup::PatchLookup(const PatchMesh& mesh) : mesh_(mesh) {
   for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
-    grids_.push_back(make_grid({mesh.first_patch[slot], mesh.first_patch[slot + 1]}));
+    grid_of_.push_back(static_cast<std::uint32_t>(grids_.size()));
+    const PatchRange range{mesh.first_patch[slot], mesh.first_patch[slot + 1]};
+    if (range.end - range.begin > 1) grids_.push_back(make_grid(range));
   }
 }
 
 PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
-  if (range.begin == range.end) return {};
+  if (auto lattice = lattice_of(range)) {
+    Grid grid;
+    grid.lattice = *lattice;
+    return grid;
+  }
   Box bounds;
   for (PatchIndex patch = range.begin; patch < range.end; ++patch) bounds.extend(box_of(mesh_, patch));
   Grid grid = lay_out<Grid>(mesh_, range, bounds);
@@ -125,8 +176,19 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
 }
 
 std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
-  const Grid& grid = grids_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)];
-  if (grid.patches.empty()) return std::nullopt;
+  const PatchRange range = mesh_.patches_on(polygon, side);
+  if (range.begin == range.end) return std::nullopt;
+  if (range.end - range.begin == 1) return range.begin;
+  const Grid& grid = grids_[grid_of_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)]];
+
+  if (grid.lattice) {
+    const Lattice& lattice = *grid.lattice;
+    const Vector to = point - lattice.origin;
+    const auto place = [](double at, int count) { return static_cast<int>(std::clamp(at, 0.0, count - 0.5)); };
+    const int column = place(to.dot(lattice.to_u), lattice.count_u);
+    const int row = place(to.dot(lattice.to_v), lattice.count_v);
+    return range.begin + static_cast<PatchIndex>(row * lattice.count_u + column);
+  }
 
   std::optional<PatchIndex> nearest;
   double shortest = std::numeric_limits<double>::infinity();

@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// Finds the patch at a point: per polygon side a uniform grid of cells in the polygon's plane, each with the patches
-/// whose bounds overlap it.
+/// Finds the patch at a point: per polygon side with several patches a uniform grid of cells in the polygon's plane,
+/// each with the patches whose bounds overlap it.
 class PatchLookup {
  public:
   /// Keeps a reference to the mesh, which must outlive it.
@@ -20,7 +20,14 @@ class PatchLookup {
   std::optional<PatchIndex> patch_at(PolygonIndex polygon, Side side, const Point& point) const;
 
  private:
+  // Equal parallelograms, row by row: the patch follows from the place.
+  struct Lattice {
+    Point origin;
+    Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
+    int count_u = 0, count_v = 0;
+  };
   struct Grid {
+    std::optional<Lattice> lattice;  // then the rest is empty
     PatchIndex first = 0;
     int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
     double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
@@ -28,10 +35,12 @@ class PatchLookup {
     std::vector<std::uint32_t> begin;  // per cell, into patches
     std::vector<PatchIndex> patches;
   };
+  std::optional<Lattice> lattice_of(PatchRange range) const;
   Grid make_grid(PatchRange range) const;
 
   const PatchMesh& mesh_;
-  std::vector<Grid> grids_;  // per 2 * polygon + side
+  std::vector<std::uint32_t> grid_of_;  // per 2 * polygon + side: its grid, where it has several patches
+  std::vector<Grid> grids_;
 };
 
 }  // namespace patchlight

@@ -43,6 +43,19 @@ TransportFacts facts_of(const Exchange& exchange) {
           .closure = exchange.closure};
 }
 
+// Rows of rays are closed one by one as they are made.
+MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts) {
+  MeshTransport transport{.rows = {},
+                          .area = found.rows.area,
+                          .facts = std::move(facts),
+                          .assembly = {},
+                          .of_parents = {},
+                          .rays = std::make_unique<RayTransport>(std::move(found.rows.halves)),
+                          .light = std::move(found.light)};
+  transport.facts.row_sum = transport.rays->apply(Field::Ones(transport.area.size(), 1)).matrix();
+  return transport;
+}
+
 ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& observer) {
   return plan.assembly.close ? close_exchange(std::move(exchange), observer)
                              : keep_exchange_areas(std::move(exchange.exchange_areas), "not wanted");
@@ -52,6 +65,13 @@ ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& 
 
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known) {
   RawTransport found;
+  if (plan.assembly.storage == Storage::rays) {
+    found.by_rays = ray_light(run, plan, mesh);
+    found.facts.lost = found.by_rays->rows.lost;
+    found.facts.counts.shadow_rays = found.by_rays->rows.shadow_rays;
+    found.facts.closure = "each row by itself";
+    return found;
+  }
   if (plan.accuracy.error_bars) {
     found.assembly = assembly_of(run, plan, mesh, known);
     found.exchange = exchange_of(*found.assembly, mesh, lost_share_of(run, plan, mesh, known));
@@ -68,11 +88,14 @@ RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& me
 }
 
 MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMesh& mesh, RawTransport raw) {
+  if (raw.by_rays) return transport_by_rays(std::move(*raw.by_rays), std::move(raw.facts));
   MeshTransport transport{.rows = {},
                           .area = raw.exchange.area,
                           .facts = std::move(raw.facts),
                           .assembly = std::move(raw.assembly),
-                          .of_parents = {}};
+                          .of_parents = {},
+                          .rays = {},
+                          .light = {}};
   if (!keeps_entries(plan.assembly.storage)) {
     const Occluder& occluder = run.tracing->between_patches();
     transport.rows = on_demand_transport(mesh.patches, occluder, plan.assembly, transport.area);

@@ -3,6 +3,7 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
+#include "pipeline/ray_light.h"
 #include "pipeline/run.h"
 #include "transport/closure.h"
 
@@ -16,15 +17,18 @@ struct RawTransport {
   Exchange exchange;
   TransportFacts facts;
   std::optional<Assembly> assembly;  ///< with error bars: the same exchange areas with the errors of their entries
+  std::optional<RayTransportAndLight> by_rays;  ///< with rows of rays: in place of exchange areas
 };
 
 /// Light between the patches of a mesh: H = F B.
 struct MeshTransport {
-  std::unique_ptr<RowTransport> rows;
-  Eigen::VectorXd area;  ///< exposed, m^2
+  std::unique_ptr<RowTransport> rows;  ///< null with rows of rays
+  Eigen::VectorXd area;                ///< exposed, m^2
   TransportFacts facts;
   std::optional<Assembly> assembly;               ///< with error bars: exchange areas before closure
   std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed up over parents
+  std::unique_ptr<RayTransport> rays;             ///< with rows of rays, else null
+  std::optional<RayLight> light;                  ///< with them, the light that goes with them
 };
 
 /// All pairs, with visibility from shadow rays, unless Steps::exchange knows them; and the share of each patch's

@@ -9,6 +9,20 @@
 #include <utility>
 
 namespace patchlight {
+namespace {
+
+Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTransport& transport) {
+  const TransportFacts& facts = simulation.transport;
+  SolverOptions options = simulation.plan.solver;
+  options.largest_row_sum = largest(facts.row_sum);
+  RaySolution found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, options);
+  simulation.solution = std::move(found.solution);
+  simulation.error_bars = std::move(found.bars);
+  simulation.balance = energy_balance(simulation.problem, simulation.solution, facts.row_sum, facts.lost);
+  return simulation;
+}
+
+}  // namespace
 
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
   Simulation simulation;
@@ -19,6 +33,8 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   simulation.problem = std::move(problem.problem);
   simulation.direct_standard_error = std::move(problem.direct_standard_error);
   simulation.tracing = run.tracing;
+
+  if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);
 
   const bool keeps = keeps_entries(meshed.plan.assembly.storage);
   const TransportFacts& facts = simulation.transport;

@@ -28,6 +28,8 @@ Asked on_demand(const Request& request) {
   return {"assembly.storage=on_demand", request.assembly.storage == Storage::on_demand};
 }
 
+Asked by_rays(const Request& request) { return {"assembly.storage=rays", request.assembly.storage == Storage::rays}; }
+
 Asked not_closed(const Request& request) { return {"assembly.close=false", !request.assembly.close}; }
 
 Asked form_factors(const Given& given) { return {"given.form_factors", given.form_factors}; }
@@ -78,6 +80,7 @@ void require_consistent_effects(const Request& request, const Given& given) {
   decides(Effect::occlusion, form_factors(given), "form factors that are given decide it");
   require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
   require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
+  require_alone(forced(request, Effect::closure), {by_rays(request)}, "rows of rays are closed one by one");
 }
 
 void require_solver_for(const Request& request) {
@@ -89,16 +92,22 @@ void require_solver_for(const Request& request) {
     if (!asked.is_asked || is_shooting(solver)) continue;
     throw InputError(asked.part, found + name_of(Solver::progressive) + " or " + name_of(Solver::overshooting));
   }
+  // Rows of rays are neither reciprocal nor had from the side of their sources.
+  if (by_rays(request).is_asked && (takes_rows(solver) || takes_reciprocity(solver)))
+    throw InputError(by_rays(request).part, found + "gmres, bicgstab, jacobi or chebyshev");
   if (request.solver.reference)
     throw InputError("solver.reference", "found a solution to be met; before there is a mesh expected none");
 }
 
-// Rows on demand are found by the automatic estimator, and cannot be closed, as that takes all.
+// Rows on demand are found by the automatic estimator, and cannot be closed, as that takes all; rows of rays take the
+// place of any estimator.
 void require_rows_possible(const Request& request, const Given& given) {
   const Asked rows = on_demand(request);
   require_alone(not_closed(request), {rows}, "rows on demand are never closed");
   require_alone(other_estimator(request), {rows}, "rows on demand are found by the automatic one");
-  require_alone(form_factors(given), {rows}, "these are a matrix");
+  require_alone(form_factors(given), {rows, by_rays(request)}, "these are a matrix");
+  require_alone(by_rays(request), {not_closed(request)}, "rows of rays are closed one by one");
+  require_alone(by_rays(request), {other_estimator(request)}, "rays take its place");
 }
 
 void require_automatic_estimator(const Request& request) {
@@ -122,6 +131,7 @@ std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Give
   const char* const found_in_the_run = "error bars take the errors of form factors, found and kept in the run";
   const char* const closed = "error bars are those of closed rows";
   return {{on_demand(request), found_in_the_run},
+          {by_rays(request), "rows of rays have bars of their own, on one mesh"},
           {form_factors(given), found_in_the_run},
           {mesh_of(given), "error bars take a nested mesh"},
           {not_closed(request), closed},

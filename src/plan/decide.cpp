@@ -136,6 +136,8 @@ Decision sky(const EffectFacts& facts) {
 Decision closure(const Request& request, bool interreflects) {
   Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
                     "a few products with the matrix"};
+  if (request.assembly.storage == Storage::rays)
+    return {Effect::closure, false, "each row of rays is closed by itself", "products with the matrix"};
   if (!keeps_entries(request.assembly.storage))
     return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
   if (!interreflects)

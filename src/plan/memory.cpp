@@ -21,6 +21,7 @@ constexpr double bytes_of_parents = 0.7;  // with error bars: the matrix of the 
 constexpr double bytes_while_refining =
     5.5;  // another matrix before closure, and at the end of a mesh that of the next
 constexpr double bytes_per_patch = 1500;
+constexpr double bytes_of_ray_rows = 2500;         // per patch: rows of rays, and the directions of the solver
 constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
 
@@ -35,6 +36,7 @@ double bytes_of_a_pair(const AssemblyOptions& assembly, const AccuracyOptions& a
 }
 
 double bytes_of_a_patch(const AssemblyOptions& assembly) {
+  if (assembly.storage == Storage::rays) return bytes_per_patch + bytes_of_ray_rows;
   return bytes_per_patch + (keeps_entries(assembly.storage) ? 0 : bytes_of_coarse_transport);
 }
 

@@ -119,7 +119,7 @@ AssemblyOptions decided(const Request& request, const EffectFacts& facts, const 
   AssemblyOptions assembly = decided(request.assembly, request, simulates(decisions, Effect::closure));
   const bool lamps_alone = !simulates(decisions, Effect::interreflection) && !assembly.close && !assembly.keep_errors &&
                            assembly.estimator == Estimator::automatic;
-  if (lamps_alone && !given.form_factors) assembly.storage = Storage::on_demand;
+  if (lamps_alone && !given.form_factors && assembly.storage == Storage::tiles) assembly.storage = Storage::on_demand;
   if (simulates(decisions, Effect::occlusion) && facts.inside_hull == 0) assembly.short_cuts.free = false;
   return assembly;
 }
@@ -129,7 +129,8 @@ SolverOptions decided(SolverOptions solver) {
   return solver;
 }
 
-SolverOptions decided(SolverOptions solver, bool every_band) {
+SolverOptions decided(SolverOptions solver, bool every_band, Storage storage) {
+  if (storage == Storage::rays && !solver.relative_error) solver.relative_error = default_ray_tolerance;
   solver.every_band = solver.every_band || every_band;
   return decided(std::move(solver));
 }
@@ -156,7 +157,7 @@ Plan make_plan(const Scene& scene, const Request& request, const Given& given) {
   return {.sides = std::move(sides),
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
-          .solver = decided(request.solver, in_colour && one_colour),
+          .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage),
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = std::move(decisions),

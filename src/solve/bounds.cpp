@@ -15,6 +15,22 @@ constexpr double largest_contraction = 1 - 1e-8;
 // Escape is what a row lacks to 1, beyond what closure leaves.
 constexpr double least_escape = 1e-6;
 
+constexpr double no_bound = std::numeric_limits<double>::infinity();
+
+// v = 1 + K v by Jacobi's iteration, until no residual is above 1/2: for rows that are not reciprocal.
+GlowingRadiosity glowing_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
+                                    int most_iterations) {
+  const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
+  GlowingRadiosity glowing{ones, 0};
+  Field bounce = ones;
+  while (glowing.applications < most_iterations && (bounce > 0.5).any()) {
+    bounce = problem.scattering.reflect(transport.apply(bounce));
+    glowing.radiosity += bounce;
+    ++glowing.applications;
+  }
+  return glowing;
+}
+
 }  // namespace
 
 bool Bounds::contracts(Eigen::Index band) const { return contraction[band] < largest_contraction; }
@@ -23,10 +39,12 @@ bool Bounds::contracts() const { return (contraction < largest_contraction).all(
 
 Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
                               const SolverOptions& options) {
-  // ||K||_A <= rho_max max_i sum_j F_ij, as A^(1/2) F A^(-1/2) is symmetric and similar to F.
+  const Eigen::ArrayXd reflected = problem.scattering.norm_bound();
+  // ||K||_A <= rho_max max_i sum_j F_ij where A^(1/2) F A^(-1/2) is symmetric: it is similar to F.
+  if (!transport.is_reciprocal())
+    return (reflected > 0).select(Eigen::ArrayXd::Constant(reflected.size(), no_bound), 0.0);
   const double row_sum = options.largest_row_sum ? *options.largest_row_sum
                                                  : highest(transport.apply(Field::Ones(transport.size(), 1)))[0];
-  const Eigen::ArrayXd reflected = problem.scattering.norm_bound();
   return (reflected > 0).select(reflected * row_sum, 0.0);
 }
 
@@ -36,7 +54,8 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
   constexpr int most_iterations = 60;
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
   const RadiosityProblem glowing{problem.scattering, ones, problem.area};
-  const auto [v, applications] = glowing_radiosity(transport, glowing, most_iterations);
+  const auto [v, applications] = transport.is_reciprocal() ? glowing_radiosity(transport, glowing, most_iterations)
+                                                           : glowing_by_bounces(transport, glowing, most_iterations);
   PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), applications + 1};
   if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
   return weights;

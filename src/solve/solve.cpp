@@ -61,9 +61,18 @@ const RowTransport* rows_of(const TransportOperator& transport, Solver solver) {
   if (rows == nullptr && takes_rows(solver)) {
     throw InputError(name_of(solver),
                      "takes single rows of the form factors, which cannot be had as they are kept here; expected a "
-                     "solver that takes none, as cg");
+                     "solver that takes none, as " +
+                         std::string(transport.is_reciprocal() ? "cg" : "gmres"));
   }
   return rows;
+}
+
+// Conjugate gradients rest on A_i F_ij = A_j F_ji.
+void require_reciprocity(const TransportOperator& transport, Solver solver) {
+  if (transport.is_reciprocal() || !takes_reciprocity(solver)) return;
+  throw InputError(name_of(solver),
+                   "takes form factors that are reciprocal, A_i F_ij = A_j F_ji, which rows of rays are but for their "
+                   "errors; expected gmres, bicgstab, jacobi or chebyshev");
 }
 
 // F E, where there are rows from those of the lamps alone.
@@ -145,6 +154,8 @@ bool takes_rows(Solver solver) {
          solver == Solver::symmetric_gauss_seidel;
 }
 
+bool takes_reciprocity(Solver solver) { return solver == Solver::cg || solver == Solver::deflated_cg; }
+
 bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { return inner_product(x, x, area).sqrt(); }
@@ -168,6 +179,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
          problem.scattering.reflectance.cols() == problem.exitance.cols());
 
   const RowTransport* const rows = rows_of(transport, options.solver);
+  require_reciprocity(transport, options.solver);
 
   // 1. Light that comes from no patch is a source where it is first reflected: B = S + rho o F B. Only the bands that
   //    need it.

@@ -4,6 +4,7 @@
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "transport/patch_frame.h"
+#include "transport/sights.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -11,30 +12,17 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// Second tries start this share of the way to the centroid, and this share of the scene's extent behind the patch.
-constexpr double toward_centroid = 0.01;
-constexpr double behind = 1e-5;
-
 // When it has to be decided whether a point is covered, so many rays start there over the hemisphere, and as many
 // around the horizon with this slope: under a face that hangs close over the patch they get out, inside a solid they do
 // not.
 constexpr int rays_per_point = 8;
 constexpr double grazing_slope = 1e-3;
-
-enum class Sight { patch, nothing, back, contact };
-
-// What a ray meets, and where.
-struct Seen {
-  Sight sight = Sight::nothing;
-  std::optional<Hit> hit;
-};
 
 struct Shares {
   double escaped = 0;
@@ -45,12 +33,9 @@ struct Shares {
 
 struct HemisphereSampler {
   const PatchMesh& mesh;
-  const Occluder& occluder;
-  double extent;
+  Sights sights;
 
-  std::vector<Seen> look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
   std::vector<Seen> look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
-  bool is_in_contact(const Hit& hit) const;
   Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
@@ -81,69 +66,16 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-std::vector<Seen> HemisphereSampler::look(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
-  const auto seen_at = [&](const Hit& hit) -> Seen {
-    const PatchRange range = mesh.patches_on(hit.polygon, hit.side);
-    return {range.begin == range.end ? Sight::back : Sight::patch, hit};
-  };
-  std::vector<Seen> seen(rays.size());
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (!occluder.is_covered(mesh.polygon[patch], mesh.side[patch], rays[k].origin)) continue;
-    seen[k].sight = Sight::contact;
-    rays[k].direction.setZero();  // need not be traced
-  }
-  std::vector<Ray> second_tries;
-  std::vector<std::size_t> tried_again;
-  const auto hits = occluder.first_held_hits(rays, seed);
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (seen[k].sight == Sight::contact) continue;
-    if (hits[k]) {
-      seen[k] = seen_at(*hits[k]);
-      continue;
-    }
-    Ray moved = rays[k];
-    moved.origin += toward_centroid * (mesh.centroid[patch] - moved.origin) - behind * extent * mesh.normal[patch];
-    second_tries.push_back(moved);
-    tried_again.push_back(k);
-  }
-  const auto second_hits = occluder.first_held_hits(second_tries, hash({seed, 1}));
-  for (std::size_t k = 0; k < second_tries.size(); ++k) {
-    if (!second_hits[k]) continue;
-    const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh.normal[patch]);
-    seen[tried_again[k]] = seen_at(*second_hits[k]);
-    if (height < 2 * behind * extent) seen[tried_again[k]].sight = Sight::contact;
-  }
-  return seen;
-}
-
-// Does another face lie against the one that was hit, where it was? One that lies over it and faces the same way, as a
-// rug on a floor, is met from behind, where it has no patches.
-bool HemisphereSampler::is_in_contact(const Hit& hit) const {
-  const Vector& normal = mesh.normal[mesh.patches_on(hit.polygon, hit.side).begin];
-  const Ray through{hit.point - behind * extent * normal, normal, hit.polygon};
-  const auto next = occluder.first_hits({&through, 1})[0];
-  if (!next || next->distance >= 2 * behind * extent) return false;
-  const PatchRange range = mesh.patches_on(next->polygon, next->side);
-  return range.begin != range.end;
-}
-
-int count(std::span<const Seen> among, Sight sight) {
-  return static_cast<int>(
-      std::count_if(among.begin(), among.end(), [&](const Seen& one) { return one.sight == sight; }));
-}
-
-int unseen(std::span<const Seen> seen) { return count(seen, Sight::back) + count(seen, Sight::contact); }
-
 // Rays that start together. Where some meet backs, and so may be inside a solid, a face is a back too where another
 // lies against it: of two faces in one place a ray meets either.
 std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::vector<Ray>& rays,
                                                    std::uint32_t seed) const {
-  std::vector<Seen> seen = look(patch, rays, seed);
+  std::vector<Seen> seen = sights.of_rays(patch, rays, seed);
   for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
     const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == 0) continue;
     for (Seen& one : group) {
-      if (one.sight == Sight::patch && is_in_contact(*one.hit)) one.sight = Sight::back;
+      if (one.sight == Sight::patch && sights.is_in_contact(*one.hit)) one.sight = Sight::back;
     }
   }
   return seen;
@@ -152,14 +84,14 @@ std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::
 // What groups of rays from one point each tell. A point is covered when every ray from it meets a back, a face that
 // lies against the patch, or one against which another lies.
 Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
-  const std::vector<Seen> sights = look_together(patch, rays, seed);
+  const std::vector<Seen> seen = look_together(patch, rays, seed);
   int covered = 0;
   int exposed = 0;
   int escaped = 0;
   int at_backs = 0;
   int dark = 0;
-  for (std::size_t first = 0; first < sights.size(); first += rays_per_point) {
-    const auto group = std::span(sights).subspan(first, rays_per_point);
+  for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
+    const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == rays_per_point) {
       const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
       if (unseen(look_together(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}), seed)) ==
@@ -180,8 +112,8 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
 
 Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Seen> sights = look(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
-  if (unseen(sights) == 0) return {static_cast<double>(count(sights, Sight::nothing)) / rays, 0, 0, 0};
+  const std::vector<Seen> seen = sights.of_rays(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
+  if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed), seed);
 }
@@ -208,7 +140,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const HemisphereSampler sampler{mesh, occluder, 1 / occluder.frame().scale};
+  const HemisphereSampler sampler{mesh, Sights(mesh, occluder)};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());

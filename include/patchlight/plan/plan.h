@@ -75,6 +75,9 @@ struct Given {
   bool mesh = false;
 };
 
+/// The same with rows of rays, whose own error is some hundred times that.
+inline constexpr double default_ray_tolerance = 1e-4;
+
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;
 

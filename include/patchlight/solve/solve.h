@@ -37,6 +37,9 @@ bool is_shooting(Solver solver);
 /// True for those that sweep or shoot: they take a RowTransport. The others need no more than H = F B.
 bool takes_rows(Solver solver);
 
+/// True for those that take a transport with A_i F_ij = A_j F_ji alone: conjugate gradients.
+bool takes_reciprocity(Solver solver);
+
 /// The solver's relative error when none is asked for.
 inline constexpr double default_tolerance = 1e-6;
 
@@ -67,7 +70,8 @@ inline double tolerance_of(const SolverOptions& options) { return options.relati
 /// the same section; where that is not known either, by the relative residual, with an infinite error_bound in the
 /// history. What cannot converge ends after max_iterations with converged = false and its history; a singular system at
 /// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled; InputError, before
-/// any work, when takes_rows() and the transport is no RowTransport.
+/// any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it is not reciprocal:
+/// then there is no kappa, and the bound is that of every patch.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

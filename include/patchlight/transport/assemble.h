@@ -28,13 +28,14 @@ const char* name_of(Estimator estimator);
 
 /// How the exchange areas of all pairs of patches are kept.
 enum class Storage {
-  tiles,     ///< each pair once, as floats: time and memory in proportion to the square of the patches
+  tiles,  ///< each pair once, as floats: time and memory in proportion to the square of the patches
+  rays,   ///< not as pairs: sparse rows of the patches that some rays from each meet. Time and memory in proportion to
+          ///< the patches, and an error that more rays make smaller
   on_demand  ///< not at all: a row is computed whenever a solver asks for it. Memory in proportion to the patches
 };
 
-/// True when entries are kept, so that they can be closed, summed up and written. What keeps none is for solvers that
-/// take single rows.
-constexpr bool keeps_entries(Storage storage) { return storage != Storage::on_demand; }
+/// True when the entries of all pairs are kept, so that they can be closed, summed up and written.
+constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles; }
 
 /// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs; docs/theory.md
 /// section 5.

@@ -14,6 +14,8 @@ class TransportOperator {
   virtual PatchIndex size() const = 0;
   /// Irradiance H = F B; H_i = sum_j F_ij B_j. Rows are patches, columns bands.
   virtual Field apply(const FieldView& radiosity) const = 0;
+  /// True when A_i F_ij = A_j F_ji, but for rounding. Solvers that rest on it refuse what is not.
+  virtual bool is_reciprocal() const { return true; }
 };
 
 /// What a sweep comes to: some patches with their radiosities of now, the irradiance by the radiosities of now, their

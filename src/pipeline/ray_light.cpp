@@ -1,0 +1,173 @@
+#include "pipeline/ray_light.h"
+
+#include "base/vectors.h"
+#include "solve/scattering.h"
+#include "transport/bright_patches.h"
+#include "transport/smoothing.h"
+#include "visibility/occluder.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// What is bright: so many times the mean over the area. Measured; anything from 2 to 16 does.
+constexpr double bright = 4;
+
+// Pieces of lamps that every patch is sampled with.
+constexpr std::size_t most_pieces = 16;
+
+Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
+
+struct Lamp {
+  LampSide side;
+  double flux = 0;
+};
+
+// The strongest lamps, as many as most_pieces allow.
+std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
+  const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
+  const double mean = scalar_product(exitance, problem.area) / total(problem.area);
+  std::vector<Lamp> lamps;
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    for (const Side side : {Side::front, Side::back}) {
+      const PatchRange patches = mesh.patches_on(polygon, side);
+      if (patches.begin == patches.end || !(exitance[patches.begin] > bright * mean)) continue;
+      const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
+      lamps.push_back({{polygon, side}, exitance[patches.begin] * problem.area.segment(patches.begin, count).sum()});
+    }
+  }
+  std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
+  std::vector<LampSide> apart;
+  std::size_t pieces = 0;
+  for (const Lamp& lamp : lamps) {
+    pieces += piece_count(scene, lamp.side);
+    if (pieces > most_pieces) break;
+    apart.push_back(lamp.side);
+  }
+  return apart;
+}
+
+// H = F_lamps E_lamps for factors of one value per patch and lamp.
+Field irradiance_by(const LampValues& factors, const Field& exitance) {
+  return (factors.cast<double>().matrix() * exitance.matrix()).array();
+}
+
+Field emitted_in_rows(const RayLight& light) {
+  Field exitance = light.lit.problem.exitance;
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
+    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
+  return exitance;
+}
+
+// Light that comes from no patch of the rows.
+Field direct_of(const RayLight& light) {
+  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
+  if (light.lit.problem.direct_irradiance.size() > 0) direct += light.lit.problem.direct_irradiance;
+  return direct;
+}
+
+void find_lamps(RayLight& light, const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  const RadiosityProblem& problem = light.lit.problem;
+  const std::vector<LampSide> lamps = lamps_apart(run.scene, mesh, problem);
+  light.is_apart.assign(mesh.size(), 0);
+  Field exitance(static_cast<Eigen::Index>(lamps.size()), problem.exitance.cols());
+  for (std::size_t k = 0; k < lamps.size(); ++k) {
+    const PatchRange patches = mesh.patches_on(lamps[k].polygon, lamps[k].side);
+    exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(patches.begin);
+    std::fill(light.is_apart.begin() + patches.begin, light.is_apart.begin() + patches.end, 1);
+  }
+  const LampFactors factors =
+      lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps, plan.assembly.seed, run.observer);
+  for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
+  light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
+}
+
+}  // namespace
+
+RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  RayTransportAndLight found;
+  RayLight& light = found.light;
+
+  // 1. Light where it first arrives.
+  light.lit = lit_problem(run, plan, mesh, area);
+  find_lamps(light, run, plan, mesh);
+
+  // 2. Rows, with rays towards what that makes bright.
+  const RadiosityProblem& problem = light.lit.problem;
+  const Field expected = emitted_in_rows(light) + problem.scattering.reflect(direct_of(light));
+  const Occluder& occluder = run.tracing->between_patches();
+  const BrightPatches bright_patches(mesh, summed_over_bands(expected), bright, occluder);
+  found.rows = trace_rows(mesh, occluder, bright_patches,
+                          {.lost_share_rays = plan.assembly.lost_share_rays, .seed = plan.assembly.seed}, run.observer);
+  light.distance = std::move(found.rows.distance);
+
+  // 3. Means over the exposed part of each patch, of what it holds back.
+  light.lit.problem.area = found.rows.area;
+  Eigen::ArrayXd exposed = found.rows.area.array() / area.array();
+  for (PatchIndex i = 0; i < mesh.size(); ++i) exposed[i] /= occluder.held_share(mesh.polygon[i]);
+  for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
+  return found;
+}
+
+namespace {
+
+// B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
+Solution reflected_once(const RayTransport& transport, const RadiosityProblem& problem) {
+  Solution solution;
+  solution.irradiance = transport.apply(problem.exitance) + problem.direct_irradiance;
+  solution.direct_irradiance = solution.irradiance;
+  solution.radiosity = radiosity_from(problem, solution.irradiance);
+  solution.error = Field::Zero(solution.radiosity.rows(), solution.radiosity.cols());
+  solution.patch_bound = 0;
+  solution.converged = true;
+  solution.history = {{.work = 1}};
+  return solution;
+}
+
+// The square of what smoothing has wrong over the variance that it leaves, of all patches together, per band: (S - H)
+// of one half times that of the other has the square of the bias as its mean, as the halves are independent.
+Eigen::ArrayXd bias_over_variance(const SmoothedHalves& smooth, const std::array<Field, 2>& raw,
+                                  const RadiosityProblem& problem) {
+  const auto weighted = [&](const Field& irradiance_squared) {
+    return area_sum(reflected_variance(problem.scattering, irradiance_squared), problem.area);
+  };
+  const Eigen::ArrayXd bias = weighted((smooth.halves[0] - raw[0]) * (smooth.halves[1] - raw[1])).max(0.0);
+  return quotient(bias, weighted(smooth.variance));
+}
+
+}  // namespace
+
+RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
+                            const SolverOptions& options) {
+  const RadiosityProblem& all = light.lit.problem;
+  const RadiosityProblem problem{all.scattering, emitted_in_rows(light), all.area, direct_of(light)};
+
+  // 1. Solve for what the rows carry.
+  Solution solution = simulates(run.plan, Effect::interreflection) ? solve(transport, problem, options, run.observer)
+                                                                   : reflected_once(transport, problem);
+
+  // 2. Gather once more, by each half, and smooth.
+  const bool reflects_twice = simulates(run.plan, Effect::interreflection);
+  const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
+  const std::array<Field, 2> raw{transport.apply_half(0, sources), transport.apply_half(1, sources)};
+  SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
+
+  // 3. What that scatters, and how far it is off where irradiance is not linear.
+  const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
+  Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
+  if (light.lit.direct_standard_error.size() > 0) variance += light.lit.direct_standard_error.square();
+  const Field none = Field::Zero(variance.rows(), variance.cols());
+  RaySolution found;
+  found.bars = {.mesh = none, .form_factor = variance.sqrt(), .solver = none, .display = none};
+
+  // 4. B = E + rho o H with all that is emitted.
+  solution.irradiance = (0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0) + problem.direct_irradiance;
+  solution.radiosity = radiosity_from(all, solution.irradiance);
+  found.solution = std::move(solution);
+  return found;
+}
+
+}  // namespace patchlight

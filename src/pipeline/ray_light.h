@@ -1,0 +1,47 @@
+#pragma once
+
+#include "patchlight/accuracy/error_bars.h"
+
+#include "pipeline/lit_problem.h"
+#include "transport/lamp_factors.h"
+#include "transport/ray_rows.h"
+#include "transport/ray_transport.h"
+
+#include <array>
+#include <vector>
+
+namespace patchlight {
+
+/// Rows of rays, and the light of lamps, which is found apart from them: from a small bright source a row of some rays
+/// would tell little, and smoothing would blur its shadows.
+struct RayLight {
+  LitProblem lit;                      ///< the problem as lit_problem() has it: with all that patches emit
+  std::vector<std::uint8_t> is_apart;  ///< per patch: what it emits counts in by_lamps, not in rows
+  std::array<Field, 2> by_lamps;       ///< irradiance straight from them, by both halves of the samples, W/m^2
+  Field lamp_standard_error;           ///< of its mean, W/m^2
+  std::vector<float> distance;         ///< as TracedRows has it
+};
+
+struct RayTransportAndLight {
+  TracedRows rows;
+  RayLight light;
+};
+
+/// Lamps are apart where they emit more than four times the mean over all patches, the strongest first, up to sixteen
+/// triangles and convex quadrilaterals: what all surfaces emit alike, and the light of many lamps, stays in the rows,
+/// which send rays towards bright patches on purpose. \throws Cancelled.
+RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
+
+/// A solution by rows of rays, and its error bars.
+struct RaySolution {
+  Solution solution;
+  ErrorBars bars;  ///< without the errors of the mesh: 0
+};
+
+/// Solves B = E + rho o (F B + H_direct) with lamps apart, gathers once more by each half of the rays, and smooths what
+/// comes from other patches: docs/theory.md section 12. What the halves differ tells the error, with the bias of
+/// smoothing. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
+RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
+                            const SolverOptions& options);
+
+}  // namespace patchlight

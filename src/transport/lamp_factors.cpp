@@ -1,0 +1,248 @@
+#include "transport/lamp_factors.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
+#include "form_factor/point_polygon.h"
+#include "transport/lamp_pieces.h"
+#include "visibility/occluder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Shadow rays of a pair in one half, and where it is partly visible.
+constexpr std::uint32_t usual_rays = ShadowPacket::size;
+constexpr std::uint32_t rays_if_partial = 4 * ShadowPacket::size;
+
+// A patch farther from a lamp than so many of its diameters is taken at its centroid, and at three or four points
+// beyond the second number: the form factor of a point varies with the square of diameter over distance.
+constexpr double point_diameters = 8;
+constexpr double points_diameters = 2;
+
+constexpr std::size_t sampled_at_once = 256;
+
+// What the shadow rays of one half of a pair have met.
+struct LampRays {
+  float weight = 0;       // summed geometry terms, 1/m^2
+  float seen_weight = 0;  // each times what its ray lets through
+  float seen = 0;         // summed shares that are let through, of samples with a weight
+  std::uint32_t weighted = 0;
+  std::uint32_t all = 0;
+
+  double visible_share() const { return weighted > 0 ? static_cast<double>(seen) / weighted : 0; }
+  bool is_partial() const { return seen > 0 && seen < static_cast<float>(weighted); }
+};
+
+// Errors pooled over pairs by their visible share: none, seven parts between, and all.
+struct Pool {
+  static constexpr std::size_t bins = 9;
+  std::array<double, bins> squares{};  // summed variances of the mean of both halves
+  std::array<double, bins> weights{};  // summed squares of the form factors without occluders
+
+  static std::uint8_t bin(double share) {
+    if (!(share > 0)) return 0;
+    if (share >= 1) return bins - 1;
+    return static_cast<std::uint8_t>(1 + static_cast<int>(share * (bins - 2)));
+  }
+  void add(std::uint8_t at, double square, double weight) {
+    squares[at] += square;
+    weights[at] += weight;
+  }
+  double variance(std::uint8_t at) const { return weights[at] > 0 ? squares[at] / weights[at] : 0; }
+};
+
+// A patch with a piece, in both halves.
+struct LampPair {
+  std::array<double, 2> form_factor{};
+  double unoccluded = 0;
+  std::array<std::uint8_t, 2> bin{};
+};
+
+struct LampSampler {
+  const PatchMesh& mesh;
+  const Occluder& occluder;
+  std::vector<LampPiece> pieces;
+  std::vector<std::uint32_t> keys;
+  SampleTable table;
+  bool can_occlude;
+  double scale;
+
+  double unoccluded(const PatchShape& patch, const LampPiece& piece) const;
+  void trace(LampRays& rays, const SampledPatch& patch, const LampPiece& piece, const SampleSet& set,
+             std::uint32_t upto) const;
+  LampPair pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const LampPiece& piece,
+                std::uint64_t& shadow_rays) const;
+};
+
+double LampSampler::unoccluded(const PatchShape& patch, const LampPiece& piece) const {
+  const double distance = (piece.shape.centroid - patch.centroid).norm() - piece.shape.radius;
+  if (distance < 2 * points_diameters * patch.radius)
+    return unoccluded_exchange_area(patch, piece.shape, FarRule::fine) / patch.area;
+  if (distance > 2 * point_diameters * patch.radius)
+    return point_to_polygon(patch.centroid, patch.normal, piece.shape.corners);
+  double sum = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.coarse.count); ++k) {
+    const Point at(patch.coarse.x[k], patch.coarse.y[k], patch.coarse.z[k]);
+    sum += patch.coarse.weight[k] * point_to_polygon(at, patch.normal, piece.shape.corners);
+  }
+  return sum / patch.area;
+}
+
+// Samples up to number `upto`, packet by packet.
+void LampSampler::trace(LampRays& rays, const SampledPatch& patch, const LampPiece& piece, const SampleSet& set,
+                        std::uint32_t upto) const {
+  PairSamples next;
+  while (rays.all < upto) {
+    add_samples(next, 0, ShadowPacket::size, patch, piece.sampled, set, rays.all, scale);
+    const auto arriving = occluder.transmittance(next.rays);
+    for (std::size_t lane = 0; lane < ShadowPacket::size; ++lane) {
+      if (!(next.weight[lane] > 0)) continue;
+      rays.weight += next.weight[lane];
+      rays.seen_weight += next.weight[lane] * arriving[lane];
+      rays.seen += arriving[lane];
+      ++rays.weighted;
+    }
+    rays.all += ShadowPacket::size;
+  }
+}
+
+// docs/theory.md, formula (5), as PairSampler::exchange_area(); U is the form factor without occluders, w_k = A G_k
+// with the area of the lamp's piece.
+double form_factor_by(const LampRays& rays, double U, double area) {
+  const double share = rays.visible_share();
+  if (share == 0) return 0;
+  const double n = rays.all;
+  const double m = rays.weighted;
+  if (share == 1 || m < 2) return share * U;
+  const double free = area * static_cast<double>(rays.seen_weight);
+  const double weight = area * static_cast<double>(rays.weight);
+  const double by_others = (static_cast<double>(rays.seen) * ((m - 1) * U - weight) + free) / (m - 1);
+  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U);
+}
+
+LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const LampPiece& piece,
+                           std::uint64_t& shadow_rays) const {
+  if (orientation(patch, piece.shape) == Orientation::averted) return {};
+  LampPair pair;
+  if (!can_occlude) {
+    pair.unoccluded = piece.held * unoccluded(patch, piece);
+    pair.form_factor = {pair.unoccluded, pair.unoccluded};
+    pair.bin = {Pool::bins - 1, Pool::bins - 1};
+    return pair;
+  }
+  // 1. The usual rays of both halves; more by what the other half has met.
+  std::array<SampleSet, 2> sets;
+  std::array<LampRays, 2> rays;
+  for (std::uint32_t half = 0; half < 2; ++half) {
+    sets[half] = table.of_pair(keys[i], piece.key, half);
+    trace(rays[half], sampled, piece, sets[half], usual_rays);
+  }
+  const std::array<bool, 2> more{rays[1].is_partial(), rays[0].is_partial()};
+  for (std::size_t half = 0; half < 2; ++half)
+    if (more[half]) trace(rays[half], sampled, piece, sets[half], rays_if_partial);
+  shadow_rays += rays[0].all + rays[1].all;
+
+  // 2. The form factor without occluders is not worth its time where nothing is seen.
+  if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
+  for (std::size_t half = 0; half < 2; ++half) {
+    pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area);
+    pair.bin[half] = Pool::bin(rays[half].visible_share());
+  }
+  return pair;
+}
+
+// What is known of each patch (row) and piece (column) until the pool is.
+struct PieceValues {
+  template <typename Value>
+  using Table = Eigen::Array<Value, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Table<float> unoccluded;
+  std::array<Table<std::uint8_t>, 2> bin;
+};
+
+struct LampTask {
+  Pool pool;
+  std::uint64_t shadow_rays = 0;
+};
+
+// All pieces with one patch.
+void sample_patch(const LampSampler& sampler, PatchIndex i, LampFactors& factors, PieceValues& values, LampTask& task) {
+  const PatchShape patch = patch_shape(sampler.mesh, i);
+  const SampledPatch sampled = sampled_patch(patch, sampler.mesh.polygon[i], sampler.occluder.frame());
+  for (std::size_t k = 0; k < sampler.pieces.size(); ++k) {
+    const LampPiece& piece = sampler.pieces[k];
+    const auto column = static_cast<Eigen::Index>(k);
+    const LampPair pair = sampler.pair(i, patch, sampled, piece, task.shadow_rays);
+    const double difference = 0.5 * (pair.form_factor[0] - pair.form_factor[1]);
+    values.unoccluded(i, column) = static_cast<float>(pair.unoccluded);
+    for (std::size_t half = 0; half < 2; ++half) {
+      factors.halves[half](i, static_cast<Eigen::Index>(piece.lamp)) += static_cast<float>(pair.form_factor[half]);
+      values.bin[half](i, column) = pair.bin[half];
+      task.pool.add(pair.bin[half], difference * difference, pair.unoccluded * pair.unoccluded);
+    }
+  }
+}
+
+// The variances of the means of both halves, by the visible shares that either half has found.
+LampValues standard_errors(const LampSampler& sampler, const PieceValues& values, const Pool& pool,
+                           Eigen::Index lamps) {
+  LampValues squares = LampValues::Zero(values.unoccluded.rows(), lamps);
+  for (Eigen::Index i = 0; i < squares.rows(); ++i) {
+    for (std::size_t k = 0; k < sampler.pieces.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      const auto bin = [&](std::size_t half) { return values.bin[half](i, column); };
+      const double variance = 0.5 * (pool.variance(bin(0)) + pool.variance(bin(1)));
+      const auto U = static_cast<double>(values.unoccluded(i, column));
+      squares(i, static_cast<Eigen::Index>(sampler.pieces[k].lamp)) += static_cast<float>(variance * U * U);
+    }
+  }
+  return squares.sqrt();
+}
+
+}  // namespace
+
+LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
+                         std::span<const LampSide> lamps, std::uint64_t seed, const Observer& observer) {
+  const std::vector<std::uint32_t> keys = patch_keys(mesh);
+  const LampSampler sampler{mesh,
+                            occluder,
+                            lamp_pieces(scene, mesh, occluder, lamps, keys),
+                            keys,
+                            SampleTable(rays_if_partial, hash({seed, 3})),
+                            occluder.can_occlude(),
+                            occluder.frame().scale};
+  const auto rows = static_cast<Eigen::Index>(mesh.size());
+  const auto count = static_cast<Eigen::Index>(lamps.size());
+  const auto pieces = static_cast<Eigen::Index>(sampler.pieces.size());
+  LampFactors factors;
+  for (LampValues& half : factors.halves) half = LampValues::Zero(rows, count);
+  PieceValues values;
+  values.unoccluded.resize(rows, pieces);
+  for (auto& bin : values.bin) bin.resize(rows, pieces);
+
+  // 1. Both halves of every pair.
+  std::vector<LampTask> tasks((mesh.size() + sampled_at_once - 1) / sampled_at_once);
+  parallel_for(tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
+    const std::size_t end = std::min((t + 1) * sampled_at_once, static_cast<std::size_t>(mesh.size()));
+    for (std::size_t i = t * sampled_at_once; i < end; ++i)
+      sample_patch(sampler, static_cast<PatchIndex>(i), factors, values, tasks[t]);
+  });
+
+  // 2. What their differences tell.
+  Pool pool;
+  for (const LampTask& task : tasks) {
+    factors.shadow_rays += task.shadow_rays;
+    for (std::uint8_t bin = 0; bin < Pool::bins; ++bin) pool.add(bin, task.pool.squares[bin], task.pool.weights[bin]);
+  }
+  factors.standard_error = standard_errors(sampler, values, pool, count);
+  return factors;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/scene.h"
+
+#include "transport/lamp_pieces.h"
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace patchlight {
+
+class Occluder;
+
+/// One value per patch (row) and lamp (column).
+using LampValues = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Form factors from patches to lamps as wholes, means over all of the patch, by two independent halves of shadow rays.
+struct LampFactors {
+  std::array<LampValues, 2> halves;
+  LampValues standard_error;  ///< of the mean of both
+  std::uint64_t shadow_rays = 0;
+};
+
+/// Each patch with each piece of a lamp: the closed form without occluders where all rays are free, and 0 where none
+/// is; else by formula (5) of docs/theory.md. Each half takes 16 rays for a pair, and 64 where the 16 of the **other**
+/// half disagree: how many it takes does not depend on what its own meet, so that it is unbiased. Standard errors are
+/// pooled over pairs with the same visible share. The same bits for any number of threads. \throws Cancelled.
+LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
+                         std::span<const LampSide> lamps, std::uint64_t seed, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// Rays of a patch in each of two halves: between these, and a power of two.
+inline constexpr std::uint32_t fewest_rays = 8;
+inline constexpr std::uint32_t most_rays = 512;
+
+/// How many rays each patch takes in each of two halves, so that the mean over the patches of both together is about
+/// `mean`: in proportion to its area to the power 0.4, rounded to powers of two. Where patches have one size, all have
+/// one number, which is then up to 1.42 times more or less than asked for.
+std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean);
+
+}  // namespace patchlight

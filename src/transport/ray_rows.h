@@ -1,0 +1,61 @@
+#pragma once
+
+#include "patchlight/base/large_array.h"
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/transport/lost_share.h"
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+class BrightPatches;
+class Occluder;
+
+/// An entry F_ij of a row with a weight of its own.
+struct RayEntry {
+  PatchIndex patch = 0;
+  float form_factor = 0;
+};
+
+/// Sparse rows of form factors: row i is hit_weight[i] for each time that a patch stands in its hits, and the form
+/// factors of its entries.
+struct RayRows {
+  std::vector<std::uint64_t> first_hit;  ///< per patch; one more at the end
+  LargeArray<PatchIndex> hits;
+  std::vector<double> hit_weight;
+  std::vector<std::uint64_t> first_entry;  ///< per patch; one more at the end
+  LargeArray<RayEntry> entries;
+};
+
+/// How rows of rays are found.
+struct RayOptions {
+  int rays = 64;              ///< mean number of a patch, see ray_counts()
+  int toward_bright = 32;     ///< and towards bright patches; a multiple of 32
+  int lost_share_rays = 256;  ///< of patches from which backs are seen, LostShare
+  std::uint64_t seed = 1;
+};
+
+/// The rows by two independent halves of the rays: each is unbiased, their mean is the better value, their difference
+/// its error.
+struct TracedRows {
+  std::array<RayRows, 2> halves;
+  LostShare lost;
+  Eigen::VectorXd area;         ///< m^2, the exposed part of each patch
+  std::vector<float> distance;  ///< per patch: harmonic mean of the lengths of its rays, metres
+  std::uint64_t rays = 0;       ///< over hemispheres
+  std::uint64_t shadow_rays = 0;
+};
+
+/// Rows of form factors F_ij by rays over the cosine-weighted hemisphere of each patch, that start spread over it, and
+/// shadow rays towards bright patches, both by the balance heuristic (Veach and Guibas 1995): docs/theory.md
+/// section 12. Each row sums up to what its patch sees, 1 - escaped - at_backs, to rounding; where a patch sees nothing
+/// but sides without patches, or all of it is covered, its rows may be empty. O(size) time and memory. The same bits
+/// for any number of threads. \throws Cancelled.
+TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
+                      const RayOptions& options, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+
+#include "visibility/occluder.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// What a ray from a patch meets: a side of a polygon that has patches, nothing, a side without patches, or a face that
+/// lies against the patch.
+enum class Sight { patch, nothing, back, contact };
+
+/// What a ray meets, and where.
+struct Seen {
+  Sight sight = Sight::nothing;
+  std::optional<Hit> hit = {};
+};
+
+/// How many rays have met this.
+int count(std::span<const Seen> among, Sight sight);
+
+/// How many have met what is no surroundings: sides without patches, or faces that lie against the patch.
+int unseen(std::span<const Seen> seen);
+
+/// What rays from patches meet: the one rule by which lost shares and rows of rays are counted.
+class Sights {
+ public:
+  /// Keeps references to both.
+  Sights(const PatchMesh& mesh, const Occluder& occluder);
+
+  /// A ray that starts where another polygon lies over the patch is in contact with that. A ray that meets nothing is
+  /// traced again from a place 1 % nearer to the patch's centroid and a little behind its plane, so that cracks between
+  /// polygons and faces that lie against each other do not count as openings. Clear polygons let a ray through with the
+  /// probability of their transmittance, drawn by `seed`.
+  std::vector<Seen> of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
+
+  /// Does another face lie against the one that was hit, where it was? One that lies over it and faces the same way, as
+  /// a rug on a floor, is met from behind, where it has no patches.
+  bool is_in_contact(const Hit& hit) const;
+
+ private:
+  Seen seen_at(const Hit& hit) const;
+  bool has_patches(const Hit& hit) const;
+
+  const PatchMesh& mesh_;
+  const Occluder& occluder_;
+  double behind_;  // metres
+};
+
+}  // namespace patchlight

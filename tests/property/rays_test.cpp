@@ -1,0 +1,141 @@
+// Laws of solutions by rows of rays.
+#include "patchlight/base/error.h"
+#include "patchlight/input/read_scene.h"
+#include "patchlight/simulate.h"
+
+#include "support/meshes.h"
+#include "support/scenes.h"
+#include "support/test_room.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+#include <utility>
+
+namespace patchlight::rays_test {
+namespace {
+
+using namespace test;
+
+Request by_rays(std::size_t patches = 1000) {
+  Request request;
+  request.mesh.patches = patches;
+  request.assembly.storage = Storage::rays;
+  request.solver.solver = Solver::gmres;
+  return request;
+}
+
+double norm(const Field& x, const Simulation& s) {
+  return std::sqrt((x.square().colwise() * s.problem.area.array()).sum());
+}
+
+Field reflected(const Simulation& s) { return s.solution.radiosity - s.problem.exitance; }
+
+// The error against another solution on the same mesh, and the bars, both relative to the light that is reflected.
+struct Compared {
+  double error = 0;
+  double stated = 0;
+};
+
+Compared compared(const Simulation& rays, const Simulation& exact) {
+  const double all = norm(reflected(exact), exact);
+  const Field bars = rays.problem.scattering.reflectance * rays.error_bars->form_factor;
+  return {norm(rays.solution.radiosity - exact.solution.radiosity, exact) / all, norm(bars, exact) / all};
+}
+
+Simulation by_matrix(const Scene& scene, Request request) {
+  request.assembly.storage = Storage::tiles;
+  request.solver.solver = Solver::cg;
+  request.assembly.samples = 32;
+  return simulate(scene, request);
+}
+
+// In a closed room in which every patch emits 1 - rho all radiosities are 1: row sums of 1 make it so whatever rays
+// meet. What all surfaces emit alike counts as no lamp.
+TEST(Rays, KeepTheFurnaceEven) {
+  Scene scene = cube_room(0.7, 0.3);
+  scene.materials.push_back(grey(0.4, 0.6));
+  scene = with_box(std::move(scene), Point(0.3, 0.3, 0.3), Point(0.6, 0.7, 0.5), false, 1);
+  const Simulation s = simulate(scene, by_rays(1000));
+  EXPECT_TRUE(s.solution.converged);
+  EXPECT_LT((s.solution.radiosity - 1).abs().maxCoeff(), 1e-5);
+  EXPECT_LT(s.error_bars->form_factor.maxCoeff(), 1e-5);
+  EXPECT_EQ(s.balance.escaped[0], 0);
+}
+
+// The emitted flux is absorbed. Rays carry it from patch to patch by chance: of R rays that carry equal parts of the
+// light about 1 / sqrt(R) of it, here 0.3 %, and less as they are stratified.
+TEST(Rays, BalanceTheFlux) {
+  const Simulation s = simulate(test_room(0.7), by_rays(2000));
+  EXPECT_LT(s.balance.imbalance, 3e-3);
+  EXPECT_GT(s.balance.absorbed[0], 0.9 * s.balance.emitted[0]);
+}
+
+TEST(Rays, AreWithinTheirBarsOfTheMatrixInTheCornellBox) {
+  const Scene scene = read_scene({mesh_folder() / "cornell_box.obj"});
+  const Compared by = compared(simulate(scene, by_rays()), by_matrix(scene, by_rays()));
+  EXPECT_LT(by.error, 0.03);
+  EXPECT_GT(by.error, 0.6 * by.stated);
+  EXPECT_LT(by.error, 1.4 * by.stated);
+}
+
+// Blocks and a slab that float stand between most of the room and its lamp.
+TEST(Rays, AreWithinTheirBarsOfTheMatrixInARoomWithBlocks) {
+  const Simulation exact = by_matrix(test_room(0.7), by_rays());
+  const Compared by = compared(simulate(test_room(0.7), by_rays()), exact);
+  EXPECT_LT(by.error, 0.04);
+  EXPECT_GT(by.error, 0.6 * by.stated);
+  EXPECT_LT(by.error, 1.4 * by.stated);
+}
+
+TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
+  Request request = by_rays(1500);
+  const auto solved = [&](int threads) {
+    request.resources.threads = threads;
+    return simulate(test_room(0.7), request);
+  };
+  const Simulation one = solved(1);
+  const Simulation two = solved(2);
+  EXPECT_TRUE((one.solution.radiosity == two.solution.radiosity).all());
+  EXPECT_TRUE((one.error_bars->form_factor == two.error_bars->form_factor).all());
+}
+
+// Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.
+TEST(Rays, AreLinearInTheLight) {
+  Scene scene = test_room(0.7);
+  const Simulation one = simulate(scene, by_rays(1000));
+  scene.materials[1].exitance *= 2;
+  const Simulation two = simulate(scene, by_rays(1000));
+  EXPECT_LT((two.solution.radiosity - 2 * one.solution.radiosity).abs().maxCoeff(),
+            1e-3 * one.solution.radiosity.maxCoeff());
+}
+
+// The solvers that take no more than H = F B agree to their tolerance.
+TEST(Rays, AreSolvedByWhatTakesTheOperatorAlone) {
+  Request request = by_rays(1000);
+  request.solver.relative_error = 1e-6;
+  const Simulation first = simulate(test_room(0.7), request);
+  EXPECT_TRUE(first.solution.converged);
+  for (const Solver solver : {Solver::bicgstab, Solver::jacobi, Solver::chebyshev}) {
+    request.solver.solver = solver;
+    const Simulation other = simulate(test_room(0.7), request);
+    EXPECT_TRUE(other.solution.converged) << name_of(solver);
+    EXPECT_LT(compared(other, first).error, 2e-6) << name_of(solver);
+  }
+}
+
+TEST(Rays, RefuseSolversThatTheyCannotServe) {
+  for (const Solver solver : {Solver::cg, Solver::deflated_cg, Solver::progressive, Solver::sor}) {
+    Request request = by_rays(1000);
+    request.solver.solver = solver;
+    try {
+      simulate(test_room(0.7), request);
+      ADD_FAILURE() << name_of(solver);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("gmres, bicgstab"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace patchlight::rays_test

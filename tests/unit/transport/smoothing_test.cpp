@@ -1,0 +1,90 @@
+#include "transport/smoothing.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "mesh/mesher.h"
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight::smoothing_test {
+namespace {
+
+using namespace test;
+
+// A floor of 2 x 2 m and a wall of 2 x 2 m on its edge.
+PatchMesh floor_and_wall() {
+  Scene scene = empty_scene({grey(0.5)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 2, 0), Point(2, 2, 0), Point(2, 2, 2), Point(0, 2, 2)});
+  return tessellate(scene, kept_sides(scene, Sides::front), 0.1);
+}
+
+Field column(const PatchMesh& mesh, const auto& value_at) {
+  Field field(mesh.size(), 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) field(i, 0) = value_at(i);
+  return field;
+}
+
+const std::vector<float> far_away(const PatchMesh& mesh) { return std::vector<float>(mesh.size(), 2); }
+
+TEST(Smoothing, LeavesAConstantAsItIsAndCarriesNothingAcrossAnEdge) {
+  const PatchMesh mesh = floor_and_wall();
+  const Field field = column(mesh, [&](PatchIndex i) { return mesh.polygon[i] == 0 ? 1.0 : 5.0; });
+  const SmoothedHalves smooth = smoothed(mesh, far_away(mesh), {field, field});
+  EXPECT_LT((smooth.halves[0] - field).abs().maxCoeff(), 1e-12);
+  EXPECT_EQ(smooth.variance.maxCoeff(), 0);
+}
+
+// Where neighbours lie all around, moments of odd order vanish and slopes do not count.
+TEST(Smoothing, LeavesALinearFieldAsItIsInsideAFace) {
+  const PatchMesh mesh = floor_and_wall();
+  const Field field = column(mesh, [&](PatchIndex i) { return 1 + mesh.centroid[i].x() + 2 * mesh.centroid[i].y(); });
+  const SmoothedHalves smooth = smoothed(mesh, far_away(mesh), {field, field});
+  int inside = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const Point& c = mesh.centroid[i];
+    if (mesh.polygon[i] != 0 || c.head<2>().minCoeff() < 0.42 || c.head<2>().maxCoeff() > 1.58) continue;
+    EXPECT_NEAR(smooth.halves[0](i, 0), field(i, 0), 1e-9);
+    ++inside;
+  }
+  EXPECT_GT(inside, 50);
+}
+
+// Noise of variance 1/12 in each half: the mean of both has 1/24, and the stated variance is what is left.
+TEST(Smoothing, StatesTheVarianceThatIsLeft) {
+  const PatchMesh mesh = floor_and_wall();
+  const auto noise = [&](std::uint64_t half) {
+    return column(mesh, [half](PatchIndex i) { return 3 + hash({half, i}) * 0x1p-32 - 0.5; });
+  };
+  const SmoothedHalves smooth = smoothed(mesh, far_away(mesh), {noise(1), noise(2)});
+  const Field error = 0.5 * (smooth.halves[0] + smooth.halves[1]) - 3;
+  EXPECT_LT(error.square().mean(), 1.0 / 24 / 8);
+  // Some 800 / 30 independent values: the quotient of the roots scatters by some 14 %.
+  EXPECT_NEAR(std::sqrt(smooth.variance.mean() / error.square().mean()), 1, 0.35);
+}
+
+// Patches under something near keep their value.
+TEST(Smoothing, KeepsToTheRadiusOfWhatIsNear) {
+  const PatchMesh mesh = floor_and_wall();
+  const Field field = column(mesh, [](PatchIndex i) { return std::abs(std::sin(3.0 * i)); });
+  std::vector<float> near(mesh.size(), 2);
+  for (PatchIndex i = 0; i < mesh.size(); i += 2) near[i] = 0.3F;
+  const SmoothedHalves smooth = smoothed(mesh, near, {field, field});
+  for (PatchIndex i = 0; i < mesh.size(); i += 2) EXPECT_EQ(smooth.halves[1](i, 0), field(i, 0));
+}
+
+TEST(Smoothing, HasTheSameBitsForAnyNumberOfThreads) {
+  const PatchMesh mesh = floor_and_wall();
+  const Field field = column(mesh, [](PatchIndex i) { return std::abs(std::sin(3.0 * i)); });
+  const auto found = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return smoothed(mesh, far_away(mesh), {field, field.square()});
+  };
+  EXPECT_TRUE((found(1).halves[1] == found(2).halves[1]).all());
+  EXPECT_TRUE((found(1).variance == found(2).variance).all());
+}
+
+}  // namespace
+}  // namespace patchlight::smoothing_test
