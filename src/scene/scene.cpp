@@ -19,6 +19,9 @@ constexpr double relative_area_tolerance = 1e-12;
 // Farther away, squares of areas would come near the largest double. Metres.
 constexpr double farthest_vertex = 1e15;
 
+// Exchange areas are kept as floats: those of the small patches of a smaller model would be below the smallest. Metres.
+constexpr double shortest_model = 1e-12;
+
 // The checks of a polygon's outline take a time that goes as the square of this: a second for so many.
 constexpr std::size_t most_corners = 10000;
 
@@ -61,6 +64,13 @@ void check_material(const Scene& scene, const Material& material) {
       throw InputError(scene.file, message.str());
     }
   }
+}
+
+void check_size(const Scene& scene) {
+  const double size = bounds(scene).sizes().maxCoeff();
+  if (size >= shortest_model) return;
+  throw InputError(scene.file, "the model is " + shortest(size) + " m long; expected at least " +
+                                   shortest(shortest_model) + " m. Is its unit right?");
 }
 
 void check_polygon(const Scene& scene, PolygonIndex index) {
@@ -202,6 +212,7 @@ void check(const Scene& scene) {
   check_bands(scene);
   for (const Material& material : scene.materials) check_material(scene, material);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) check_polygon(scene, p);
+  check_size(scene);
 }
 
 }  // namespace patchlight

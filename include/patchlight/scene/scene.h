@@ -142,9 +142,9 @@ Box bounds(const Scene& scene);
 void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, one of Scene::bands for each band if there are any, reflectance in [0, 1], transmittance not negative and
-/// with the reflectance at most 1, exitance finite and not negative. \throws InputError naming the file and line, or
-/// the material.
+/// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
+/// transmittance not negative and with the reflectance at most 1, exitance finite and not negative. \throws InputError
+/// naming the file and line, or the material.
 void check(const Scene& scene);
 
 }  // namespace patchlight

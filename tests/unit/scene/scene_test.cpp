@@ -72,6 +72,19 @@ TEST(Scene, InACubeTheLampTellsWhichAxisIsUp) {
   EXPECT_EQ(upright_axis(with_quad(cube, under_y, 1)), Vector(Vector::UnitY()));
 }
 
+// Exchange areas of smaller ones are below the smallest float.
+TEST(CheckScene, RefusesModelsOfNoSize) {
+  for (const auto& [metres, said] :
+       std::vector<std::pair<double, std::string>>{{1e-12, ""},
+                                                   {1e-13, "room.obj: the model is 2e-13 m long"},
+                                                   {1e-43, "room.obj: the model is 2e-43 m long"}}) {
+    Scene scene = square_scene();
+    for (Point& vertex : scene.vertices) vertex *= metres;
+    const std::string found = refusal(scene);
+    EXPECT_TRUE(said.empty() ? found.empty() : begins(found, said)) << found;
+  }
+}
+
 TEST(CheckScene, AcceptsReflectancesFromZeroToOne) {
   Scene scene = square_scene();
   for (const double rho : {0.0, 0.5, 1.0}) {
