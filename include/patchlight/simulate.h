@@ -74,6 +74,8 @@ struct Simulation {
   std::vector<StageCost> costs;
   std::vector<std::string> notes = {};  ///< of the plan, and what of the scene, when looked at, may not be as meant
   Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
+                                  ///< the solver err, which are not known; else empty
   std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
                                                 ///< the solution; never null after simulate()
 };

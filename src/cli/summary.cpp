@@ -190,7 +190,10 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   if (long_form) text << details(report);
   text << convergence(report) << '\n';
   if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n';
-  if (report.accuracy.empty())
+  if (report.accuracy.empty() && report.form_factors.ray_error)
+    text << "error of the rays: " << percent(*report.form_factors.ray_error, 2)
+         << " % of the reflected light; what the size of the patches errs is not known\n";
+  else if (report.accuracy.empty())
     text << "errors from the size of the patches and from form factors: not known" << how_to_know_errors << '\n';
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
   text << energy(report) << '\n';

@@ -160,6 +160,7 @@ Json transport_part(const FormFactorFacts& facts) {
   part["free_pairs"] = counted(&AssemblyCounts::free_pairs);
   part["sampling_error"] = sampling_part(facts.sampling);
   part["lost_share_rays"] = facts.lost_share_rays;
+  part["ray_error"] = facts.ray_error ? Json(*facts.ray_error) : Json();
   part["closure"] = facts.closure;
   part["raw_row_sum"] = row_sum_part(facts.raw_row_sum);
   part["row_sum"] = row_sum_part(facts.row_sum);

@@ -45,6 +45,9 @@ void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
   if (!simulation.error_bars) {
     const Field& of_solver = simulation.solution.error;
     if (of_solver.size() > 0) cell_data.AddArray(floats("error_solver", of_solver / std::numbers::pi));
+    const Field& of_rays = simulation.ray_standard_error;
+    const Field& rho = simulation.problem.scattering.reflectance;
+    if (of_rays.size() > 0) cell_data.AddArray(floats("error_form_factor", rho * of_rays / std::numbers::pi));
     return;
   }
   const ErrorBars& bars = *simulation.error_bars;

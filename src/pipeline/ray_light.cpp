@@ -159,9 +159,8 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
   Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
   if (light.lit.direct_standard_error.size() > 0) variance += light.lit.direct_standard_error.square();
-  const Field none = Field::Zero(variance.rows(), variance.cols());
   RaySolution found;
-  found.bars = {.mesh = none, .form_factor = variance.sqrt(), .solver = none, .display = none};
+  found.standard_error = variance.sqrt();
 
   // 4. B = E + rho o H with all that is emitted.
   solution.irradiance = (0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0) + problem.direct_irradiance;

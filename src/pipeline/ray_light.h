@@ -1,7 +1,5 @@
 #pragma once
 
-#include "patchlight/accuracy/error_bars.h"
-
 #include "pipeline/lit_problem.h"
 #include "transport/lamp_factors.h"
 #include "transport/ray_rows.h"
@@ -32,10 +30,10 @@ struct RayTransportAndLight {
 /// which send rays towards bright patches on purpose. \throws Cancelled.
 RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
 
-/// A solution by rows of rays, and its error bars.
+/// A solution by rows of rays, and the standard error of its irradiance, W/m^2.
 struct RaySolution {
   Solution solution;
-  ErrorBars bars;  ///< without the errors of the mesh: 0
+  Field standard_error;
 };
 
 /// Solves B = E + rho o (F B + H_direct) with lamps apart, gathers once more by each half of the rays, and smooths what

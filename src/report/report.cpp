@@ -1,14 +1,22 @@
 #include "patchlight/report/report.h"
 
+#include "accuracy/errors.h"
 #include "transport/worst_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+std::optional<double> ray_error(const Simulation& simulation) {
+  if (simulation.ray_standard_error.size() == 0) return std::nullopt;
+  return relative_bar(simulation.ray_standard_error, simulation.problem, simulation.solution,
+                      Eigen::VectorXd::Ones(simulation.ray_standard_error.rows()));
+}
 
 SceneFacts scene_facts(const Scene& scene) {
   return {.file = scene.file,
@@ -113,6 +121,7 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
   facts.sampling = sampling_facts(transport.error);
   facts.lost_share_rays =
       static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
+  facts.ray_error = ray_error(simulation);
   facts.closure = transport.closure;
   facts.raw_row_sum = row_sum_facts(transport.raw_row_sum, simulation);
   facts.row_sum = row_sum_facts(transport.row_sum, simulation);

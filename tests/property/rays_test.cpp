@@ -39,7 +39,7 @@ struct Compared {
 
 Compared compared(const Simulation& rays, const Simulation& exact) {
   const double all = norm(reflected(exact), exact);
-  const Field bars = rays.problem.scattering.reflectance * rays.error_bars->form_factor;
+  const Field bars = rays.problem.scattering.reflectance * rays.ray_standard_error;
   return {norm(rays.solution.radiosity - exact.solution.radiosity, exact) / all, norm(bars, exact) / all};
 }
 
@@ -59,7 +59,7 @@ TEST(Rays, KeepTheFurnaceEven) {
   const Simulation s = simulate(scene, by_rays(1000));
   EXPECT_TRUE(s.solution.converged);
   EXPECT_LT((s.solution.radiosity - 1).abs().maxCoeff(), 1e-5);
-  EXPECT_LT(s.error_bars->form_factor.maxCoeff(), 1e-5);
+  EXPECT_LT(s.ray_standard_error.maxCoeff(), 1e-5);
   EXPECT_EQ(s.balance.escaped[0], 0);
 }
 
@@ -97,7 +97,7 @@ TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
   const Simulation one = solved(1);
   const Simulation two = solved(2);
   EXPECT_TRUE((one.solution.radiosity == two.solution.radiosity).all());
-  EXPECT_TRUE((one.error_bars->form_factor == two.error_bars->form_factor).all());
+  EXPECT_TRUE((one.ray_standard_error == two.ray_standard_error).all());
 }
 
 // Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.

@@ -89,12 +89,13 @@ struct WorstPatch {
 
 /// What is known of the form factors.
 struct FormFactorFacts {
-  std::optional<AssemblyCounts> counts;    ///< nothing with rows on demand
-  std::optional<double> rays_per_second;   ///< shadow rays over the seconds of the form factors, where these took any
-  double bare_rays_per_second = 0;         ///< the rate without anything else; 0 where not known
-  std::optional<SamplingFacts> sampling;   ///< nothing when no pair was sampled again
-  std::uint64_t lost_share_rays = 0;       ///< in all
-  std::string closure;                     ///< the method that has closed the rows
+  std::optional<AssemblyCounts> counts;   ///< nothing with rows on demand
+  std::optional<double> rays_per_second;  ///< shadow rays over the seconds of the form factors, where these took any
+  double bare_rays_per_second = 0;        ///< the rate without anything else; 0 where not known
+  std::optional<SamplingFacts> sampling;  ///< nothing when no pair was sampled again
+  std::uint64_t lost_share_rays = 0;      ///< in all
+  std::optional<double> ray_error;  ///< of rows of rays: what Simulation::ray_standard_error is of the reflected light
+  std::string closure;              ///< the method that has closed the rows
   std::optional<RowSumFacts> raw_row_sum;  ///< before closure; nothing with rows on demand
   std::optional<RowSumFacts> row_sum;      ///< after closure; nothing with rows on demand
   std::vector<WorstPatch> worst;           ///< the five with the largest defect times area
