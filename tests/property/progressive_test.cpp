@@ -30,11 +30,13 @@ double least_error_with_even_light(const Field& radiosity, const Simulation& ref
 // A twentieth of the rows are below 20 % of error: that is what a first picture is asked for here. The Cornell box has
 // few lamps and an open side, and half of its reflected light is still under way by then: no light that is added evenly
 // gets below 20 %, so that the ambient term of Cohen et al. 1988 would fail. 2,000 patches, as with fewer the lamps
-// and one row of every group are a twentieth already.
+// and one row of every group are a twentieth already. The inner sides of the blocks take part, in the dark: without
+// them patches are finer where it is light, and even light of the best amount gets to 17 %.
 TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
   const Scene scene = read_scene(mesh_folder() / "cornell_box.obj");
   Request request;
   request.mesh.patches = 2000;
+  request.effects.force = {Effect::reach};
   const Simulation reference = simulate(scene, request);
   ASSERT_TRUE(reference.solution.converged);
   request.assembly.storage = Storage::on_demand;
