@@ -24,6 +24,9 @@ struct SolvedProblem {
   bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
 };
 
+/// What an error of the irradiance, W/m^2, comes to through all reflections: e = irradiance + F R e.
+Field followed(const RowTransport& transport, const RadiosityProblem& problem, const Field& irradiance);
+
 /// What the sampling of form factors does to the irradiance by the light `B`, radiosity in W/m^2: the root mean square
 /// over random draws of the entries' errors (random_errors()), each followed through all reflections,
 /// e = A^-1 D B + F R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums.
@@ -55,6 +58,10 @@ inline constexpr double mesh_order = 1.2;
 /// What the errors of light straight from the lamps, known from a single difference, are multiplied with, so that bars
 /// cover what they should.
 inline constexpr double form_factor_scale = 1.5;
+
+/// Lamps that are a larger share of the patches are not told apart from other light when errors are looked for: rays
+/// find them as well.
+inline constexpr double most_lamps = 0.125;
 
 /// How far the radiosity of the lit part of a patch that reaches into a solid is above its mean: B_i d_i / (1 - d_i),
 /// d_i the dark share, not above 1/2. As long as the patch is wider than what is dark of it, the light that this takes

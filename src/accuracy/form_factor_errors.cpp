@@ -53,14 +53,12 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
   return column_of_each;
 }
 
-// What an error of the irradiance, the problem's exitance, comes to through all reflections: e = irradiance + F R e.
-Field followed(const RowTransport& transport, RadiosityProblem of_irradiance) {
-  const Field irradiance = std::move(of_irradiance.exitance);
-  of_irradiance.exitance = of_irradiance.scattering.reflect(irradiance);
+}  // namespace
+
+Field followed(const RowTransport& transport, const RadiosityProblem& problem, const Field& irradiance) {
+  const RadiosityProblem of_irradiance{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
   return irradiance + solve(transport, of_irradiance, {.relative_error = 0.05}).irradiance;
 }
-
-}  // namespace
 
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                          const SolvedProblem& solved, const FieldView& B) {
@@ -83,7 +81,7 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
     if (closed) irradiance += lambda.colwise() * H.col(band) + transport.apply(lambda.colwise() * B.col(band));
     // 3. Through all reflections.
     const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
-    const Field e = followed(transport, {of_draws, irradiance, problem.area});
+    const Field e = followed(transport, {of_draws, {}, problem.area}, irradiance);
     squares.col(band) = e.square().rowwise().sum() / draws;
   }
   return squares.sqrt();
@@ -92,7 +90,7 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference) {
   // Of two independent values each is off by a root of one half of their difference.
-  const Field error = followed(transport, {problem.scattering, difference / std::sqrt(2.0), problem.area});
+  const Field error = followed(transport, problem, difference / std::sqrt(2.0));
   return form_factor_scale * means_around(mesh, problem.area, error);
 }
 

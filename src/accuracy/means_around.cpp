@@ -4,7 +4,7 @@
 
 namespace patchlight {
 
-Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
   const auto at_vertex = patches_at_vertices(mesh);
   Field means(values.rows(), values.cols());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -13,13 +13,17 @@ Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fie
     for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
         if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
-        sum += area[j] * values.row(j).square();
+        sum += area[j] * values.row(j);
         areas += area[j];
       }
     }
-    means.row(i) = (sum / areas).sqrt();
+    means.row(i) = sum / areas;
   }
   return means;
+}
+
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+  return mean_around(mesh, area, values.square()).sqrt();
 }
 
 }  // namespace patchlight

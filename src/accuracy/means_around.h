@@ -7,8 +7,11 @@
 
 namespace patchlight {
 
-/// Root mean squares, by the areas given in m^2, over the patches of the same polygon side that share a vertex with a
-/// patch, itself among them.
+/// Means, by the areas given in m^2, over the patches of the same polygon side that share a vertex with a patch, itself
+/// among them.
+Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
+
+/// Root mean squares over the same patches.
 Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
 
 }  // namespace patchlight

@@ -26,12 +26,11 @@ Field squared_reflectance(const SolvedProblem& solved) {
   return scaled(reflected_variance(problem.scattering, Field::Ones(problem.exitance.rows(), inverse.size())), inverse);
 }
 
-// w_i^2 rho_i^2 / (A_i ||B - E||_A^2)
+}  // namespace
+
 Field weight_of_squares(const SolvedProblem& solved, const Eigen::VectorXd& weight) {
   return squared_reflectance(solved).colwise() * (weight.array().square() / solved.problem.area.array());
 }
-
-}  // namespace
 
 Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;

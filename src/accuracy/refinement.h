@@ -26,6 +26,9 @@ struct EffectsOf {
 /// How far each patch is from the mean of its parent, radiosity in W/m^2.
 Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved);
 
+/// w_i^2 rho_i^2 / (A_i ||B - E||_A^2): what the square of a change of A_i H_i weighs in the error.
+Field weight_of_squares(const SolvedProblem& solved, const Eigen::VectorXd& weight);
+
 /// How much the light elsewhere changes by differences of radiosity: per parent the sum over all patches of
 /// A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. What it takes to tell where finer patches pay. After
 /// one reflection. `weight` is that of each patch in the error.

@@ -9,9 +9,10 @@
 namespace patchlight {
 namespace {
 
-DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
+                                              const LightingOptions& options) {
   const auto trace = [&](const Scene& scene) {
-    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, {.seed = plan.assembly.seed}, run.observer);
+    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, options, run.observer);
   };
   if (plan.lamp_colour.size() == 0) return trace(run.scene);
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
@@ -27,10 +28,15 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
-  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh);
+  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, {.seed = plan.assembly.seed});
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
   return lit;
+}
+
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed) {
+  const LightingOptions few{.lamp_samples = 8, .sun_samples = 8, .sky_samples = 64, .seed = seed};
+  return direct_irradiance_as_planned(run, plan, mesh, few).irradiance;
 }
 
 }  // namespace patchlight

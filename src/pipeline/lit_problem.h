@@ -16,4 +16,7 @@ struct LitProblem {
 /// Cancelled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
 
+/// The irradiance by luminaires, sun and sky alone, with a tenth of the rays, W/m^2. \throws Cancelled.
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed);
+
 }  // namespace patchlight

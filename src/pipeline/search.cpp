@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
 #include "base/rounded.h"

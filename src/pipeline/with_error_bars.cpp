@@ -3,15 +3,20 @@
 #include "accuracy/errors.h"
 #include "accuracy/interest.h"
 #include "accuracy/refinement.h"
+#include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/refine.h"
 #include "pipeline/light_of_lamps.h"
+#include "pipeline/lit_problem.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace patchlight {
@@ -73,19 +78,31 @@ Field errors_of_exposure(const Simulation& simulation, const ErrorsOfEntries& er
 
 // What the size of the patches errs, and where from.
 struct MeshBars {
-  Field from_larger;    // of sources that are not even
-  Field in_gaps;        // of gaps that are narrower than their patches
-  Field dark;           // radiosity that patches lose where they reach into solids
-  Field by_dark_parts;  // and what that does to the irradiance
+  Field from_larger;         // of sources that are not even
+  UnseenDifferences unseen;  // of light that differs inside patches
+  Field in_gaps;             // of gaps that are narrower than their patches
+  Field dark;                // radiosity that patches lose where they reach into solids
+  Field by_dark_parts;       // and what that does to the irradiance
 };
 
-MeshBars mesh_bars(const SolvedMesh& result, const RowTransport& transport, const SolvedProblem& solved,
-                   ClosedExchangeAreas of_parents) {
+// Light that differs inside patches, of all sources.
+UnseenDifferences unseen_differences_on(const Run& run, const Simulation& simulation, const RowTransport& transport,
+                                        const SolvedProblem& solved, const Eigen::VectorXd& weight) {
+  const std::uint64_t seed = simulation.plan.assembly.seed;
+  QuarteredMesh mesh{simulation.mesh, simulation.transport.lost.covered, refine(simulation.mesh)};
+  for (std::size_t half = 0; half < mesh.direct.size() && has_point_or_daylight(run.scene); ++half)
+    mesh.direct[half] = rough_direct_irradiance(run, simulation.plan, mesh.quarters, hash({seed, half}));
+  return unseen_differences(mesh, run.tracing->between_patches(), transport, solved, weight, seed, run.observer);
+}
+
+MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport& transport, const SolvedProblem& solved,
+                   const Eigen::VectorXd& weight, ClosedExchangeAreas of_parents) {
   const Simulation& simulation = result.simulation;
   const Field coarse = radiosity_of_parents(std::move(of_parents), result.mesh, simulation.plan, solved.problem);
   Field dark = dark_differences(simulation.transport.lost, solved);
   Field by_dark_parts = transport.apply(dark);
   return {mesh_errors(result.mesh, transport, solved, coarse),
+          unseen_differences_on(run, simulation, transport, solved, weight),
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
@@ -100,7 +117,8 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
     return sum > 0 ? Eigen::VectorXd(total(squares(bar)) / sum * effects) : effects;
   };
   return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
-         shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps);
+         shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps) +
+         summed_by_parent(result.mesh, bars.unseen.effects.array()).col(0).matrix();
 }
 
 }  // namespace
@@ -119,24 +137,27 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const LostShare& lost = simulation.transport.lost;
   const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.assembly.close};
 
-  // 1. What patches, samples and solver err.
-  const MeshBars of_mesh = mesh_bars(result, rows, solved, std::move(*transport.of_parents));
+  // 1. What counts.
+  result.interest = interest_of(run.scene, mesh, simulation.plan.accuracy.interest);
+  require_reflecting(run.scene, simulation.problem, result.interest);
+  const bool all = result.interest.minCoeff() == 1;
+  const Eigen::VectorXd weight = all ? result.interest : importance(rows, solved.problem, result.interest);
+
+  // 2. What patches, samples and solver err.
+  const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));
   const Field sampled = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   const Field exposure = errors_of_exposure(simulation, errors, solved);
   Field squares = sampled.square() + exposure.square();
   if (has_point_or_daylight(run.scene)) squares += simulation.direct_standard_error.square();
-  simulation.error_bars = {
-      .mesh = (of_mesh.from_larger.square() + of_mesh.in_gaps.square() + of_mesh.by_dark_parts.square()).sqrt(),
-      .form_factor = squares.sqrt(),
-      .solver = solver_errors(solved),
-      .display = display_errors(result.mesh, solved)};
+  simulation.error_bars = {.mesh = (of_mesh.from_larger.max(of_mesh.unseen.error).square() + of_mesh.in_gaps.square() +
+                                    of_mesh.by_dark_parts.square())
+                                       .sqrt(),
+                           .form_factor = squares.sqrt(),
+                           .solver = solver_errors(solved),
+                           .display = display_errors(result.mesh, solved)};
 
-  // 2. Where that matters.
-  result.interest = interest_of(run.scene, mesh, simulation.plan.accuracy.interest);
-  require_reflecting(run.scene, simulation.problem, result.interest);
-  const bool all = result.interest.minCoeff() == 1;
-  const Eigen::VectorXd weight = all ? result.interest : importance(rows, solved.problem, result.interest);
+  // 3. Where from.
   result.effects = effects_of(result, solved, weight, of_mesh);
   if (has_point_or_daylight(run.scene)) {
     // The edge of the sun's light crosses fewer patches, by area, when these are finer.

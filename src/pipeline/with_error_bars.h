@@ -12,7 +12,4 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
 /// The share of the patches that emit.
 double share_of_lamps(const RadiosityProblem& problem);
 
-/// Lamps with a larger share are not traced a second time to learn the errors of their light.
-inline constexpr double most_lamps = 0.125;
-
 }  // namespace patchlight

@@ -1,0 +1,119 @@
+// Faces that stand closer to others than patches are wide: what leaks into the gap, or through it into what lies
+// behind, is right or within the bars, against paths.
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+#include "verify/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight::gaps_test {
+namespace {
+
+using namespace test;
+
+// A room with a lamp under its ceiling, of seven polygons; the rest is what stands in it.
+Scene room() {
+  Scene scene = with_box(empty_scene({grey(0.6), grey(0, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  return with_quad(std::move(scene), {Point(1.5, 1, 2.4), Point(1.5, 2, 2.4), Point(2.5, 2, 2.4), Point(2.5, 1, 2.4)},
+                   1);
+}
+
+Scene room_with(const std::vector<Quad>& faces) {
+  Scene scene = room();
+  for (const Quad& face : faces) scene = with_quad(std::move(scene), face);
+  return scene;
+}
+
+// A box at some height over the floor, and one without a bottom: what gets under its rim is inside it.
+std::vector<Quad> box_above(double height) {
+  const auto faces = box_faces(Point(1.1, 0.9, height), Point(2.3, 1.7, height + 1), false);
+  return {faces.begin(), faces.end()};
+}
+
+std::vector<Quad> open_box_above(double height) {
+  const auto all = box_faces(Point(1.1, 0.9, height), Point(1.6, 1.3, height + 1), false);
+  std::vector<Quad> faces(all.begin(), all.end());
+  std::erase_if(faces, [&](const Quad& face) {
+    return std::all_of(face.begin(), face.end(), [&](const Point& corner) { return corner.z() == height; });
+  });
+  return faces;
+}
+
+// A board before a wall.
+std::vector<Quad> board_before_wall() {
+  const auto faces = box_faces(Point(0.01, 0.8, 0.5), Point(0.04, 2.1, 1.9), false);
+  return {faces.begin(), faces.end()};
+}
+
+// A drawer, open at its top, 1 cm below the top of a cupboard that is open to the room.
+std::vector<Quad> drawer_in_cupboard() {
+  std::vector<Quad> faces;
+  const auto add = [&](const Point& low, const Point& high) {
+    for (const Quad& face : box_faces(low, high, false)) faces.push_back(face);
+  };
+  add(Point(0, 1, 0.60), Point(0.6, 2, 0.62));
+  add(Point(0, 1, 0.85), Point(0.6, 2, 0.87));
+  add(Point(0.05, 1.05, 0.63), Point(0.55, 1.95, 0.65));
+  add(Point(0.53, 1.05, 0.65), Point(0.55, 1.95, 0.84));
+  return faces;
+}
+
+struct Gap {
+  std::string name;
+  std::vector<Quad> faces;
+};
+
+void PrintTo(const Gap& gap, std::ostream* out) { *out << gap.name; }
+
+class Gaps : public testing::TestWithParam<Gap> {};
+
+// Every patch of what stands in the room. Bars are standard errors: the mean of (difference / bar)^2 is 1, or less
+// where they are wide.
+TEST_P(Gaps, LeakNoMoreThanBarsSay) {
+  for (const double size : {1.0, 1e-3}) {
+    const Eigen::AngleAxisd turn(size == 1 ? 0.0 : 0.7, Vector(1, 2, 3).normalized());
+    const Scene scene = moved(room_with(GetParam().faces), Eigen::Affine3d(turn) * Eigen::Scaling(size));
+    Request request;
+    request.mesh.patches = 500;
+    request.mesh.sides = Sides::both;
+    request.accuracy.error_bars = true;
+    const Simulation simulation = simulate(scene, request);
+    std::vector<PathReceiver> receivers;
+    std::vector<PatchIndex> patches;
+    for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+      if (simulation.mesh.polygon[i] < 7) continue;
+      if (simulation.transport.lost.covered[i] > 0.5) continue;
+      patches.push_back(i);
+      receivers.push_back(
+          {simulation.mesh.corner_points(i).points, simulation.mesh.polygon[i], simulation.mesh.side[i]});
+    }
+    const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), receivers, {.paths = 1024});
+    const Field bar = simulation.error_bars->total();
+    double chi_square = 0;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      const double off = simulation.solution.irradiance(patches[k], 0) - paths.irradiance(row, 0);
+      const double expected = std::hypot(bar(patches[k], 0), paths.standard_error(row, 0));
+      if (off != 0) chi_square += std::min(off * off / (expected * expected), 1e6);
+    }
+    EXPECT_LT(chi_square, static_cast<double>(patches.size())) << "size " << size;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, Gaps,
+                         testing::Values(Gap{"Box1mm", box_above(0.001)}, Gap{"Box5mm", box_above(0.005)},
+                                         Gap{"Box2cm", box_above(0.02)}, Gap{"OpenBox1mm", open_box_above(0.001)},
+                                         Gap{"OpenBox5mm", open_box_above(0.005)},
+                                         Gap{"OpenBox2cm", open_box_above(0.02)}, Gap{"Board", board_before_wall()},
+                                         Gap{"Drawer", drawer_in_cupboard()}),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace patchlight::gaps_test
