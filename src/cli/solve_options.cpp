@@ -23,10 +23,11 @@ struct SolveOptions {
 namespace {
 
 Storage storage_named(const std::string& text) {
+  if (text == "auto") return Storage::automatic;
   if (text == "tiles") return Storage::tiles;
   if (text == "rays") return Storage::rays;
   if (text == "on-demand") return Storage::on_demand;
-  throw refusal("--storage", text, "tiles, rays or on-demand");
+  throw refusal("--storage", text, "auto, tiles, rays or on-demand");
 }
 
 }  // namespace
@@ -51,10 +52,10 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
       "--on-demand", [&to] { to.request.assembly.storage = Storage::on_demand; },
       "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
       "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
-  add(command, "--storage", "tiles|rays|on-demand",
+  add(command, "--storage", "auto|tiles|rays|on-demand",
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
-      "many "
-      "patches, with a\nstandard error for each; or not at all, as --on-demand; default tiles",
+      "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
+      "for more than 10,000 patches or where the\nmemory is too small, unless what is asked for takes pairs",
       [&to](const std::string& text) { to.request.assembly.storage = storage_named(text); });
   add_effect_options(command, to.request);
   add_solver_options(command, to.solution, to.request);
@@ -75,8 +76,9 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.form_factors = options.form_factors;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
   Request& request = arguments.request;
-  if (request.assembly.storage == Storage::rays && !options.solution.solver_given && options.solution.series.empty())
-    request.solver.solver = Solver::gmres;
+  const bool solver_given = options.solution.solver_given || !options.solution.series.empty();
+  if (request.assembly.storage == Storage::rays && !solver_given) request.solver.solver = Solver::gmres;
+  if (request.assembly.storage == Storage::automatic && solver_given) request.assembly.storage = Storage::tiles;
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;
 }

@@ -15,6 +15,8 @@ namespace {
 constexpr double seconds_per_hemisphere_ray = 2.5e-7;
 constexpr double seconds_per_light_ray = 2.2e-7;  // docs/lights.md: 0.9 s for 3,980 patches and 1,024 rays
 
+constexpr double seconds_per_row_of_rays = 8e-5;
+
 // Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
 constexpr double products_of_closure = 100;
 constexpr double products_of_solver = 15;
@@ -58,6 +60,11 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
 
+  if (plan.assembly.storage == Storage::rays) {
+    cost.form_factor_seconds = seconds_per_row_of_rays * n;
+    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
+    return cost;
+  }
   cost.form_factor_seconds =
       assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.assembly.lost_share_rays * n;
   cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
+#include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
 #include "plan/fine_outlines.h"
@@ -76,7 +77,8 @@ std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {
 
 // How finely the kept sides are cut.
 struct PatchSize {
-  double max_edge = 0;  // metres
+  double max_edge = 0;      // metres
+  std::size_t patches = 0;  // about so many, or the least that the edge allows
   std::vector<std::string> notes;
 };
 
@@ -87,16 +89,23 @@ PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& r
   const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
   // A nested mesh is made from parents with edges twice as long.
   const double edge = max_edge_for(scene, sides, nested ? wanted / 4 : wanted);
-  PatchSize size{nested ? edge / 2 : edge, {}};
+  PatchSize size{nested ? edge / 2 : edge, wanted, {}};
   if (wanted > asked && !nested) size.notes.push_back(note_on_patches(scene, asked, wanted));
   return size;
+}
+
+// A patch is never larger than the square of the longest edge.
+std::size_t least_patches_with(double max_edge, const Scene& scene, const KeptSides& sides) {
+  // Too many to count are as good as the largest number.
+  return static_cast<std::size_t>(std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18));
 }
 
 PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  PatchSize size =
-      request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, {}} : patch_size_for(asked, scene, request, sides);
+  PatchSize size = request.mesh.max_edge
+                       ? PatchSize{*request.mesh.max_edge, least_patches_with(*request.mesh.max_edge, scene, sides), {}}
+                       : patch_size_for(asked, scene, request, sides);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;
   for (Problem& problem : problems_with_size(scene)) of_size.push_back(std::move(problem.what));
@@ -142,11 +151,14 @@ AccuracyOptions decided(AccuracyOptions accuracy) {
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, const Request& request, const Given& given) {
+Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   require_lamp(scene);
-  KeptSides sides = sides_for(scene, request);
-  PatchSize size = patch_size(scene, request, sides);
+  KeptSides sides = sides_for(scene, asked);
+  PatchSize size = patch_size(scene, asked, sides);
   const EffectFacts facts = survey_effects(scene, sides);
+  const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
+  const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
+  if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
 

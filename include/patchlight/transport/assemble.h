@@ -28,14 +28,15 @@ const char* name_of(Estimator estimator);
 
 /// How the exchange areas of all pairs of patches are kept.
 enum class Storage {
-  tiles,  ///< each pair once, as floats: time and memory in proportion to the square of the patches
-  rays,   ///< not as pairs: sparse rows of the patches that some rays from each meet. Time and memory in proportion to
-          ///< the patches, and an error that more rays make smaller
+  automatic,  ///< tiles, and rays where make_plan() finds that these take too much
+  tiles,      ///< each pair once, as floats: time and memory in proportion to the square of the patches
+  rays,  ///< not as pairs: sparse rows of the patches that some rays from each meet. Time and memory in proportion to
+         ///< the patches, and an error that more rays make smaller
   on_demand  ///< not at all: a row is computed whenever a solver asks for it. Memory in proportion to the patches
 };
 
 /// True when the entries of all pairs are kept, so that they can be closed, summed up and written.
-constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles; }
+constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles || storage == Storage::automatic; }
 
 /// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs; docs/theory.md
 /// section 5.
@@ -53,10 +54,10 @@ struct AssemblyOptions {
   std::uint64_t seed = 1;
   bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
   Estimator estimator = Estimator::automatic;
-  ShortCuts short_cuts = {};         ///< of the automatic estimator
-  bool close = true;                 ///< correct the form factors so that rows sum up to what is seen
-  Storage storage = Storage::tiles;  ///< with rows on demand form factors are not closed
-  int lost_share_rays = 256;         ///< hemisphere rays per patch
+  ShortCuts short_cuts = {};             ///< of the automatic estimator
+  bool close = true;                     ///< correct the form factors so that rows sum up to what is seen
+  Storage storage = Storage::automatic;  ///< with rows on demand form factors are not closed
+  int lost_share_rays = 256;             ///< hemisphere rays per patch
 };
 
 /// How the entries of a matrix came about.

@@ -88,6 +88,38 @@ TEST(MakePlan, RefusesToSkipAllLight) {
   EXPECT_THROW(make_plan(scene, request), InputError);
 }
 
+// Many patches are not solved by pairs, unless something that is asked for takes these; what is asked for stays.
+TEST(MakePlan, TakesRaysForManyPatches) {
+  const Scene scene = furnished_room(0.5);
+  Request request;
+  request.mesh.patches = 8000;
+  EXPECT_EQ(make_plan(scene, request).assembly.storage, Storage::tiles);
+  request.resources.memory = 120e6;
+  EXPECT_EQ(make_plan(scene, request).assembly.storage, Storage::rays) << "pairs do not fit";
+  request.resources.memory.reset();
+  request.mesh.patches = 12000;
+  const Plan plan = make_plan(scene, request);
+  EXPECT_EQ(plan.assembly.storage, Storage::rays);
+  EXPECT_EQ(plan.solver.solver, Solver::gmres);
+  ASSERT_FALSE(plan.notes.empty());
+  EXPECT_NE(plan.notes.back().find("12000"), std::string::npos) << plan.notes.back();
+
+  const auto storage_with = [&](auto change) {
+    Request changed = request;
+    change(changed);
+    return make_plan(scene, changed).assembly.storage;
+  };
+  EXPECT_EQ(storage_with([](Request& r) { r.assembly.storage = Storage::tiles; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.accuracy.error_bars = true; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.assembly.close = false; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.effects.force = {Effect::closure}; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.solver.solver = Solver::sor; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.solver.solver = Solver::jacobi; }), Storage::rays);
+  EXPECT_EQ(storage_with([](Request& r) { r.assembly.estimator = Estimator::contour; }), Storage::tiles);
+  EXPECT_EQ(make_plan(scene, request, {.form_factors = true}).assembly.storage, Storage::tiles);
+  EXPECT_EQ(make_plan(furnished_room(0), request).assembly.storage, Storage::on_demand) << "nothing reflects";
+}
+
 // No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
 TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
   EXPECT_EQ(make_plan(furnished_room(0), {}).assembly.storage, Storage::on_demand);
