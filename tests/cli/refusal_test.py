@@ -103,7 +103,7 @@ class RefusalTest(ToolTest):
         for size in ("2GB", "2 GB", "2e9", "1900MiB", "1.8GiB", "2000000kB"):
             with self.subTest(size):
                 named = ["40000 patches", "3.3", "--memory", "--patches"]
-                self.assert_refused(MEMORY, named, *solve, "--patches", 40000, "--memory", size)
+                self.assert_refused(MEMORY, named, *solve, "--storage", "tiles", "--patches", 40000, "--memory", size)
         self.assert_refused(MEMORY, ["patches", "--memory"], *solve, "--max-edge", "0.005", "--memory", "1GB")
         self.assert_refused(MEMORY, ["program itself"], *solve, "--memory", "10MB")
         # What nobody has, before a single patch is made.
