@@ -165,7 +165,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   // One band stands for all where nothing changes the colour of light.
   const bool one_colour = facts.grey && facts.lamp_colour.has_value();
   const bool in_colour = simulates(decisions, Effect::colour);
-  const auto left_out = [&] { return notes_on_left_out_sides(scene, *request.mesh.kept_sides, request.mesh.sides); };
+  const auto left_out = [&] { return notes_on_left_out_sides(scene, *asked.mesh.kept_sides, asked.mesh.sides); };
   return {.sides = std::move(sides),
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
