@@ -160,7 +160,7 @@ END
   "$tool" check "${files[@]}" $([ "$name" = radiator ] && echo --unit cm) >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
   [ ${#options[@]} -gt 0 ] || continue
   # A first picture (--max-rows) ends with exit code 3.
-  "$tool" solve "${files[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+  "$tool" solve "${files[@]}" --storage tiles "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
     --verbose >"$out/$name.solve.txt" 2>&1 || { [ $? -eq 3 ] && [ "$name" = duplex-daylight ]; }
   case $name in
     openroom) python3 scripts/sensor_map.py "$out/openroom.csv" "$out/openroom.svg" ;;

@@ -27,7 +27,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   StageClock clock;
 
   // 1. Refuse what cannot be.
-  const Given given{.form_factors = static_cast<bool>(with.exchange), .mesh = static_cast<bool>(with.mesh)};
+  const Given given{.form_factors = static_cast<bool>(with.exchange),
+                    .mesh = static_cast<bool>(with.mesh),
+                    .solver = static_cast<bool>(with.solve)};
   check(request, scene, given);
 
   // 2. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and

@@ -96,7 +96,7 @@ using LookAt = std::function<void(const Simulation& simulation)>;
 /// Steps of simulate() that may be done otherwise.
 struct Steps {
   ExchangeOf exchange = {};  ///< empty: form factors are computed
-  SolveWith solve = patchlight::solve;
+  SolveWith solve = {};      ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
 };

@@ -25,7 +25,7 @@ struct SolvedProblem {
 };
 
 /// What an error of the irradiance, W/m^2, comes to through all reflections: e = irradiance + F R e.
-Field followed(const RowTransport& transport, const RadiosityProblem& problem, const Field& irradiance);
+Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance);
 
 /// What the sampling of form factors does to the irradiance by the light `B`, radiosity in W/m^2: the root mean square
 /// over random draws of the entries' errors (random_errors()), each followed through all reflections,

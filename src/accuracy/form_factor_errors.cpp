@@ -55,9 +55,10 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
 
 }  // namespace
 
-Field followed(const RowTransport& transport, const RadiosityProblem& problem, const Field& irradiance) {
+Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance) {
   const RadiosityProblem of_irradiance{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
-  return irradiance + solve(transport, of_irradiance, {.relative_error = 0.05}).irradiance;
+  const Solver solver = transport.is_reciprocal() ? Solver::cg : Solver::gmres;
+  return irradiance + solve(transport, of_irradiance, {.solver = solver, .relative_error = 0.05}).irradiance;
 }
 
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,

@@ -5,6 +5,7 @@
 #include "form_factor/patch_keys.h"
 #include "form_factor/point_polygon.h"
 #include "mesh/patch_lookup.h"
+#include "mesh/quarters.h"
 #include "transport/patch_frame.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace patchlight {
@@ -19,7 +21,7 @@ namespace {
 
 // Emitting patches as another one sees them, to be chosen by about what they send there when nothing is in the way.
 struct ChoiceOfLamps {
-  const std::vector<PatchIndex>& lamps;
+  std::vector<PatchIndex> lamps;
   std::vector<double> before;  // of those before each; one more entry at the end
 
   struct Chosen {
@@ -53,24 +55,35 @@ ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std
   return choice;
 }
 
+ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance) {
+  ChoiceOfLamps choice{lamps, {0}};
+  for (const PatchIndex lamp : lamps)
+    choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp]);
+  return choice;
+}
+
+// More evaluations of lamps at patches than this are not worth their time: lamps are chosen by their flux then.
+constexpr double most_evaluations = 2e7;
+
 class Gather {
  public:
-  // Lamps that are many patches are left in the reflected light: rays over the hemisphere find them.
-  Gather(const QuarteredMesh& mesh, const Occluder& occluder, const SolvedProblem& solved, std::uint64_t with_seed)
-      : whole_(mesh.whole),
-        quarters_(mesh.quarters),
-        occluder_(occluder),
-        sights_(mesh.quarters, occluder),
-        lookup_(mesh.quarters),
-        keys_(patch_keys(mesh.whole)),
-        covered_(mesh.covered),
-        exitance_(solved.problem.exitance),
-        sent_(solved.solution.radiosity),
-        seed_(with_seed) {
-    for (PatchIndex i = 0; i < whole_.size(); ++i)
+  // Lamps that are many patches are left in what rays over the hemisphere find.
+  Gather(const SolvedPatches& patches, const RaysOfQuarters& rays)
+      : mesh_(patches.mesh),
+        occluder_(patches.occluder),
+        sights_(patches.mesh, patches.occluder),
+        lookup_(patches.mesh),
+        keys_(patch_keys(patches.mesh)),
+        covered_(patches.lost.covered),
+        exitance_(patches.solved.problem.exitance),
+        sent_(patches.solved.solution.radiosity),
+        rays_(rays) {
+    for (PatchIndex i = 0; i < mesh_.size(); ++i)
       if ((exitance_.row(i) > 0).any()) lamps_.push_back(i);
-    if (static_cast<double>(lamps_.size()) > most_lamps * whole_.size()) lamps_.clear();
+    const auto lamps = static_cast<double>(lamps_.size());
+    if (lamps > most_lamps * mesh_.size()) lamps_.clear();
     if (!lamps_.empty()) sent_ -= exitance_;
+    if (lamps * mesh_.size() > most_evaluations) by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
@@ -78,100 +91,113 @@ class Gather {
  private:
   enum class Purpose : std::uint64_t { hemisphere, lamps, clear };
   std::uint32_t seed_of(PatchIndex patch, Purpose purpose) const {
-    return hash({seed_, keys_[patch], static_cast<std::uint64_t>(purpose)});
+    return hash({rays_.seed, keys_[patch], static_cast<std::uint64_t>(purpose)});
   }
-  std::vector<Ray> hemisphere_rays(PatchIndex quarter) const;
-  Field straight_from_lamps(PatchIndex patch, std::span<const std::vector<Ray>> rays) const;
-  void add_hemisphere(PatchIndex quarter, std::span<const Seen> seen, GatheredQuarters& into) const;
+  std::array<std::vector<Ray>, 4> hemisphere_rays(PatchIndex patch) const;
+  Field straight_from_lamps(PatchIndex patch, const std::array<std::vector<Ray>, 4>& rays) const;
+  void add_hemisphere(std::size_t quarter, std::span<const Seen> seen, GatheredQuarters& into) const;
 
-  const PatchMesh& whole_;
-  const PatchMesh& quarters_;
+  const PatchMesh& mesh_;
   const Occluder& occluder_;
   Sights sights_;
   PatchLookup lookup_;
   std::vector<std::uint32_t> keys_;
   std::vector<PatchIndex> lamps_;
+  std::optional<ChoiceOfLamps> by_flux_;
   const Eigen::VectorXd& covered_;
   const Field& exitance_;
   Field sent_;  // what rays over the hemisphere find of the radiosity
-  std::uint64_t seed_;
+  RaysOfQuarters rays_;
 };
 
 // The same directions from the same places of all quarters.
-std::vector<Ray> Gather::hemisphere_rays(PatchIndex quarter) const {
-  const PatchIndex patch = quarter / 4;
-  const PatchCorners corners = quarters_.corner_points(quarter);
-  const Eigen::Matrix3d frame = patch_frame(whole_, patch);
-  std::vector<Ray> rays;
-  for (const auto& sample : scrambled_sobol(rays_per_quarter, seed_of(patch, Purpose::hemisphere)))
-    rays.push_back({square_to_quad(corners.points, sample[0], sample[1]),
-                    frame * square_to_cosine_hemisphere(sample[2], sample[3]), whole_.polygon[patch]});
+std::array<std::vector<Ray>, 4> Gather::hemisphere_rays(PatchIndex patch) const {
+  const PatchCorners corners = mesh_.corner_points(patch);
+  const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
+  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::hemisphere));
+  std::array<std::vector<Ray>, 4> rays;
+  for (std::size_t q = 0; q < 4; ++q) {
+    const PatchCorners quarter = quarter_of(corners, static_cast<int>(q));
+    for (const auto& sample : samples)
+      rays[q].push_back({square_to_quad(quarter.points, sample[0], sample[1]),
+                         frame * square_to_cosine_hemisphere(sample[2], sample[3]), mesh_.polygon[patch]});
+  }
   return rays;
 }
 
-// E F V / p for a lamp that is chosen with probability p, F exact: a row for each ray, by its origin, those of the
-// first quarter first. All quarters look to the same points of the same lamps.
-Field Gather::straight_from_lamps(PatchIndex patch, std::span<const std::vector<Ray>> rays) const {
-  Field irradiance = Field::Zero(4 * rays_per_quarter, exitance_.cols());
+// E h F V / p for a lamp that is chosen with probability p, F exact, h what it holds back of light: a row for each ray,
+// by its origin, those of the first quarter first. All quarters look to the same points of the same lamps.
+Field Gather::straight_from_lamps(PatchIndex patch, const std::array<std::vector<Ray>, 4>& rays) const {
+  Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
   if (lamps_.empty()) return irradiance;
-  const ChoiceOfLamps choice = choice_of_lamps(whole_, patch, lamps_, exitance_);
-  const auto samples = scrambled_sobol(rays_per_quarter, seed_of(patch, Purpose::lamps));
+  const ChoiceOfLamps for_patch = by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
+  const ChoiceOfLamps& choice = by_flux_ ? *by_flux_ : for_patch;
+  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::lamps));
   std::vector<Segment> segments;
-  for (std::size_t q = 0; q < 4; ++q) {
-    for (std::size_t k = 0; k < rays_per_quarter; ++k) {
+  for (const std::vector<Ray>& of_quarter : rays) {
+    for (std::size_t k = 0; k < samples.size(); ++k) {
       const auto [lamp, probability, u] = choice.at(samples[k][0]);
-      const PatchCorners corners = whole_.corner_points(lamp);
-      const Point& from = rays[q][k].origin;
-      const double factor = point_to_polygon(from, whole_.normal[patch], corners);
-      irradiance.row(static_cast<Eigen::Index>(segments.size())) = factor / probability * exitance_.row(lamp);
+      const PatchCorners corners = mesh_.corner_points(lamp);
+      const Point& from = of_quarter[k].origin;
+      const double held = occluder_.held_share(mesh_.polygon[lamp]);
+      const double factor = point_to_polygon(from, mesh_.normal[patch], corners);
+      irradiance.row(static_cast<Eigen::Index>(segments.size())) = factor * held / probability * exitance_.row(lamp);
       const Point to = square_to_quad(corners.points, u, samples[k][1]);
-      segments.push_back({from, to, whole_.polygon[patch], whole_.polygon[lamp]});
+      segments.push_back({from, to, mesh_.polygon[patch], mesh_.polygon[lamp]});
     }
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
 }
 
-void Gather::add_hemisphere(PatchIndex quarter, std::span<const Seen> seen, GatheredQuarters& into) const {
+void Gather::add_hemisphere(std::size_t quarter, std::span<const Seen> seen, GatheredQuarters& into) const {
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (seen[k].sight != Sight::patch) continue;
-    const auto met = lookup_.patch_at(seen[k].hit->polygon, seen[k].hit->side, seen[k].hit->point);
+    const Hit& hit = *seen[k].hit;
+    const auto met = lookup_.patch_at(hit.polygon, hit.side, hit.point);
     if (!met) continue;
-    into.met[quarter * rays_per_quarter + k] = *met;
-    into.irradiance.row(quarter) += sent_.row(*met / 4);
+    const int of_met = quarter_at(mesh_.corner_points(*met), mesh_.normal[*met], hit.point);
+    into.met[quarter * seen.size() + k] = 4 * *met + static_cast<PatchIndex>(of_met);
+    into.irradiance.row(static_cast<Eigen::Index>(quarter)) += sent_.row(*met);
   }
 }
 
 // The mean is that over what is exposed: of a patch that solids cover in part, rays that meet backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
-  std::array<std::vector<Ray>, 4> rays;
-  for (PatchIndex q = 0; q < 4; ++q) rays[q] = hemisphere_rays(4 * patch + q);
+  const std::array<std::vector<Ray>, 4> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
-  for (PatchIndex q = 4 * patch; q < 4 * (patch + 1); ++q) {
-    const std::vector<Seen> seen = sights_.of_rays(q, rays[q % 4], seed_of(patch, Purpose::clear));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t quarter = 4 * std::size_t{patch} + k;
+    const auto q = static_cast<Eigen::Index>(quarter);
+    const std::vector<Seen> seen = sights_.of_rays(patch, rays[k], seed_of(patch, Purpose::clear));
     int exposed = 0;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (covered_[patch] > 0 && unseen({&seen[k], 1}) > 0) continue;
+    for (std::size_t ray = 0; ray < seen.size(); ++ray) {
+      if (covered_[patch] > 0 && unseen({&seen[ray], 1}) > 0) continue;
       ++exposed;
-      into.irradiance.row(q) += direct.row(static_cast<Eigen::Index>((q % 4) * rays_per_quarter + k));
+      into.irradiance.row(q) += direct.row(static_cast<Eigen::Index>(k * seen.size() + ray));
     }
-    add_hemisphere(q, seen, into);
+    add_hemisphere(quarter, seen, into);
     into.irradiance.row(q) /= std::max(1, exposed);
-    into.exposed[q] = quarters_.area[q] * exposed / rays_per_quarter;
+    into.area[q] = area_vector(quarter_of(mesh_.corner_points(patch), static_cast<int>(k))).norm();
+    into.exposed[q] = into.area[q] * exposed / rays_.rays;
     into.seen[q] = static_cast<double>(count(seen, Sight::patch)) / std::max(1, exposed);
   }
 }
 
 }  // namespace
 
-GatheredQuarters gather_at_quarters(const QuarteredMesh& mesh, const Occluder& occluder, const SolvedProblem& solved,
-                                    std::uint64_t seed, const Observer& observer) {
-  const Gather gather(mesh, occluder, solved, seed);
-  const Eigen::Index quarters = mesh.quarters.size();
-  GatheredQuarters found{Field::Zero(quarters, solved.problem.exitance.cols()),
-                         std::vector<PatchIndex>(mesh.quarters.size() * rays_per_quarter, no_patch),
-                         Eigen::ArrayXd::Zero(quarters), Eigen::ArrayXd::Zero(quarters)};
-  parallel_for(mesh.whole.size(), Stage::error_bars, observer,
+GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays,
+                                    const Observer& observer) {
+  const Gather gather(patches, rays);
+  const std::size_t quarters = 4 * std::size_t{patches.mesh.size()};
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(quarters));
+  GatheredQuarters found{rays.rays,
+                         Field::Zero(none.size(), patches.solved.problem.exitance.cols()),
+                         std::vector<PatchIndex>(quarters * static_cast<std::size_t>(rays.rays), no_patch),
+                         none,
+                         none,
+                         none};
+  parallel_for(patches.mesh.size(), Stage::error_bars, observer,
                [&](std::size_t patch) { gather.at(static_cast<PatchIndex>(patch), found); });
   return found;
 }

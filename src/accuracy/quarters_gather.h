@@ -4,29 +4,43 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 
-#include "accuracy/unseen_differences.h"
+#include "accuracy/errors.h"
 
-#include <cstddef>
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
 
-/// Rays from a quarter of a patch over the hemisphere.
-inline constexpr std::size_t rays_per_quarter = 16;
+class Occluder;
 
-/// What the rays of all quarters tell.
+/// A solution on patches, and what stands between them.
+struct SolvedPatches {
+  const PatchMesh& mesh;
+  const Occluder& occluder;
+  const LostShare& lost;
+  const SolvedProblem& solved;
+};
+
+/// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/quarters.h).
 struct GatheredQuarters {
+  int rays = 0;      ///< from each quarter
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2
   std::vector<PatchIndex> met;  ///< per quarter and ray: the quarter that it meets, or no_patch
+  Eigen::ArrayXd area;          ///< per quarter, m^2
   Eigen::ArrayXd exposed;       ///< per quarter: what of its area no solid covers, m^2
   Eigen::ArrayXd seen;          ///< per quarter: the share of its hemisphere in which there are patches
 };
 
+/// How many rays start at each quarter, a power of two, and what chooses them.
+struct RaysOfQuarters {
+  int rays = 16;
+  std::uint64_t seed = 1;
+};
+
 /// Gathers light at the quarters of patches from a solution on the patches: along cosine-distributed rays what is
 /// reflected, along as many shadow rays what lamps emit. The quarters of a patch take the same directions, so that
-/// little noise is in their differences. `seed` chooses the rays. \throws Cancelled.
-GatheredQuarters gather_at_quarters(const QuarteredMesh& mesh, const Occluder& occluder, const SolvedProblem& solved,
-                                    std::uint64_t seed, const Observer& observer);
+/// little noise is in their differences. \throws Cancelled.
+GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays, const Observer& observer);
 
 }  // namespace patchlight

@@ -1,7 +1,6 @@
 #include "accuracy/unseen_differences.h"
 
 #include "accuracy/means_around.h"
-#include "accuracy/quarters_gather.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
 #include "solve/scattering.h"
@@ -17,56 +16,79 @@ namespace {
 // The differences of radiosity inside patches, as one set of rays finds them.
 struct Differences {
   GatheredQuarters rays;
-  Field of_quarters;           // from the mean of the patch, W/m^2
+  Field of_irradiance;         // of each quarter from the mean of its patch, W/m^2
+  Field of_quarters;           // of radiosity, the same
   Field at_patches;            // what they change of the irradiance of each patch, W/m^2
   Eigen::ArrayXd part_of_ray;  // per quarter: what part of the mean over its patch one ray is
 
   // Those that are met from a quarter.
   std::span<const PatchIndex> met_from(PatchIndex quarter) const {
-    return std::span(rays.met).subspan(quarter * rays_per_quarter, rays_per_quarter);
+    const auto count = static_cast<std::size_t>(rays.rays);
+    return std::span(rays.met).subspan(quarter * count, count);
   }
 };
 
-// rho (H_q - H), where H is the mean over what is exposed of the quarters.
-Field differences_of_quarters(const GatheredQuarters& rays, const FieldView& irradiance, const Scattering& scattering) {
+// H_q - H, where H is the mean over what is exposed of the quarters.
+Field differences_of_irradiance(const GatheredQuarters& rays, const FieldView& irradiance) {
   Field difference = Field::Zero(irradiance.rows(), irradiance.cols());
-  for (Eigen::Index i = 0; i < irradiance.rows() / 4; ++i) {
-    const auto exposed = rays.exposed.segment<4>(4 * i);
+  for (Eigen::Index first = 0; first < irradiance.rows(); first += 4) {
+    const auto exposed = rays.exposed.segment<4>(first);
     if (exposed.sum() == 0) continue;
-    const Field mean = (irradiance.middleRows<4>(4 * i).colwise() * exposed).colwise().sum() / exposed.sum();
-    for (Eigen::Index q = 4 * i; q < 4 * (i + 1); ++q)
-      if (rays.exposed[q] > 0) difference.row(q) = reflect_at(scattering, i, Field(irradiance.row(q) - mean));
+    const Field mean = (irradiance.middleRows<4>(first).colwise() * exposed).colwise().sum() / exposed.sum();
+    for (Eigen::Index q = first; q < first + 4; ++q)
+      if (rays.exposed[q] > 0) difference.row(q) = irradiance.row(q) - mean;
   }
   return difference;
 }
 
+Field reflected_by_quarters(const Scattering& scattering, const Field& irradiance) {
+  Field reflected(irradiance.rows(), irradiance.cols());
+  for (Eigen::Index q = 0; q < irradiance.rows(); ++q)
+    reflected.row(q) = reflect_at(scattering, q / 4, Field(irradiance.row(q)));
+  return reflected;
+}
+
 // What part of the mean over its patch one ray from each quarter is.
-Eigen::ArrayXd parts_of_rays(const GatheredQuarters& rays, const PatchMesh& quarters) {
+Eigen::ArrayXd parts_of_rays(const GatheredQuarters& rays) {
   Eigen::ArrayXd part(rays.exposed.size());
   for (Eigen::Index q = 0; q < part.size(); ++q) {
     const double exposed = rays.exposed.segment<4>(q - q % 4).sum();
-    part[q] = exposed > 0 ? quarters.area[static_cast<std::size_t>(q)] / (exposed * rays_per_quarter) : 0;
+    part[q] = exposed > 0 ? rays.area[q] / (exposed * rays.rays) : 0;
   }
   return part;
 }
 
+// Root mean squares over the quarters of each patch of what both sets of rays find; quarters of a field that is linear
+// have three quarters of the variance of its points.
+Field display_of(const Differences& one, const Differences& other) {
+  const Field product = one.of_irradiance * other.of_irradiance;
+  Field mean = Field::Zero(product.rows() / 4, product.cols());
+  for (Eigen::Index q = 0; q < product.rows(); ++q) mean.row(q / 4) += product.row(q) / 3;
+  return mean;
+}
+
 // As much flux arrives as the differences send, sum_q A_q dB_q over what sees patches: next to none, where nothing is
-// lost. What noise adds to it, all reflections would multiply.
-Field with_flux_sent(const QuarteredMesh& mesh, const Eigen::VectorXd& area, const Differences& differences) {
+// lost. What noise adds to it, all reflections would multiply. What is seen is that of other rays, as what one set
+// finds of it goes with what it finds of the light.
+Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences, const GatheredQuarters& other) {
   Field off = Field::Zero(1, differences.of_quarters.cols());
-  for (PatchIndex q = 0; q < mesh.quarters.size(); ++q)
-    off += differences.rays.exposed[q] * differences.rays.seen[q] * differences.of_quarters.row(q);
+  for (Eigen::Index q = 0; q < differences.of_quarters.rows(); ++q) {
+    const double exposed = differences.rays.exposed.segment<4>(q - q % 4).sum();
+    if (exposed == 0) continue;
+    const double of_patch = differences.rays.exposed[q] / exposed;
+    off += area[q / 4] * of_patch * other.seen[q] * differences.of_quarters.row(q);
+  }
   off -= (differences.at_patches.colwise() * area.array()).colwise().sum();
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-Differences find_differences(GatheredQuarters rays, const PatchMesh& quarters, const Field& direct,
-                             const Scattering& scattering) {
+Differences find_differences(GatheredQuarters rays, const Field& direct, const Scattering& scattering) {
   const Field irradiance = direct.size() > 0 ? Field(rays.irradiance + direct) : rays.irradiance;
-  Differences found{std::move(rays), {}, Field::Zero(irradiance.rows() / 4, irradiance.cols()), {}};
-  found.part_of_ray = parts_of_rays(found.rays, quarters);
-  found.of_quarters = differences_of_quarters(found.rays, irradiance, scattering);
-  for (PatchIndex q = 0; q < quarters.size(); ++q) {
+  Differences found{std::move(rays), {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols()), {}};
+  found.part_of_ray = parts_of_rays(found.rays);
+  found.of_irradiance = differences_of_irradiance(found.rays, irradiance);
+  found.of_quarters = reflected_by_quarters(scattering, found.of_irradiance);
+  for (PatchIndex q = 0; q < found.of_quarters.rows(); ++q) {
     for (const PatchIndex met : found.met_from(q))
       if (met != no_patch) found.at_patches.row(q / 4) += found.part_of_ray[q] * found.of_quarters.row(met);
   }
@@ -88,31 +110,34 @@ Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& diffe
 
 }  // namespace
 
-UnseenDifferences unseen_differences(const QuarteredMesh& mesh, const Occluder& occluder, const RowTransport& transport,
-                                     const SolvedProblem& solved, const Eigen::VectorXd& weight, std::uint64_t seed,
-                                     const Observer& observer) {
+UnseenDifferences unseen_differences(const SolvedPatches& patches, const TransportOperator& transport,
+                                     const Eigen::VectorXd& weight, const QuarterLook& look, const Observer& observer) {
+  const SolvedProblem& solved = patches.solved;
+  const Eigen::VectorXd& area = solved.problem.area;
   // 1. Twice, with other rays.
   const auto found = [&](std::size_t half) {
-    GatheredQuarters rays = gather_at_quarters(mesh, occluder, solved, hash({seed, half, 0x9a7}), observer);
-    return find_differences(std::move(rays), mesh.quarters, mesh.direct[half], solved.problem.scattering);
+    GatheredQuarters rays = gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
+    return find_differences(std::move(rays), look.direct[half], solved.problem.scattering);
   };
   const Differences one = found(0);
   const Differences other = found(1);
 
   // 2. Through all reflections; what is finer than the quarters is extrapolated.
   const double scale = 1 / (1 - std::pow(2.0, -mesh_order));
-  const auto through_reflections = [&](const Differences& differences) {
-    return followed(transport, solved.problem, with_flux_sent(mesh, solved.problem.area, differences));
+  const auto through_reflections = [&](const Differences& differences, const Differences& of_other) {
+    return followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));
   };
-  const Field square = through_reflections(one) * through_reflections(other);
+  // Where the two differ in sign the error is not known any better than that.
+  const auto root_of_mean = [&](const Field& square) -> Field {
+    return mean_around(patches.mesh, area, square).abs().sqrt();
+  };
   UnseenDifferences unseen;
-  unseen.error = scale * mean_around(mesh.whole, solved.problem.area, square).max(0.0).sqrt();
+  unseen.error = scale * root_of_mean(through_reflections(one, other) * through_reflections(other, one));
+  unseen.display = root_of_mean(display_of(one, other));
 
   // 3. Where it comes from.
-  const Field weights = weight_of_squares(solved, weight).colwise() * solved.problem.area.array().square();
-  unseen.effects =
-      (parts_in(weights * one.at_patches, other) + parts_in(weights * other.at_patches, one)) * (scale * scale / 2);
-  unseen.effects = unseen.effects.cwiseMax(0.0);
+  const Field weights = weight_of_squares(solved, weight).colwise() * area.array().square();
+  unseen.effects = parts_in(weights * one.at_patches, other) + parts_in(weights * other.at_patches, one);
   return unseen;
 }
 

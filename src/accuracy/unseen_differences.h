@@ -4,7 +4,7 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 
-#include "accuracy/errors.h"
+#include "accuracy/quarters_gather.h"
 
 #include <Eigen/Core>
 #include <array>
@@ -12,13 +12,10 @@
 
 namespace patchlight {
 
-class Occluder;
-
-/// Patches and their quarters: patch i has the quarters 4 i to 4 i + 3.
-struct QuarteredMesh {
-  const PatchMesh& whole;
-  const Eigen::VectorXd& covered;  ///< the share of each patch that solids cover, LostShare::covered
-  PatchMesh quarters;
+/// How the quarters of patches are looked at.
+struct QuarterLook {
+  int rays = 16;  ///< from each over the hemisphere, and as many towards lamps, in each half; a power of two
+  std::uint64_t seed = 1;
   std::array<Field, 2> direct = {};  ///< per quarter: irradiance by luminaires, sun and sky, W/m^2, found twice with
                                      ///< other rays; empty without these
 };
@@ -27,7 +24,9 @@ struct QuarteredMesh {
 /// Under a board close over a floor it is dark, however bright the mean of a patch that reaches under it.
 struct UnseenDifferences {
   Field error;              ///< of the mean irradiance of each patch, W/m^2
-  Eigen::VectorXd effects;  ///< per patch: of its differences on all others, as effects_of_parents() counts
+  Field display;            ///< how far the irradiance at a point of a patch is from its mean, root mean square, W/m^2
+  Eigen::VectorXd effects;  ///< per patch: the part of its differences in the weighted squares of what all change, to
+                            ///< a factor; noise may make it negative
 };
 
 /// Found by rays: the irradiance of each quarter is gathered from the patches, its difference from the mean of its
@@ -35,8 +34,7 @@ struct UnseenDifferences {
 /// quarters is extrapolated (mesh_order). All this twice, with other rays: the product of the two has no bias by their
 /// noise, and its mean over the patches around has less of it. `weight` is that of each patch in the error. O(size)
 /// rays. \throws Cancelled.
-UnseenDifferences unseen_differences(const QuarteredMesh& mesh, const Occluder& occluder, const RowTransport& transport,
-                                     const SolvedProblem& solved, const Eigen::VectorXd& weight, std::uint64_t seed,
-                                     const Observer& observer);
+UnseenDifferences unseen_differences(const SolvedPatches& patches, const TransportOperator& transport,
+                                     const Eigen::VectorXd& weight, const QuarterLook& look, const Observer& observer);
 
 }  // namespace patchlight

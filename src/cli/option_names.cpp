@@ -29,6 +29,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"mesh.sides", "--sides"},
                                                 {"assembly.storage=on_demand", "--on-demand"},
                                                 {"assembly.storage=rays", "--storage rays"},
+                                                {"assembly.storage=tiles", "--storage tiles"},
                                                 {"assembly.close=false", "--no-closure"},
                                                 {"assembly.estimator=", "--estimator "},
                                                 {"assembly.estimator", "--estimator"},

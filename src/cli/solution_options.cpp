@@ -145,12 +145,15 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
 void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request) {
   add_closure_option(command, request);
   add_relaxation_option(command, request.solver.relaxation);
-  add(command, "--solver", solver_names("|"), "how the equations are solved; default cg, with --series jacobi",
+  add(command, "--solver", solver_names("|"),
+      "how the equations are solved; default cg, with --series jacobi,\nwith rows of rays gmres",
       [&request, &options](const std::string& text) {
         options.solver_given = true;
         request.solver.solver = solver_named("--solver", text);
       });
-  add(command, "--tolerance", "NUMBER", "relative error at which the solver stops; default 1e-6",
+  add(command, "--tolerance", "NUMBER",
+      "relative error at which the solver stops; default 1e-6, with\n--accuracy what that takes, with rows of rays "
+      "1e-4",
       [&request](const std::string& text) {
         const auto inside = [](double x) { return x > 0 && x < 1; };
         request.solver.relative_error = number("--tolerance", text, "a number above 0 and below 1", inside);

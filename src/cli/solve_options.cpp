@@ -55,7 +55,9 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   add(command, "--storage", "auto|tiles|rays|on-demand",
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
       "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
-      "for more than 10,000 patches or where the\nmemory is too small, unless what is asked for takes pairs",
+      "for more than 10,000 patches or where the\nmemory is too small; always pairs with --solver, "
+      "--series,\n--error-bars, "
+      "--accuracy, --time, --estimator, --no-closure,\n--force closure and --form-factors",
       [&to](const std::string& text) { to.request.assembly.storage = storage_named(text); });
   add_effect_options(command, to.request);
   add_solver_options(command, to.solution, to.request);

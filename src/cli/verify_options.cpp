@@ -82,6 +82,8 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
   arguments.request.accuracy.error_bars = !options.bar;
+  // What rays err is in no --bar.
+  arguments.request.assembly.storage = Storage::tiles;
   const OptionName error_bars{"accuracy.error_bars", "the error bars that verify takes without --bar PERCENT"};
   check_with_names(arguments.request, std::array{error_bars});
   arguments.json = options.json;

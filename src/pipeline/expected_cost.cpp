@@ -15,7 +15,9 @@ namespace {
 constexpr double seconds_per_hemisphere_ray = 2.5e-7;
 constexpr double seconds_per_light_ray = 2.2e-7;  // docs/lights.md: 0.9 s for 3,980 patches and 1,024 rays
 
-constexpr double seconds_per_row_of_rays = 8e-5;
+// docs/theory.md section 12, of 32,000 to a million patches.
+constexpr double seconds_per_row_of_rays = 1.2e-4;
+constexpr double seconds_of_solution_by_rays = 1.6e-5;  // per patch, with last gather and smoothing
 
 // Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
 constexpr double products_of_closure = 100;
@@ -62,6 +64,7 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
 
   if (plan.assembly.storage == Storage::rays) {
     cost.form_factor_seconds = seconds_per_row_of_rays * n;
+    cost.solve_seconds = seconds_of_solution_by_rays * n;
     cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
     return cost;
   }

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -61,7 +62,7 @@ Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitan
 }
 
 SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
-  if (simulates(plan, Effect::interreflection)) return solve;
+  if (simulates(plan, Effect::interreflection)) return solve ? std::move(solve) : SolveWith(patchlight::solve);
   return [](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
             const Observer& observer) { return light_of_lamps(transport, problem, observer); };
 }

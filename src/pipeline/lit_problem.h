@@ -4,6 +4,8 @@
 
 #include "pipeline/run.h"
 
+#include <cstdint>
+
 namespace patchlight {
 
 /// What is solved on a mesh: its materials, and the light of luminaires, sun and sky where it first arrives.
@@ -16,7 +18,8 @@ struct LitProblem {
 /// Cancelled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
 
-/// The irradiance by luminaires, sun and sky alone, with a tenth of the rays, W/m^2. \throws Cancelled.
+/// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with 8 rays to each luminaire,
+/// 8 to the sun and 64 to the sky; `seed` chooses them. \throws Cancelled.
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed);
 
 }  // namespace patchlight

@@ -208,7 +208,7 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 }
 
 SolvedMesh Search::noted(SolvedMesh solved) {
-  if (run_.plan.accuracy.error_bars) steps_.push_back(step_of(solved));
+  if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.accuracy = steps_;
   if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;

@@ -3,20 +3,16 @@
 #include "accuracy/errors.h"
 #include "accuracy/interest.h"
 #include "accuracy/refinement.h"
-#include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/refine.h"
 #include "pipeline/light_of_lamps.h"
-#include "pipeline/lit_problem.h"
+#include "pipeline/unseen_differences_of.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"
 
-#include <cstddef>
-#include <cstdint>
 #include <utility>
 
 namespace patchlight {
@@ -85,16 +81,6 @@ struct MeshBars {
   Field by_dark_parts;       // and what that does to the irradiance
 };
 
-// Light that differs inside patches, of all sources.
-UnseenDifferences unseen_differences_on(const Run& run, const Simulation& simulation, const RowTransport& transport,
-                                        const SolvedProblem& solved, const Eigen::VectorXd& weight) {
-  const std::uint64_t seed = simulation.plan.assembly.seed;
-  QuarteredMesh mesh{simulation.mesh, simulation.transport.lost.covered, refine(simulation.mesh)};
-  for (std::size_t half = 0; half < mesh.direct.size() && has_point_or_daylight(run.scene); ++half)
-    mesh.direct[half] = rough_direct_irradiance(run, simulation.plan, mesh.quarters, hash({seed, half}));
-  return unseen_differences(mesh, run.tracing->between_patches(), transport, solved, weight, seed, run.observer);
-}
-
 MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport& transport, const SolvedProblem& solved,
                    const Eigen::VectorXd& weight, ClosedExchangeAreas of_parents) {
   const Simulation& simulation = result.simulation;
@@ -102,7 +88,7 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
   Field dark = dark_differences(simulation.transport.lost, solved);
   Field by_dark_parts = transport.apply(dark);
   return {mesh_errors(result.mesh, transport, solved, coarse),
-          unseen_differences_on(run, simulation, transport, solved, weight),
+          unseen_differences_of(run, simulation, transport, weight, 16),
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
@@ -110,15 +96,31 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
 Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
                            const MeshBars& bars) {
   const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
-  const auto shared_out = [&](const Field& bar, const Field& difference) -> Eigen::VectorXd {
-    const ExchangeAreas& S = result.raw->exchange_areas;
-    const Eigen::VectorXd effects = effects_of_parents(S, result.mesh, solved, {difference, weight});
+  const auto scaled_to = [&](const Field& bar, Eigen::VectorXd effects) -> Eigen::VectorXd {
     const double sum = total(effects);
     return sum > 0 ? Eigen::VectorXd(total(squares(bar)) / sum * effects) : effects;
   };
+  const auto shared_out = [&](const Field& bar, const Field& difference) {
+    return scaled_to(bar, effects_of_parents(result.raw->exchange_areas, result.mesh, solved, {difference, weight}));
+  };
+  const Eigen::VectorXd unseen = summed_by_parent(result.mesh, bars.unseen.effects.array()).col(0).matrix();
   return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
          shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps) +
-         summed_by_parent(result.mesh, bars.unseen.effects.array()).col(0).matrix();
+         scaled_to(bars.unseen.error, unseen.cwiseMax(0.0));
+}
+
+// Rows of rays know what they err by themselves; the patches' part is found with few rays of their own.
+SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTransport& transport) {
+  if (!simulates(run.plan, Effect::interreflection)) return result;
+  constexpr int rays = 4;
+  Simulation& simulation = result.simulation;
+  result.interest = Eigen::VectorXd::Ones(simulation.problem.area.size());
+  const UnseenDifferences unseen = unseen_differences_of(run, simulation, transport, result.interest, rays);
+  simulation.error_bars = {.mesh = unseen.error,
+                           .form_factor = simulation.ray_standard_error,
+                           .solver = solver_errors({simulation.problem, simulation.solution}),
+                           .display = unseen.display};
+  return result;
 }
 
 }  // namespace
@@ -129,6 +131,7 @@ double share_of_lamps(const RadiosityProblem& problem) {
 }
 
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
+  if (transport.rays) return with_bars_of_rays(run, std::move(result), *transport.rays);
   if (!run.plan.accuracy.error_bars) return result;
   result.raw = std::move(transport.assembly);
   const RowTransport& rows = *transport.rows;

@@ -131,7 +131,7 @@ std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Give
   const char* const found_in_the_run = "error bars take the errors of form factors, found and kept in the run";
   const char* const closed = "error bars are those of closed rows";
   return {{on_demand(request), found_in_the_run},
-          {by_rays(request), "rows of rays have bars of their own, on one mesh"},
+          {by_rays(request), "rows of rays have error bars without being asked, and are not refined"},
           {form_factors(given), found_in_the_run},
           {mesh_of(given), "error bars take a nested mesh"},
           {not_closed(request), closed},

@@ -5,18 +5,23 @@
 namespace patchlight {
 namespace {
 
-// What rows of rays do not give: errors of the mesh, given matrices, rows that are not closed, other estimators, and
-// solvers that take columns or symmetry.
+// What rows of rays do not give: refinement, given matrices, rows that are not closed, another estimator or number of
+// its samples, other short cuts, light as if nothing stood in the way, and solvers that take columns or symmetry.
 bool takes_pairs(const Request& request, const Given& given) {
   const AssemblyOptions& assembly = request.assembly;
-  const bool of_effects = contains(request.effects.force, Effect::closure) ||
-                          contains(request.effects.skip, Effect::closure) ||
-                          contains(request.effects.skip, Effect::interreflection);
+  const AssemblyOptions usual;
+  const bool of_sampling = assembly.estimator != usual.estimator || assembly.samples != usual.samples ||
+                           assembly.keep_errors || !assembly.close || !assembly.short_cuts.hidden ||
+                           !assembly.short_cuts.free || !assembly.short_cuts.far;
+  const auto asked = [&](Effect effect) {
+    return contains(request.effects.force, effect) || contains(request.effects.skip, effect);
+  };
+  const bool of_effects =
+      asked(Effect::closure) || asked(Effect::occlusion) || contains(request.effects.skip, Effect::interreflection);
   const Solver solver = request.solver.solver;
   const bool of_solver = solver != Solver::cg && (takes_rows(solver) || takes_reciprocity(solver));
-  return has_error_bars(request.accuracy) || given.form_factors || given.mesh || of_effects || !assembly.close ||
-         assembly.keep_errors || assembly.estimator != Estimator::automatic || of_solver ||
-         request.solver.max_rows.has_value();
+  return has_error_bars(request.accuracy) || given.form_factors || given.mesh || given.solver || of_effects ||
+         of_sampling || of_solver || request.solver.max_rows.has_value();
 }
 
 }  // namespace
@@ -26,13 +31,15 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   if (request.assembly.storage != Storage::automatic) return chosen;
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
-  const bool too_many = light.patches > most_patches_in_pairs || bytes > usable_memory(request.resources);
+  const bool fits = bytes <= usable_memory(request.resources);
+  const bool too_many = light.patches > most_patches_in_pairs || !fits;
   if (!too_many || !light.is_reflected || takes_pairs(request, given)) return chosen;
   chosen.request.assembly.storage = Storage::rays;
   if (request.solver.solver == Solver::cg) chosen.request.solver.solver = Solver::gmres;
-  chosen.note = "form factors as rows of rays (assembly.storage=rays), as the pairs of " +
+  chosen.note = "form factors are rows of rays (assembly.storage=rays), as all pairs of " +
                 std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
-                " and far more time; what the size of the patches errs is not known then";
+                (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken") +
+                "; assembly.storage=tiles takes pairs";
   return chosen;
 }
 

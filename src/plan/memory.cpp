@@ -3,9 +3,12 @@
 #include "patchlight/base/error.h"
 #include "patchlight/scene/sides.h"
 
+#include "mesh/mesher.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <unistd.h>
@@ -87,13 +90,17 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
                     (plan.resources.memory ? " may be taken (resources.memory); " : " may be taken here; ") + hint);
 }
 
+// A patch is never larger than the square of the longest edge, and each face takes one at least.
+std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge) {
+  // Too many to count are as good as the largest number.
+  const double by_area = std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18);
+  return std::max(least_patches(scene, sides), static_cast<std::size_t>(by_area));
+}
+
 // By the number of patches that is asked for, or the least number that an edge allows.
 void require_memory(const Scene& scene, const Request& request, const Plan& plan) {
-  if (!request.mesh.max_edge) return require_memory(patches_asked(request), request, plan);
-  const double largest = *request.mesh.max_edge * *request.mesh.max_edge;
-  const double least = kept_area(scene, plan.sides) / largest;
-  // Too many to count are as good as the largest number.
-  require_memory(static_cast<std::size_t>(std::min(least, 1e18)), request, plan);
+  const std::optional<double>& edge = request.mesh.max_edge;
+  require_memory(edge ? least_patches_with(scene, plan.sides, *edge) : patches_asked(request), request, plan);
 }
 
 }  // namespace patchlight

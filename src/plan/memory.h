@@ -18,6 +18,9 @@ double usable_memory(const Resources& resources);
 /// The largest number of patches for which memory_needed() is usable.
 double patches_that_fit(const Plan& plan);
 
+/// The least number of patches with edges up to so many metres.
+std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge);
+
 /// A number of bytes as messages have it: "1.25 GB".
 std::string gigabytes(double bytes);
 

@@ -9,6 +9,7 @@
 #include "plan/fine_outlines.h"
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
+#include "plan/memory.h"
 #include "plan/survey.h"
 
 #include <algorithm>
@@ -94,17 +95,11 @@ PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& r
   return size;
 }
 
-// A patch is never larger than the square of the longest edge.
-std::size_t least_patches_with(double max_edge, const Scene& scene, const KeptSides& sides) {
-  // Too many to count are as good as the largest number.
-  return static_cast<std::size_t>(std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18));
-}
-
 PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
   PatchSize size = request.mesh.max_edge
-                       ? PatchSize{*request.mesh.max_edge, least_patches_with(*request.mesh.max_edge, scene, sides), {}}
+                       ? PatchSize{*request.mesh.max_edge, least_patches_with(scene, sides, *request.mesh.max_edge), {}}
                        : patch_size_for(asked, scene, request, sides);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;

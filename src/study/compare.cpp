@@ -148,7 +148,6 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
   check(request, options);
   Request with_matrix = request;  // even where no light is reflected
   with_matrix.effects.force.push_back(Effect::interreflection);
-  if (with_matrix.assembly.storage == Storage::automatic) with_matrix.assembly.storage = Storage::tiles;
   Comparison comparison;
   // 1. Assemble once; while the matrix is there, find the reference and let the solvers run that use it.
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,

@@ -184,7 +184,8 @@ Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const As
   }
   result.entry_errors =
       with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error, mesh.area);
-  return known == nullptr ? result : with_known(std::move(result), *known);
+  if (known == nullptr) return result;
+  return with_known(std::move(result), *known);
 }
 
 }  // namespace

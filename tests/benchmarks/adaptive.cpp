@@ -54,6 +54,7 @@ void uniform(const Scene& scene, const FinerReference& reference, std::size_t pa
   Request request;
   request.mesh.sides = Sides::front;
   request.mesh.patches = patches;
+  request.assembly.storage = Storage::tiles;
   const Simulation simulation = simulate(scene, request);
   print("uniform", simulation, reference, cpu_seconds() - begin);
 }

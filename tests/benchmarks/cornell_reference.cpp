@@ -99,6 +99,7 @@ int main(int argc, char** argv) {
     Request request;
     request.mesh.patches = std::strtoul(argv[k], nullptr, 10);
     request.mesh.sides = Sides::front;
+    request.assembly.storage = Storage::tiles;
     const Simulation simulation = simulate(scene, request);
     const double solved = cpu_seconds();
     const Field gathered =

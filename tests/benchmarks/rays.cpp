@@ -61,7 +61,7 @@ Errors errors_of(const Scene& scene, const Simulation& s, std::size_t checked, s
   for (const PatchIndex i : chosen.patches)
     receivers.push_back({s.mesh.corner_points(i).points, s.mesh.polygon[i], s.mesh.side[i]});
   const PathEstimate traced = trace_irradiance(scene, s.plan.sides, receivers, {.paths = paths, .seed = 5});
-  const Field bar = s.ray_standard_error;
+  const Field bar = s.error_bars->total();
   double squares = 0, noise = 0, stated = 0, light = 0, covered = 0, difference = 0, sum = 0;
   std::vector<double> relative;
   for (std::size_t k = 0; k < checked; ++k) {
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
   for (const StageCost& cost : s.costs) std::printf(" %s %.2f", name_of(cost.stage), cost.cpu_seconds);
   std::printf("; %zu iterations, %g applications; balance off by %.1e\n", s.solution.history.size() - 1,
               s.solution.history.back().work, s.balance.imbalance);
-  const Field squares = (s.problem.scattering.reflectance * s.ray_standard_error).square();
+  const Field squares = (s.problem.scattering.reflectance * s.error_bars->total()).square();
   std::printf("bar of all patches %.4f\n",
               std::sqrt((squares.colwise() * s.problem.area.array()).sum()) / reflected_norm(s));
   if (argc < 4) return 0;

@@ -138,7 +138,7 @@ class SolveTest(ToolTest):
     def interrupt_in_stage(self, stage, sent):
         """Starts a run of minutes on a terminal, sends the signal once the stage shows; what was shown, the exit code."""
         ours, theirs = pty.openpty()
-        command = [TOOL, "solve", "room.obj", "--patches", "12000", "--samples", "4096", "-o", "out.vtp", "--picture",
+        command = [TOOL, "solve", "room.obj", "--patches", "12000", "--storage", "tiles", "--samples", "4096", "-o", "out.vtp", "--picture",
                    "out.png"]
         with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
             os.close(theirs)

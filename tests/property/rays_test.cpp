@@ -60,6 +60,8 @@ TEST(Rays, KeepTheFurnaceEven) {
   EXPECT_TRUE(s.solution.converged);
   EXPECT_LT((s.solution.radiosity - 1).abs().maxCoeff(), 1e-5);
   EXPECT_LT(s.ray_standard_error.maxCoeff(), 1e-5);
+  ASSERT_TRUE(s.error_bars);
+  EXPECT_LT(s.error_bars->mesh.maxCoeff(), 1e-5);
   EXPECT_EQ(s.balance.escaped[0], 0);
 }
 
@@ -98,6 +100,7 @@ TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
   const Simulation two = solved(2);
   EXPECT_TRUE((one.solution.radiosity == two.solution.radiosity).all());
   EXPECT_TRUE((one.ray_standard_error == two.ray_standard_error).all());
+  EXPECT_TRUE((one.error_bars->mesh == two.error_bars->mesh).all());
 }
 
 // Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.

@@ -59,7 +59,7 @@ struct Request {
 struct Plan {
   KeptSides sides;
   double max_edge = 0;       ///< metres
-  AssemblyOptions assembly;  ///< stored as asked for, or on demand where the rows of the lamps are enough
+  AssemblyOptions assembly;  ///< stored as asked for, else as pairs, rays or rows of the lamps
   SolverOptions solver;      ///< of a mesh on the way to an accuracy: its own relative error
   AccuracyOptions accuracy;  ///< with error bars where patches are refined
   Resources resources;
@@ -73,6 +73,7 @@ struct Plan {
 struct Given {
   bool form_factors = false;
   bool mesh = false;
+  bool solver = false;
 };
 
 /// The same with rows of rays, whose own error is some hundred times that.
@@ -97,7 +98,7 @@ std::size_t patches_asked(const Request& request);
 KeptSides sides_for(const Scene& scene, const Request& request);
 
 /// Fills the request's open ends from the facts of the scene. Form factors that are given are a matrix, even where the
-/// rows of the lamps would do. Pure.
+/// rows of the lamps would do. Pure, but for what the machine's memory decides where Resources::memory is open.
 /// \throws InputError when the scene has no lamp, or none but those that EffectOptions::skip leaves out.
 Plan make_plan(const Scene& scene, const Request& request, const Given& given = {});
 

@@ -116,7 +116,11 @@ TEST(MakePlan, TakesRaysForManyPatches) {
   EXPECT_EQ(storage_with([](Request& r) { r.solver.solver = Solver::sor; }), Storage::tiles);
   EXPECT_EQ(storage_with([](Request& r) { r.solver.solver = Solver::jacobi; }), Storage::rays);
   EXPECT_EQ(storage_with([](Request& r) { r.assembly.estimator = Estimator::contour; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.assembly.samples = 64; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.assembly.short_cuts.far = false; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.effects.skip = {Effect::occlusion}; }), Storage::tiles);
   EXPECT_EQ(make_plan(scene, request, {.form_factors = true}).assembly.storage, Storage::tiles);
+  EXPECT_EQ(make_plan(scene, request, {.solver = true}).assembly.storage, Storage::tiles);
   EXPECT_EQ(make_plan(furnished_room(0), request).assembly.storage, Storage::on_demand) << "nothing reflects";
 }
 
