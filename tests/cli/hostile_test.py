@@ -266,7 +266,7 @@ class HostileTest(ToolTest):
         process = subprocess.Popen([TOOL, *words], cwd=self.folder, stderr=subprocess.PIPE, preexec_fn=before)
         time.sleep(0.6)
         process.send_signal(which)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=300)
         return process.returncode, errors
 
     def test_hanging_up_and_ignored_signals(self):
