@@ -96,7 +96,7 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
 Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
                            const MeshBars& bars) {
   const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
-  const auto scaled_to = [&](const Field& bar, Eigen::VectorXd effects) -> Eigen::VectorXd {
+  const auto scaled_to = [&](const Field& bar, const Eigen::VectorXd& effects) -> Eigen::VectorXd {
     const double sum = total(effects);
     return sum > 0 ? Eigen::VectorXd(total(squares(bar)) / sum * effects) : effects;
   };
