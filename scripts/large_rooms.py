@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-STAGES = ["read", "plan", "mesh", "form factors", "solve", "write"]
+STAGES = ["read", "plan", "mesh", "form factors", "solve", "error bars", "write"]
 
 
 def measured(words):

@@ -2,8 +2,8 @@
 #include "patchlight/solve/solve.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/means_around.h"
 #include "base/conjugate_directions.h"
+#include "mesh/means_around.h"
 #include "solve/scattering.h"
 #include "transport/random_errors.h"
 

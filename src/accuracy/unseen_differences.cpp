@@ -1,8 +1,8 @@
 #include "accuracy/unseen_differences.h"
 
-#include "accuracy/means_around.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
+#include "mesh/means_around.h"
 #include "solve/scattering.h"
 
 #include <cmath>

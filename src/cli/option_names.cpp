@@ -33,6 +33,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"assembly.close=false", "--no-closure"},
                                                 {"assembly.estimator=", "--estimator "},
                                                 {"assembly.estimator", "--estimator"},
+                                                {"assembly.samples", "--samples"},
                                                 {"assembly.short_cuts", "--without"},
                                                 {"effects.force=", "--force "},
                                                 {"effects.skip=", "--skip "},

@@ -7,6 +7,7 @@
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
+#include "cli/storage_option.h"
 #include "plan/check_request.h"
 
 #include <filesystem>
@@ -33,6 +34,7 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
   });
   add_patch_options(command, to.request);
   add_accuracy_options(command, to.request);
+  add_storage_options(command, to.request);
   add_effect_options(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
@@ -44,7 +46,7 @@ PlanArguments finish_plan(const PlanOptions& options) {
   PlanArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = with_fitting_solver(in_metres(options.request, options.model.metres_per_unit), false);
   arguments.json = options.json;
   check(arguments.request);
   require_not_read({{"--json", arguments.json}}, arguments.models);

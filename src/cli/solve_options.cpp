@@ -7,9 +7,11 @@
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
 #include "cli/solution_options.h"
+#include "cli/storage_option.h"
 #include "plan/check_request.h"
 
 #include <string>
+#include <utility>
 
 namespace patchlight::cli {
 
@@ -19,18 +21,6 @@ struct SolveOptions {
   SolutionOptions solution;
   std::string form_factors;
 };
-
-namespace {
-
-Storage storage_named(const std::string& text) {
-  if (text == "auto") return Storage::automatic;
-  if (text == "tiles") return Storage::tiles;
-  if (text == "rays") return Storage::rays;
-  if (text == "on-demand") return Storage::on_demand;
-  throw refusal("--storage", text, "auto, tiles, rays or on-demand");
-}
-
-}  // namespace
 
 std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   auto options = std::make_shared<SolveOptions>();
@@ -48,17 +38,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
         if (text.empty()) throw refusal("--form-factors", text, "the name of a folder");
         to.form_factors = text;
       });
-  command.add_flag_callback(
-      "--on-demand", [&to] { to.request.assembly.storage = Storage::on_demand; },
-      "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
-      "picture early;\nneeds --solver progressive or overshooting; default: all are\ncomputed and kept");
-  add(command, "--storage", "auto|tiles|rays|on-demand",
-      "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
-      "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
-      "for more than 10,000 patches or where the\nmemory is too small; always pairs with --solver, "
-      "--series,\n--error-bars, "
-      "--accuracy, --time, --estimator, --no-closure,\n--force closure and --form-factors",
-      [&to](const std::string& text) { to.request.assembly.storage = storage_named(text); });
+  add_storage_options(command, to.request);
   add_effect_options(command, to.request);
   add_solver_options(command, to.solution, to.request);
   add_sampling_options(command, to.request);
@@ -77,10 +57,8 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.form_factors = options.form_factors;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
-  Request& request = arguments.request;
   const bool solver_given = options.solution.solver_given || !options.solution.series.empty();
-  if (request.assembly.storage == Storage::rays && !solver_given) request.solver.solver = Solver::gmres;
-  if (request.assembly.storage == Storage::automatic && solver_given) request.assembly.storage = Storage::tiles;
+  arguments.request = with_fitting_solver(std::move(arguments.request), solver_given);
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;
 }

@@ -55,6 +55,19 @@ std::string errors(const Report& report) {
   return text;
 }
 
+// What makes an error smaller that is too large to build on, where none was asked for.
+std::string advice_on_errors(const Report& report) {
+  constexpr double large = 0.05;
+  const AccuracyStep& step = report.accuracy.back();
+  if (refines(report.plan.accuracy) || !(step.total > large)) return {};
+  const bool by_rays = report.plan.assembly.storage == Storage::rays;
+  return std::string("that is much; ") +
+         (step.mesh >= step.form_factor ? "more --patches make it smaller, or --accuracy where they pay"
+          : by_rays                     ? "--storage tiles makes it smaller"
+                                        : "more --samples make it smaller") +
+         '\n';
+}
+
 // The meshes on the way to an accuracy.
 std::string steps_table(const std::vector<AccuracyStep>& steps) {
   std::vector<TextRow> rows{
@@ -77,7 +90,7 @@ std::string energy(const Report& report) {
        << bands(balance.lost_at_backs)
        << (row_sums_known ? "; form factor defect " + bands(balance.defect) + "; imbalance "
                           : "; imbalance with the form factor defect ")
-       << rounded(balance.imbalance, 2);
+       << rounded(balance.imbalance, 2) << " of the flux";
   return text.str();
 }
 
@@ -189,7 +202,7 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   text << effects_line(report.plan.decisions);
   if (long_form) text << details(report);
   text << convergence(report) << '\n';
-  if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n';
+  if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n' << advice_on_errors(report);
   if (report.accuracy.empty() && report.form_factors.ray_error)
     text << "error of the rays: " << percent(*report.form_factors.ray_error, 2)
          << " % of the reflected light; what the size of the patches errs is not known\n";

@@ -52,6 +52,7 @@ std::vector<Difference> worst_first(const Verification& verification) {
 }
 
 std::string table(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
+  const Bands bands = bands_of(scene);
   std::vector<TextRow> rows{{"place", "object", "material", "side", "position, m", "band", "ours", "bar", "path",
                              "standard error", "z", "z with bar"}};
   const Field z = deviations_by_noise(verification);
@@ -62,7 +63,7 @@ std::string table(const Scene& scene, const PatchMesh& mesh, const Verification&
     const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
     rows.push_back(
         {place_of(scene, polygon), group_name(scene, polygon.group), scene.materials[mesh.material[patch]].name,
-         name_of(mesh.side[patch]), position(mesh.centroid[patch]), std::to_string(band + 1),
+         name_of(mesh.side[patch]), position(mesh.centroid[patch]), bands[static_cast<std::size_t>(band)].name,
          rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
          rounded(verification.paths.irradiance(i, band), 5), rounded(verification.paths.standard_error(i, band), 2),
          rounded(z(i, band), 2), rounded(with_bar(i, band), 2)});
@@ -145,6 +146,19 @@ std::string verdict(const Verification& verification, const std::string& granted
   return text.str();
 }
 
+// All that is said: what was checked, the patches that differ most, and the verdict at the end.
+std::string answer(const Scene& scene, const Simulation& simulation, const Verification& verification,
+                   const std::optional<double>& bar, double seconds) {
+  std::ostringstream text;
+  text << shown_name(scene.file) << ": " << verification.patches.size() << " of " << simulation.mesh.size()
+       << " patches, " << verification.paths.paths << " paths each, "
+       << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
+       << " s\nthose that differ most, each in its worst band, irradiance in W/m^2:\n"
+       << table(scene, simulation.mesh, verification) << sides_left_out(scene, verification)
+       << verdict(verification, bars(bar, simulation), close_lamps(scene, simulation, verification.verdict));
+  return text.str();
+}
+
 }  // namespace
 
 ExitCode verify(const VerifyArguments& arguments) {
@@ -176,14 +190,7 @@ ExitCode verify(const VerifyArguments& arguments) {
     write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
   }
   for (const std::string& note : notes(scene, simulation)) print_message("note", note);
-  std::cout << table(scene, simulation.mesh, verification) << shown_name(scene.file) << ": "
-            << verification.patches.size() << " of " << simulation.mesh.size() << " patches, "
-            << verification.paths.paths << " paths each, " << rounded(static_cast<double>(verification.paths.rays), 3)
-            << " rays in " << rounded(seconds, 3) << " s; irradiance in W/m^2\n"
-            << sides_left_out(scene, verification)
-            << verdict(verification, bars(arguments.bar, simulation),
-                       close_lamps(scene, simulation, verification.verdict))
-            << std::flush;
+  std::cout << answer(scene, simulation, verification, arguments.bar, seconds) << std::flush;
   if (verification.verdict != Verdict::agrees) return validation_failed;
   if (is_accurate(report)) return good;
   print_message("warning", explain_not_accurate(report));

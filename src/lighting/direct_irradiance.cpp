@@ -6,6 +6,7 @@
 #include "lighting/receiver.h"
 #include "lighting/shades.h"
 #include "lighting/sky_irradiance.h"
+#include "mesh/means_around.h"
 
 #include <algorithm>
 #include <array>
@@ -17,14 +18,17 @@
 namespace patchlight {
 namespace {
 
-// Independent estimates of each irradiance: their spread is its standard error.
+// Independent estimates of each irradiance: their spread is its standard error. That of four is often small by chance:
+// patches take the mean of those around, which points do not have.
 constexpr std::uint32_t replicates = 4;
+constexpr std::uint32_t replicates_at_points = 16;
 
-// Scrambles of the Sobol points that patches and sources choose from; odd steps lead through all of them.
+// Scrambles of the Sobol points that receivers and sources choose from, each shifted anew; odd steps lead through all.
 constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
-// Times the usual number of rays to sun and luminaires where their shadows are too many to be found by geometry.
+// Times the usual number of rays to sun and luminaires where their shadows are too many to be found by geometry, and to
+// balls at points.
 constexpr int sun_effort = 64;
 constexpr int lamp_effort = 4;
 
@@ -32,22 +36,29 @@ constexpr int lamp_effort = 4;
 // Hanley and Lippman-Hand 1983, the rule of three.
 constexpr double rule_of_three = 3;
 
-// Something that gives light: an estimate of the mean irradiance of a receiver, with or without shadows. It takes as
-// many of a scramble's points as it is told for rays.
+// The points of one estimate: for rays, shifted for this receiver and source alone, and those that find the share of a
+// patch that is not covered.
+struct Samples {
+  SamplePoints rays;
+  SamplePoints places;
+};
+
+// Something that gives light: an estimate of the mean irradiance of a receiver, with or without shadows.
 struct Source {
-  std::function<Spectrum(const Receiver&, SamplePoints, std::size_t, bool)> mean;
+  std::function<Spectrum(const Receiver&, const Samples&, bool)> mean;
   std::uint32_t samples = 0;
   bool has_extent = false;
-  int effort = 1;  // times the samples where rays have to find the shadows of a light without extent
+  int effort = 1;  // times the samples where rays have to find the shadows of a light without extent, or at a point
   std::function<std::optional<LeftByShadows>(const Receiver&)> left = {};  // on a patch, without extent
   std::function<Spectrum(const Receiver&)> unshadowed = {};                // in the middle, without extent
+  std::function<bool(const Receiver&)> may_be_hidden = {};                 // with extent
 };
 
 using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
 
 // Of light that comes from one direction for each sample. Places over which another polygon lies do not count.
 Spectrum mean_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
-                          SamplePoints samples) {
+                          SamplePoints samples, bool in_shadow) {
   std::vector<Segment> segments;
   std::vector<Arrival> arrivals;
   std::size_t exposed = 0;
@@ -62,7 +73,9 @@ Spectrum mean_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at,
   }
   Spectrum sum = Spectrum::Zero(lighting.bands);
   if (exposed == 0) return sum;
-  const Field transmittance = lighting.paths.transmittance(segments);
+  const Field transmittance = in_shadow
+                                  ? lighting.paths.transmittance(segments)
+                                  : Field(Field::Ones(static_cast<Eigen::Index>(segments.size()), lighting.bands));
   for (std::size_t k = 0; k < arrivals.size(); ++k)
     sum += arrivals[k].irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrivals[k].colour;
   return sum / static_cast<double>(exposed);
@@ -73,12 +86,21 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
     return from_luminaire(luminaire, lighting.up, at, uv);
   };
   const bool has_extent = std::holds_alternative<SphericalLamp>(luminaire.light);
-  const auto mean = [&lighting, &luminaire, arrival_at, has_extent](const Receiver& receiver, SamplePoints points,
-                                                                    std::size_t rays, bool in_shadow) {
-    if (has_extent || receiver.is_point()) return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
-    return luminaire_irradiance(lighting, luminaire, receiver, {points.first(rays), points}, in_shadow);
+  const auto mean = [&lighting, &luminaire, arrival_at, has_extent](const Receiver& receiver, const Samples& samples_at,
+                                                                    bool in_shadow) {
+    if (has_extent || receiver.is_point())
+      return mean_of_arrivals(lighting, arrival_at, receiver, samples_at.rays, in_shadow);
+    return luminaire_irradiance(lighting, luminaire, receiver, {samples_at.rays, samples_at.places}, in_shadow);
   };
-  if (has_extent) return {mean, samples, true};
+  if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) {
+    const auto may_be_hidden = [&lighting, &luminaire, radius = sphere->radius](const Receiver& receiver) {
+      const SurfacePoint middle = receiver.place(0.5, 0.5);
+      const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
+      return lighting.paths.may_be_hidden(places, middle.normal, luminaire.position, radius);
+    };
+    return {
+        .mean = mean, .samples = samples, .has_extent = true, .effort = lamp_effort, .may_be_hidden = may_be_hidden};
+  }
   const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
   const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
     const Arrival arrival = arrival_at(receiver.place(0.5, 0.5), {0.5, 0.5});
@@ -93,11 +115,10 @@ Source sun_of(const Lighting& lighting, std::uint32_t samples) {
     const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
     return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
   };
-  const auto mean = [&lighting, unshadowed](const Receiver& receiver, SamplePoints points, std::size_t rays,
-                                            bool in_shadow) {
+  const auto mean = [&lighting, unshadowed](const Receiver& receiver, const Samples& samples_at, bool in_shadow) {
     if (!in_shadow) return unshadowed(receiver);
     const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
-    return mean_of_arrivals(lighting, arrival_at, receiver, points.first(rays));
+    return mean_of_arrivals(lighting, arrival_at, receiver, samples_at.rays, true);
   };
   const auto left = [&lighting](const Receiver& receiver) -> std::optional<LeftByShadows> {
     const auto share = lighting.shades->transmittance(receiver, {lighting.sun->direction, 0});
@@ -115,8 +136,8 @@ std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& 
   if (lighting.sky) {
     // With openings a sample takes two rays.
     const int rays = lighting.openings.empty() ? 1 : 2;
-    const auto mean = [&lighting](const Receiver& receiver, SamplePoints points, std::size_t count, bool) {
-      return sky_irradiance(lighting, receiver, points.first(count));
+    const auto mean = [&lighting](const Receiver& receiver, const Samples& samples_at, bool) {
+      return sky_irradiance(lighting, receiver, samples_at.rays);
     };
     sources.push_back({mean, static_cast<std::uint32_t>(options.sky_samples / rays), true});
   }
@@ -134,6 +155,8 @@ struct Estimator {
   std::vector<Source> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
 
+  Field replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
+                      bool in_shadow) const;  // one row each
   Estimate by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const;
   Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const;
 };
@@ -149,35 +172,74 @@ Estimator estimator_for(const Lighting& lighting, const LightingOptions& options
   return estimator;
 }
 
-// What n rays that all find the same may have missed, squared.
-Spectrum missed_variance(const Source& source, const Receiver& receiver, const Spectrum& mean, std::size_t n) {
-  if (!source.unshadowed) return Spectrum::Zero(mean.size());
-  const Spectrum most = source.unshadowed(receiver);
-  const bool agree = (mean == 0).all() || ((mean - most).abs() <= 1e-12 * most).all();
-  return agree ? Spectrum((rule_of_three / static_cast<double>(n) * most).square())
-               : Spectrum(Spectrum::Zero(mean.size()));
+// A digital shift of the points, so that no two receivers and sources have the same: errors of several lamps add up as
+// independent ones do.
+std::vector<std::array<double, 4>> shifted(SamplePoints points, std::uint32_t key) {
+  constexpr double steps = 0x1p32;
+  std::array<std::uint32_t, 4> shift;
+  for (std::uint32_t d = 0; d < 4; ++d) shift[d] = hash({key, d});
+  std::vector<std::array<double, 4>> moved(points.begin(), points.end());
+  for (std::array<double, 4>& point : moved) {
+    for (std::size_t d = 0; d < 4; ++d)
+      point[d] = (static_cast<double>(static_cast<std::uint32_t>(point[d] * steps) ^ shift[d]) + 0.5) / steps;
+  }
+  return moved;
+}
+
+// What n rays that all let the same share through may have missed, squared: of what arrives without shadows. One row
+// for each replicate.
+Spectrum missed_variance(const Field& arriving, const Field& unshadowed, std::size_t n) {
+  const Spectrum all = unshadowed.colwise().mean();
+  const Field share = (unshadowed > 0).select(arriving / unshadowed, 0.0);
+  const bool agree = (share.colwise().maxCoeff() - share.colwise().minCoeff() <= 1e-12).all();
+  return agree ? Spectrum((rule_of_three / static_cast<double>(n) * all).square()) : Spectrum(0 * all);
+}
+
+Estimate estimate_of(const Field& replicates_of) {
+  const auto count = static_cast<double>(replicates_of.rows());
+  const Spectrum mean = replicates_of.colwise().mean();
+  const Spectrum squares = replicates_of.square().colwise().mean();
+  return {mean, (squares - mean.square()).max(0.0) / (count - 1)};
+}
+
+Field Estimator::replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
+                               bool in_shadow) const {
+  const std::uint32_t sets = receiver.is_point() ? replicates_at_points : replicates;
+  Field found(sets, bands);
+  for (std::uint32_t k = 0; k < sets; ++k) {
+    const SamplePoints set = points[(key + k * step) % scrambles];
+    found.row(k) = source.mean(receiver, {shifted(set.first(each), hash({key, k})), set}, in_shadow);
+  }
+  return found;
 }
 
 Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
-  const auto set = [&](std::uint32_t k) { return SamplePoints(points[(key + k * step) % scrambles]); };
   const Spectrum none = Spectrum::Zero(bands);
-  if (receiver.is_point() && !source.has_extent) return {source.mean(receiver, set(0), 1, true), none};
-  const auto left = source.left && !receiver.is_point() ? source.left(receiver) : std::nullopt;
+  const bool is_point = receiver.is_point();
+  if (is_point && !source.has_extent) {
+    const SamplePoints one = SamplePoints(points[0]).first(1);
+    return {source.mean(receiver, {one, one}, true), none};
+  }
+  const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;
   if (left && (left->share == 0).all()) return {none, none};
 
-  const auto effort = static_cast<std::uint32_t>(left ? 1 : source.effort);
-  const std::size_t each = std::max<std::size_t>(1, effort * source.samples / replicates);
-  Spectrum sum = none;
-  Spectrum squares = none;
-  for (std::uint32_t k = 0; k < replicates; ++k) {
-    const Spectrum one = source.mean(receiver, set(k), each, !left);
-    sum += one;
-    squares += one.square();
+  const bool in_shadow = source.may_be_hidden ? source.may_be_hidden(receiver) : !left;
+  const bool more = source.has_extent ? is_point : !left;
+  const std::size_t each = std::max<std::size_t>(1, (more ? source.effort : 1) * source.samples / replicates);
+  const Field arriving = replicates_by(source, receiver, key, each, in_shadow);
+  Estimate found = estimate_of(arriving);
+  if (left)
+    return {found.mean * left->share,
+            found.variance * left->share.square() + (found.mean * left->standard_error).square()};
+  const auto rays = each * static_cast<std::size_t>(arriving.rows());
+  if (source.unshadowed) {
+    const Field unshadowed = source.unshadowed(receiver).replicate(arriving.rows(), 1);
+    found.variance = found.variance.max(missed_variance(arriving, unshadowed, rays));
+  } else if (in_shadow && is_point && source.may_be_hidden) {
+    const Field unshadowed = replicates_by(source, receiver, key, each, false);
+    found.variance = found.variance.max(missed_variance(arriving, unshadowed, rays));
   }
-  const Spectrum mean = sum / replicates;
-  const Spectrum spread = (squares / replicates - mean.square()).max(0.0) / (replicates - 1);
-  if (!left) return {mean, spread.max(missed_variance(source, receiver, mean, replicates * each))};
-  return {mean * left->share, spread * left->share.square() + (mean * left->standard_error).square()};
+  return found;
 }
 
 Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const {
@@ -215,6 +277,11 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
     receivers.push_back({place, mesh.side[i], {corners.points.begin(), corners.points.begin() + corners.count}});
   }
   return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
+}
+
+Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), standard_error.rows());
+  return standard_error.max(means_around(mesh, area, standard_error));
 }
 
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,

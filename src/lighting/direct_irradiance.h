@@ -10,9 +10,11 @@
 
 namespace patchlight {
 
-/// Shadow rays per patch or point. Powers of two that are at least 4 stratify best.
+/// Shadow rays per patch. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball
+/// and four times as many to the sky.
 struct LightingOptions {
-  int lamp_samples = 64;   ///< per luminaire; at a point those without extent take one
+  int lamp_samples = 64;   ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
+                           ///< take one
   int sun_samples = 64;    ///< 64 times that where shadows are too many to be found by geometry; at a point one
   int sky_samples = 1024;  ///< directions; where there are clear openings half of them towards these
   std::uint64_t seed = 1;
@@ -21,8 +23,10 @@ struct LightingOptions {
 /// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
-  Field standard_error;  ///< from four independent scrambles of the samples; 0 where nothing is sampled. Where n rays
-                         ///< to a light without extent all find the same: 3 / n of what it gives without shadows
+  Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen; 0 where nothing is
+                         ///< sampled. Where n rays to a light without extent, or from a point to a ball, all find the
+                         ///< same: 3 / n of what it gives without shadows. What all rays of a patch to a ball or to the
+                         ///< sky miss, a hole that is smaller than one ray's share of these, is not known
 };
 
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
@@ -33,7 +37,11 @@ struct DirectIrradiance {
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});
 
-/// The same at points.
+/// Standard errors of patches, each no less than the root mean square of those around it: the spread of four estimates
+/// may be small by chance, and all four may miss the edge of a shadow that patches around find.
+Field with_errors_around(const PatchMesh& mesh, const Field& standard_error);
+
+/// Irradiance at points.
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
                                    const LightingOptions& options = {}, const Observer& observer = {});
 

@@ -1,6 +1,8 @@
 #include "lighting/light_paths.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 namespace patchlight {
 namespace {
@@ -66,6 +68,19 @@ Passage LightPaths::through_openings(const Segment& segment) const {
 Point LightPaths::beyond(const Point& from, const Vector& direction) const {
   const double reach = bounds_.diagonal().norm() + (from - bounds_.center()).norm();
   return from + reach * direction;
+}
+
+bool LightPaths::may_be_hidden(std::span<const Point> receiver, const Vector& normal, const Point& centre,
+                               double radius) const {
+  std::array<Point, 8> around;
+  for (std::size_t k = 0; k < around.size(); ++k)
+    around[k] = centre + radius * Vector((k & 1U) != 0 ? 1 : -1, (k & 2U) != 0 ? 1 : -1, (k & 4U) != 0 ? 1 : -1);
+  const HalfSpace behind{normal, normal.dot(receiver.front())};
+  const auto reaches_between = [&](const Occluder& occluder) {
+    const ShaftCuller& culler = occluder.shafts();
+    return !culler.is_empty(culler.slabs(receiver), culler.slabs(around), behind, std::nullopt);
+  };
+  return reaches_between(*opaque_) || (clear_ && reaches_between(*clear_));
 }
 
 bool LightPaths::is_covered_in_part(PolygonIndex polygon, Side side) const {

@@ -39,6 +39,10 @@ class LightPaths {
   /// A point so far from another in a unit direction that all of the scene is nearer.
   Point beyond(const Point& from, const Vector& direction) const;
 
+  /// False only when no polygon reaches between the front of a convex patch, or a point, and a ball by more than 1e-6
+  /// of the scene's extent: rays between them all get there. `normal` is the receiver's.
+  bool may_be_hidden(std::span<const Point> receiver, const Vector& normal, const Point& centre, double radius) const;
+
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
   /// True when that is so anywhere on the side.

@@ -16,6 +16,8 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
   json["sha256"] = scene.sha256;
   json["polygons"] = scene.polygons.size();
   json["max_edge_m"] = plan.max_edge;
+  json["storage"] = name_of(plan.assembly.storage);
+  json["solver"] = name_of(plan.solver.solver);
   json["decisions"] = decisions_part(plan.decisions);
   json["expected"] = {{"patches", cost.patches},
                       {"memory_bytes", cost.bytes},

@@ -49,7 +49,7 @@ Json request_part(const Request& request) {
   part["samples"] = request.assembly.samples;
   part["estimator"] = name_of(request.assembly.estimator);
   part["close"] = request.assembly.close;
-  part["on_demand"] = request.assembly.storage == Storage::on_demand;
+  part["storage"] = name_of(request.assembly.storage);
   part["seed"] = request.assembly.seed;
   part["threads"] = request.resources.threads;
   part["memory_bytes"] = json_of(request.resources.memory);
@@ -88,7 +88,7 @@ Json plan_part(const Report& report) {
   part["samples"] = plan.assembly.samples;
   part["estimator"] = name_of(plan.assembly.estimator);
   part["close"] = plan.assembly.close;
-  part["on_demand"] = plan.assembly.storage == Storage::on_demand;
+  part["storage"] = name_of(plan.assembly.storage);
   part["lost_share_rays"] = plan.assembly.lost_share_rays;
   part["seed"] = plan.assembly.seed;
   part["solver"] = name_of(plan.solver.solver);

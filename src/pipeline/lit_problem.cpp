@@ -30,7 +30,7 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   if (!has_point_or_daylight(run.scene)) return lit;
   DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, {.seed = plan.assembly.seed});
   lit.problem.direct_irradiance = std::move(direct.irradiance);
-  lit.direct_standard_error = std::move(direct.standard_error);
+  lit.direct_standard_error = with_errors_around(mesh, direct.standard_error);
   return lit;
 }
 

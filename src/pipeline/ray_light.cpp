@@ -1,6 +1,7 @@
 #include "pipeline/ray_light.h"
 
 #include "base/vectors.h"
+#include "mesh/means_around.h"
 #include "solve/scattering.h"
 #include "transport/bright_patches.h"
 #include "transport/smoothing.h"
@@ -158,6 +159,8 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   // 3. What that scatters, and how far it is off where irradiance is not linear.
   const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
   Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
+  // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
+  variance = variance.max(mean_around(mesh, all.area, variance)).eval();
   if (light.lit.direct_standard_error.size() > 0) variance += light.lit.direct_standard_error.square();
   RaySolution found;
   found.standard_error = variance.sqrt();

@@ -18,6 +18,12 @@
 namespace patchlight {
 namespace {
 
+// Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are very
+// many patches, for the sake of time.
+constexpr int rays_from_quarters = 16;
+constexpr int few_rays_from_quarters = 4;
+constexpr PatchIndex many_patches = 100'000;
+
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
                            const RadiosityProblem& problem) {
@@ -79,6 +85,10 @@ struct MeshBars {
   Field in_gaps;             // of gaps that are narrower than their patches
   Field dark;                // radiosity that patches lose where they reach into solids
   Field by_dark_parts;       // and what that does to the irradiance
+
+  Field total() const {
+    return (from_larger.max(unseen.error).square() + in_gaps.square() + by_dark_parts.square()).sqrt();
+  }
 };
 
 MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport& transport, const SolvedProblem& solved,
@@ -88,7 +98,7 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
   Field dark = dark_differences(simulation.transport.lost, solved);
   Field by_dark_parts = transport.apply(dark);
   return {mesh_errors(result.mesh, transport, solved, coarse),
-          unseen_differences_of(run, simulation, transport, weight, 16),
+          unseen_differences_of(run, simulation, transport, weight, rays_from_quarters),
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
@@ -109,11 +119,11 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
          scaled_to(bars.unseen.error, unseen.cwiseMax(0.0));
 }
 
-// Rows of rays know what they err by themselves; the patches' part is found with few rays of their own.
+// Rows of rays know what they err by themselves; the patches' part is found with rays of their own.
 SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTransport& transport) {
   if (!simulates(run.plan, Effect::interreflection)) return result;
-  constexpr int rays = 4;
   Simulation& simulation = result.simulation;
+  const int rays = simulation.mesh.size() > many_patches ? few_rays_from_quarters : rays_from_quarters;
   result.interest = Eigen::VectorXd::Ones(simulation.problem.area.size());
   const UnseenDifferences unseen = unseen_differences_of(run, simulation, transport, result.interest, rays);
   simulation.error_bars = {.mesh = unseen.error,
@@ -150,12 +160,9 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));
   const Field sampled = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
-  const Field exposure = errors_of_exposure(simulation, errors, solved);
-  Field squares = sampled.square() + exposure.square();
+  Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
   if (has_point_or_daylight(run.scene)) squares += simulation.direct_standard_error.square();
-  simulation.error_bars = {.mesh = (of_mesh.from_larger.max(of_mesh.unseen.error).square() + of_mesh.in_gaps.square() +
-                                    of_mesh.by_dark_parts.square())
-                                       .sqrt(),
+  simulation.error_bars = {.mesh = of_mesh.total(),
                            .form_factor = squares.sqrt(),
                            .solver = solver_errors(solved),
                            .display = display_errors(result.mesh, solved)};

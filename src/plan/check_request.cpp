@@ -41,6 +41,17 @@ Asked other_estimator(const Request& request) {
   return {std::string("assembly.estimator=") + name_of(estimator), estimator != Estimator::automatic};
 }
 
+Asked short_cuts(const Request& request) {
+  const ShortCuts& taken = request.assembly.short_cuts;
+  return {"assembly.short_cuts", !taken.hidden || !taken.free || !taken.far};
+}
+
+Asked samples(const Request& request) {
+  return {"assembly.samples", request.assembly.samples != AssemblyOptions().samples};
+}
+
+Asked kept_errors(const Request& request) { return {"assembly.keep_errors", request.assembly.keep_errors}; }
+
 Asked max_rows(const Request& request) { return {"solver.max_rows", request.solver.max_rows.has_value()}; }
 
 // What makes error bars wanted.
@@ -84,6 +95,7 @@ void require_consistent_effects(const Request& request, const Given& given) {
 }
 
 void require_solver_for(const Request& request) {
+  require_alone(by_rays(request), {max_rows(request)}, "rows of rays are not taken one at a time");
   const Solver solver = request.solver.solver;
   const std::string found = std::string("found with solver.solver=") + name_of(solver) + "; it needs solver.solver=";
   if (request.solver.relaxation && solver != Solver::sor)
@@ -106,17 +118,16 @@ void require_rows_possible(const Request& request, const Given& given) {
   require_alone(not_closed(request), {rows}, "rows on demand are never closed");
   require_alone(other_estimator(request), {rows}, "rows on demand are found by the automatic one");
   require_alone(form_factors(given), {rows, by_rays(request)}, "these are a matrix");
-  require_alone(by_rays(request), {not_closed(request)}, "rows of rays are closed one by one");
-  require_alone(by_rays(request), {other_estimator(request)}, "rays take its place");
+  require_alone(by_rays(request), {not_closed(request), skipped(request, Effect::closure)},
+                "rows of rays are closed one by one");
+  require_alone(by_rays(request),
+                {other_estimator(request), short_cuts(request), kept_errors(request), samples(request)},
+                "rays take the place of pairs");
 }
 
 void require_automatic_estimator(const Request& request) {
-  const AssemblyOptions& assembly = request.assembly;
-  const ShortCuts& taken = assembly.short_cuts;
-  require_alone({"assembly.short_cuts", !taken.hidden || !taken.free || !taken.far}, {other_estimator(request)},
-                "that takes no short cuts");
-  require_alone({"assembly.keep_errors", assembly.keep_errors}, {other_estimator(request)},
-                "that does not know the errors of entries");
+  require_alone(short_cuts(request), {other_estimator(request)}, "that takes no short cuts");
+  require_alone(kept_errors(request), {other_estimator(request)}, "that does not know the errors of entries");
 }
 
 // What leaves no error bars, and why.

@@ -7,6 +7,21 @@
 #include <sstream>
 
 namespace patchlight {
+namespace {
+
+// Patches as small as that all over the scene are an answer only where these are not too many.
+std::string advice_for(const Scene& scene, double nearest) {
+  constexpr double most_patches = 100'000;
+  const char* const by_outline = "cut the surface along the lamp's outline, or move the lamp into the surface";
+  double area = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += area_vector(corner_points(scene, p)).norm();
+  if (area > most_patches * nearest * nearest) return by_outline;
+  std::ostringstream edge;
+  edge << nearest / scene.metres_per_unit;
+  return "compare with mesh.max_edge=" + edge.str() + " in the model's units, or " + by_outline;
+}
+
+}  // namespace
 
 std::vector<std::string> notes_on_close_lamps(const Scene& scene, const Occluder& occluder, double max_edge) {
   std::vector<Ray> rays;
@@ -36,9 +51,8 @@ std::vector<std::string> notes_on_close_lamps(const Scene& scene, const Occluder
   note << count << (count == 1 ? " lamp faces" : " lamps face")
        << " a surface nearer than its patches are large (nearest: " << place_of(scene, scene.polygons[lamp]) << ", "
        << nearest << " m, patches up to " << max_edge
-       << " m): the light between them is spread too far and the answer may be wrong by a factor; compare with "
-          "mesh.max_edge="
-       << nearest / scene.metres_per_unit << " in the model's units, or cut the surface along the lamp's outline";
+       << " m): the light between them is spread too far and the answer may be wrong by a factor; "
+       << advice_for(scene, nearest);
   return {note.str()};
 }
 

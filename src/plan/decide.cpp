@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 namespace patchlight {
@@ -83,9 +85,17 @@ std::string first_names(const std::vector<DarkSolid>& solids) {
   return solids.size() > few ? list + " and " + std::to_string(solids.size() - few) + " more" : list;
 }
 
+// Nothing is left out of sides that are given.
+std::optional<Decision> given_sides(Effect effect, const Request& request) {
+  if (request.mesh.kept_sides) return Decision{effect, true, "the sides that take part are given", "unknown"};
+  if (request.mesh.sides == Sides::automatic) return {};
+  return Decision{effect, true,
+                  std::string("the sides that take part are given: mesh.sides=") + name_of(request.mesh.sides),
+                  "unknown; with mesh.sides=auto the plan leaves out what no light reaches"};
+}
+
 Decision reach(const EffectFacts& facts, const Request& request) {
-  if (request.mesh.kept_sides || request.mesh.sides != Sides::automatic)
-    return {Effect::reach, true, "the sides are chosen already, or by mesh.sides", "unknown"};
+  if (const auto decision = given_sides(Effect::reach, request)) return *decision;
   if (facts.dark_solids.empty())
     return {Effect::reach, true, "no closed solid is without light inside",
             "nothing more than without: there is nothing to leave out"};
@@ -96,8 +106,7 @@ Decision reach(const EffectFacts& facts, const Request& request) {
 }
 
 Decision backs(const EffectFacts& facts, const Request& request) {
-  if (request.mesh.kept_sides || request.mesh.sides != Sides::automatic)
-    return {Effect::backs, true, "the sides are chosen already, or by mesh.sides", "unknown"};
+  if (const auto decision = given_sides(Effect::backs, request)) return *decision;
   if (facts.turned_away == 0)
     return {Effect::backs, true, "no side is known to look into the dark",
             "nothing more than without: there is nothing to leave out"};

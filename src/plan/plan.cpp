@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
@@ -83,15 +84,38 @@ struct PatchSize {
   std::vector<std::string> notes;
 };
 
+// The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
+// whole: of a model with many small faces the number of parents lies anywhere between a quarter of them and all.
+double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t wanted, std::size_t least) {
+  constexpr double enough = 0.8;
+  constexpr int guesses = 6;
+  double edge = max_edge_for(scene, sides, wanted / 4);
+  double number = static_cast<double>(nest(tessellate(scene, sides, edge)).patches.size());
+  const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
+  if (number >= enough * static_cast<double>(wanted)) return edge;
+  std::size_t few = std::max(wanted / 4, least);
+  std::size_t many = wanted;
+  for (int k = 0; k < guesses && many > few + 1; ++k) {
+    const std::size_t parents = (few + many) / 2;
+    const double guess = max_edge_for(scene, sides, parents);
+    const auto patches = static_cast<double>(nest(tessellate(scene, sides, guess)).patches.size());
+    if (miss(patches) < miss(number)) edge = guess, number = patches;
+    (patches < static_cast<double>(wanted) ? few : many) = parents;
+  }
+  return edge;
+}
+
 // The largest edge for the number of patches that is asked for.
 PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides) {
-  const bool nested = has_error_bars(request.accuracy);
   const std::size_t least = least_patches(scene, sides);
-  const std::size_t wanted = nested ? std::max(asked, 4 * least) : enough_patches(asked, least);
+  // What is refined begins with no more than it has to.
+  const std::size_t wanted = refines(request.accuracy) ? std::max(asked, least) : enough_patches(asked, least);
   // A nested mesh is made from parents with edges twice as long.
-  const double edge = max_edge_for(scene, sides, nested ? wanted / 4 : wanted);
-  PatchSize size{nested ? edge / 2 : edge, wanted, {}};
-  if (wanted > asked && !nested) size.notes.push_back(note_on_patches(scene, asked, wanted));
+  PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, wanted, least) / 2
+                                                  : max_edge_for(scene, sides, wanted),
+                 wanted,
+                 {}};
+  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(scene, asked, wanted));
   return size;
 }
 

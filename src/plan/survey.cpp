@@ -135,13 +135,14 @@ std::string setting_for(const LampHint& hint) {
 }  // namespace
 
 std::string advice_without_lamp(const Scene& scene) {
+  const std::string by_scene_file = "; luminaires, sun and sky stand in a scene file (.toml, docs/lights.md)";
   const std::vector<LampHint> hints = possible_lamps(scene);
   if (hints.empty()) {
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
     return "no material emits, and none looks like a lamp; choose one with read.settings MATERIAL.radiance=R,G,B "
            "from " +
-           first_few(names);
+           first_few(names) + by_scene_file;
   }
   std::string advice = "no material emits";
   for (const LampHint& hint : hints) {
@@ -149,7 +150,7 @@ std::string advice_without_lamp(const Scene& scene) {
         "; '" + hint.material + "' looks like a lamp (" + hint.reason + "): " + setting_for(hint) + " switches it on";
     if (&hint - hints.data() == 2) break;
   }
-  return advice;
+  return advice + by_scene_file;
 }
 
 SideCounts count_sides(const Scene& scene, Sides sides) {

@@ -64,7 +64,7 @@ std::vector<Problem> problems_with_size(const Scene& scene);
 SideCounts count_sides(const Scene& scene, Sides sides);
 
 /// One sentence on a scene in which nothing emits: which material looks like a lamp, and the setting that switches it
-/// on.
+/// on; and where daylight and luminaires are described.
 std::string advice_without_lamp(const Scene& scene);
 
 }  // namespace patchlight

@@ -79,11 +79,14 @@ double both_tails(double deviate) { return std::isnan(deviate) ? 0 : std::erfc(s
 // a / b per band; 0 where nothing is over nothing.
 Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (a == 0).select(a, a / b); }
 
+// Two sums of the same light may differ by so much of it for rounding alone.
+constexpr double rounding = 1e-10;
+
 // The variance of Student's t beside that of the noise which batches tell. Of n paths that met no light the bound of 95
 // % on the share that would have is 3 / n (Hanley and Lippman-Hand 1983): of the brightest light that was traced.
 Field variance_of(const PathEstimate& paths) {
   constexpr double degrees = path_batches - 1;
-  const Field noise = paths.standard_error.square() * (degrees / (degrees - 2));
+  Field noise = paths.standard_error.square() * (degrees / (degrees - 2)) + (rounding * paths.irradiance).square();
   if (noise.rows() == 0) return noise;
   const Spectrum of_none = (3 * highest(paths.irradiance).transpose() / paths.paths).square();
   return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
@@ -175,7 +178,8 @@ Field deviations(const Verification& verification) {
 Field deviations_by_noise(const Verification& verification) {
   const Field& noise = verification.paths.standard_error;
   const Field unknown = Field::Constant(noise.rows(), noise.cols(), std::numeric_limits<double>::quiet_NaN());
-  return (noise > 0).select((verification.irradiance - verification.paths.irradiance) / noise, unknown);
+  const Field rounded = (noise.square() + (rounding * verification.paths.irradiance).square()).sqrt();
+  return (noise > 0).select((verification.irradiance - verification.paths.irradiance) / rounded, unknown);
 }
 
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,

@@ -217,6 +217,20 @@ const char* name_of(Estimator estimator) {
   return "";
 }
 
+const char* name_of(Storage storage) {
+  switch (storage) {
+    case Storage::automatic:
+      return "auto";
+    case Storage::tiles:
+      return "tiles";
+    case Storage::rays:
+      return "rays";
+    case Storage::on_demand:
+      return "on-demand";
+  }
+  return "";
+}
+
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const Observer& observer) {
   assert(options.samples >= 1);

@@ -54,7 +54,7 @@ class OnDemandTest(ToolTest):
             self.assertIsNone(transport[key], key)
         self.assertEqual(transport["worst_rows"], [])
         self.assertEqual(transport["closure"], "none: rows on demand")
-        self.assertEqual((on_demand["plan"]["on_demand"], on_demand["plan"]["close"]), (True, False))
+        self.assertEqual((on_demand["plan"]["storage"], on_demand["plan"]["close"]), ("on-demand", False))
         balance = on_demand["energy_balance"]
         self.assertIsNone(balance["defect_W"])
 

@@ -98,6 +98,19 @@ class PlanTest(ToolTest):
         self.assertEqual(rays["planned"], 0)
         self.assertGreater(rays["forced"], 0)
 
+    def test_the_storage_of_form_factors_is_that_of_the_run(self):
+        for asked, storage, solver in (((), "tiles", "cg"), (("--storage", "rays"), "rays", "gmres"),
+                                       (("--storage", "on-demand"), "on-demand", "progressive"),
+                                       (("--patches", 12000), "rays", "gmres")):
+            plan = self.plan(*asked)
+            self.assertEqual((plan["storage"], plan["solver"]), (storage, solver), asked)
+            if "--patches" in asked:
+                continue
+            done = self.run_tool("solve", "room.obj", "--patches", 300, *asked, "-o", "a.vtp", "--report", "a.json")
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            report = json.loads((self.folder / "a.json").read_text())
+            self.assertEqual((report["plan"]["storage"], report["plan"]["solver"]), (storage, solver))
+
     def test_contradictions_are_refused(self):
         outputs = ("solve", "room.obj", "-o", "room.vtp")
         self.assert_refused(["--force sun", "--skip sun"], *outputs, "--force", "sun", "--skip", "sun")

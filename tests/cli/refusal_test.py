@@ -182,7 +182,7 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--false-color", "--picture"], *solve, "--false-color", "luminance")
         self.assert_refused(USAGE, ["--points-output", "--points"], *solve, "--points-output", "a.csv")
         self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
-        self.assert_refused(USAGE, ["--on-demand", "--solver progressive"], *solve, "--on-demand")
+        self.assert_refused(USAGE, ["--on-demand", "--solver progressive"], *solve, "--on-demand", "--solver", "cg")
         on_demand = (*solve, "--on-demand", "--solver", "progressive")
         for option, *value in (("--no-closure",), ("--form-factors", "a.ff"), ("--estimator", "area")):
             self.assert_refused(USAGE, ["--on-demand", option], *on_demand, option, *value)

@@ -32,11 +32,11 @@ class VerifyTest(ToolTest):
         for band in range(3):
             self.assertAlmostEqual(part["chi_square"][band] / chi_square[band], 1, 9)
         # The worst patches come first, each with its place.
-        rows = done.stdout.splitlines()[1:11]
+        rows = done.stdout.splitlines()[3:13]
         sizes = [abs(float(row.split()[-1])) for row in rows]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
         self.assertTrue(all("cornell_box.obj:" in row for row in rows))
-        self.assertRegex(done.stdout.splitlines()[0], r"^place +object +material +side +position")
+        self.assertRegex(done.stdout.splitlines()[2], r"^place +object +material +side +position")
         self.assertEqual({patch["side"] for patch in facts["checked"]}, {"front"})
         self.assertTrue(all(" front " in row for row in rows))
 

@@ -45,8 +45,14 @@ inline std::vector<RequestPart> request_parts() {
           skip(Effect::interreflection),
           part("assembly.close=false", [](Request& r) { r.assembly.close = false; }),
           part("assembly.storage=on_demand", [=](Request& r) { by_shooting(r).assembly.storage = Storage::on_demand; }),
+          part("assembly.storage=rays",
+               [](Request& r) {
+                 r.assembly.storage = Storage::rays;
+                 r.solver.solver = Solver::gmres;
+               }),
           part("assembly.estimator=area", [](Request& r) { r.assembly.estimator = Estimator::area; }),
           part("assembly.short_cuts", [](Request& r) { r.assembly.short_cuts.far = false; }),
+          part("assembly.samples", [](Request& r) { r.assembly.samples = 64; }),
           part("assembly.keep_errors", [](Request& r) { r.assembly.keep_errors = true; }),
           part("solver.max_rows", [=](Request& r) { by_shooting(r).solver.max_rows = 0.1; }),
           part("accuracy.error_bars", [](Request& r) { r.accuracy.error_bars = true; }),
@@ -69,6 +75,9 @@ inline std::vector<std::pair<std::string, std::vector<std::string>>> exclusive_p
           {"effects.force=sun", {"effects.skip=sun"}},
           {"effects.force=closure", {"effects.skip=closure", "assembly.close=false", "assembly.storage=on_demand"}},
           {"assembly.storage=on_demand", and_bars({"assembly.close=false", "assembly.estimator=area"})},
+          {"assembly.storage=rays", and_bars({"effects.force=closure", "effects.skip=closure", "assembly.close=false",
+                                              "assembly.estimator=area", "assembly.short_cuts", "assembly.keep_errors",
+                                              "assembly.samples", "solver.max_rows", "given.form_factors"})},
           {"assembly.estimator=area", and_bars({"assembly.short_cuts", "assembly.keep_errors"})},
           {"given.form_factors", and_bars({"effects.force=occlusion", "assembly.storage=on_demand"})},
           {"given.mesh", bars},

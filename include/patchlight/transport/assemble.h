@@ -35,6 +35,9 @@ enum class Storage {
   on_demand  ///< not at all: a row is computed whenever a solver asks for it. Memory in proportion to the patches
 };
 
+/// The storage's name as on the command line.
+const char* name_of(Storage storage);
+
 /// True when the entries of all pairs are kept, so that they can be closed, summed up and written.
 constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles || storage == Storage::automatic; }
 

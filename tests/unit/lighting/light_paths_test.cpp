@@ -3,6 +3,8 @@
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
+#include <random>
+#include <vector>
 
 namespace patchlight::light_paths_test {
 namespace {
@@ -73,6 +75,42 @@ TEST(LightPaths, KeepTheBandsApart) {
   EXPECT_EQ(share(0, 0), 0.9 * 0.9);
   EXPECT_EQ(share(0, 1), 0.25);
   EXPECT_EQ(share(0, 2), 0);
+}
+
+// Wherever nothing is said to be able to hide a ball, every ray to it arrives; where something stands between, it is
+// said: balls and places at random among plates, one of them a pane, in two sizes.
+TEST(LightPaths, NothingHidesABallThatMayNotBeHidden) {
+  for (const double size : {1.0, 1e-3}) {
+    Scene scene = empty_scene({grey(0.5), grey(0)});
+    scene.materials[1].transmittance = Spectrum::Constant(1, 0.5);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto anywhere = [&] { return Point(size * Point(uniform(random), uniform(random), uniform(random))); };
+    for (int k = 0; k < 6; ++k) {
+      const Point a = anywhere();
+      const Vector u = 0.6 * anywhere(), v = 0.6 * anywhere();
+      scene = with_quad(std::move(scene), {a, a + u, a + u + v, a + v}, k == 0 ? 1 : 0);
+    }
+    const LightPaths paths(scene, Tracing(scene));
+    int free = 0;
+    int hidden = 0;
+    for (int k = 0; k < 400; ++k) {
+      const Point place = anywhere();
+      const Point centre = anywhere();
+      const double radius = 0.05 * size;
+      const Vector normal = (centre - place).normalized();
+      const bool may_be_hidden = paths.may_be_hidden({&place, 1}, normal, centre, radius);
+      std::vector<Segment> rays;
+      for (int ray = 0; ray < 64; ++ray) rays.push_back({place, centre + radius * (anywhere() / size).normalized()});
+      const bool arrives = (paths.transmittance(rays) == 1).all();
+      if (!may_be_hidden) {
+        EXPECT_TRUE(arrives) << k;
+      }
+      (arrives ? free : hidden) += 1;
+    }
+    EXPECT_GT(free, 100);
+    EXPECT_GT(hidden, 20);
+  }
 }
 
 }  // namespace

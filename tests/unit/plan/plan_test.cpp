@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -160,6 +161,25 @@ TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
     const Plan plan = make_plan(scene, request);
     const double count = tessellate(scene, plan.sides, plan.max_edge).size();
     EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.1);
+  }
+}
+
+// With error bars large patches are cut in four and small faces stay whole: neither all nor a quarter of the patches
+// are parents. 60 small boxes in a room.
+TEST(MakePlan, MeetsTheNumberOfPatchesOfNestedMeshesWithManySmallFaces) {
+  Scene scene = furnished_room(0.5);
+  for (int k = 0; k < 60; ++k) {
+    const Point corner(0.2 + 0.3 * (k % 10), 0.2 + 0.4 * (k / 10 % 6), 0.1);
+    scene = with_box(std::move(scene), corner, corner + Vector(0.1, 0.1, 0.1), false);
+  }
+  for (const std::size_t patches : {500U, 1500U, 4000U}) {
+    Request request;
+    request.mesh.patches = patches;
+    request.mesh.sides = Sides::front;
+    request.accuracy.error_bars = true;
+    const Plan plan = make_plan(scene, request);
+    const double count = nest(tessellate(scene, plan.sides, 2 * plan.max_edge)).patches.size();
+    EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.25) << patches;
   }
 }
 

@@ -58,6 +58,16 @@ TEST(VerifyByDaylight, LampOfTheRoomIsSeenInsideAlone) {
   EXPECT_LT(std::abs(part(verification, "outside").offset[0]), 3);
 }
 
+TEST(Verdict, TakesRoundingForAgreement) {
+  // Light that neither side has to sample: two sums of the same numbers.
+  Verification verification;
+  verification.irradiance = Field{{76.000000000000007}};
+  verification.bar = Field::Zero(1, 1);
+  verification.paths = {Field{{76}}, Field{{1e-16}}, 1000, 0};
+  EXPECT_LT(deviations(verification)(0, 0), 0.01);
+  EXPECT_LT(deviations_by_noise(verification)(0, 0), 0.01);
+}
+
 TEST(Verdict, TakesNoLightMetForUpToThreePathsThatHave) {
   // Rule of three: 1,000 paths without any hit bound the share that hits by 3 / 1000, here of 2 W/m^2.
   Verification verification;

@@ -1,8 +1,15 @@
-#include "accuracy/means_around.h"
+#include "mesh/means_around.h"
 
 #include "mesh/patches_at_vertices.h"
 
 namespace patchlight {
+
+namespace {
+
+// Normals of patches that are the same surface have a product above this one.
+constexpr double same_facing = 0.9;
+
+}  // namespace
 
 Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
   const auto at_vertex = patches_at_vertices(mesh);
@@ -12,7 +19,7 @@ Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fiel
     double areas = 0;
     for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
+        if (mesh.normal[i].dot(mesh.normal[j]) < same_facing) continue;
         sum += area[j] * values.row(j);
         areas += area[j];
       }

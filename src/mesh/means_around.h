@@ -7,8 +7,8 @@
 
 namespace patchlight {
 
-/// Means, by the areas given in m^2, over the patches of the same polygon side that share a vertex with a patch, itself
-/// among them.
+/// Means, by the areas given in m^2, over the patches that share a vertex with a patch and face as it does, within 25
+/// degrees, itself among them: of a curved or triangulated surface as well.
 Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
 
 /// Root mean squares over the same patches.

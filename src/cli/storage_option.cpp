@@ -1,0 +1,45 @@
+#include "cli/storage_option.h"
+
+#include "cli/add_option.h"
+#include "cli/parse_value.h"
+
+#include <string>
+
+namespace patchlight::cli {
+namespace {
+
+Storage storage_named(const std::string& text) {
+  for (const Storage storage : {Storage::automatic, Storage::tiles, Storage::rays, Storage::on_demand}) {
+    if (text == name_of(storage)) return storage;
+  }
+  throw refusal("--storage", text, "auto, tiles, rays or on-demand");
+}
+
+}  // namespace
+
+void add_storage_options(CLI::App& command, Request& request) {
+  command.add_flag_callback(
+      "--on-demand", [&request] { request.assembly.storage = Storage::on_demand; },
+      "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
+      "picture early; by\nprogressive refinement; default: all are computed and kept");
+  add(command, "--storage", "auto|tiles|rays|on-demand",
+      "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
+      "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
+      "for more than 10,000 patches or where the\nmemory is too small; always pairs where something is asked for\nthat "
+      "rays do not have: --error-bars, --accuracy, a solver, another\nestimator and the like",
+      [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
+}
+
+Request with_fitting_solver(Request request, bool solver_given) {
+  Storage& storage = request.assembly.storage;
+  if (solver_given) {
+    if (storage == Storage::automatic) storage = Storage::tiles;
+  } else if (storage == Storage::rays) {
+    request.solver.solver = Solver::gmres;
+  } else if (storage == Storage::on_demand) {
+    request.solver.solver = Solver::progressive;
+  }
+  return request;
+}
+
+}  // namespace patchlight::cli
