@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Measures what building and testing takes on a bare machine: a copy of the last commit in a scratch folder, nothing
-# compiled before, no compiler cache. Prints the table of docs/contributing.md. Takes about half an hour of two
-# processors. usage: scripts/build_times.sh [SCRIPT...]
+# compiled before, nothing taken from the compiler cache. Prints the table of docs/contributing.md. Takes about half an
+# hour of two processors, with .ci/run an hour. usage: scripts/build_times.sh [SCRIPT...]
 # SCRIPT: what is timed, in this order; default: scripts/demo.sh scripts/test.sh. Each finds what those before it left.
+# What .ci/run says of its steps goes to standard error.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 timed=("$@")
@@ -13,7 +14,7 @@ trap 'rm -rf "$scratch"' EXIT
 git clone -q . "$scratch/patchlight"
 cd "$scratch/patchlight"
 scripts/install_packages.sh >&2
-export CCACHE_DISABLE=1
+export CCACHE_RECACHE=1  # what is compiled is kept for later, but nothing is taken
 echo "Machine: $(nproc) processors, $(grep -m1 'model name' /proc/cpuinfo | sed 's/.*: //'), load before: $(cut -d' ' -f1 /proc/loadavg)"
 echo
 echo "| script | CPU min | wall min |"
@@ -24,5 +25,6 @@ for script in "${timed[@]}"; do
     tail -n 30 "$scratch/log" >&2
     exit 1
   fi
+  grep '^ci:' "$scratch/log" >&2 || true
   awk -v script="$script" '{ printf "| `%s` | %.1f | %.1f |\n", script, ($1 + $2) / 60, $3 / 60 }' "$scratch/times"
 done
