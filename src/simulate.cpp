@@ -27,9 +27,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   StageClock clock;
 
   // 1. Refuse what cannot be.
-  const Given given{.form_factors = static_cast<bool>(with.exchange),
-                    .mesh = static_cast<bool>(with.mesh),
-                    .solver = static_cast<bool>(with.solve)};
+  const Given given = given_by(with);
   check(request, scene, given);
 
   // 2. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
@@ -48,7 +46,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   for (std::optional<MeshToSolve> next = search.first();;) {
     // 4. Subdivide the kept sides of the polygons into patches.
     const MeshToSolve& meshed = *next;
-    require_memory(meshed.mesh.patches.size(), request, plan);
+    require_memory(meshed.mesh.patches.size(), request, meshed.plan);
     clock.finish(Stage::mesh);
 
     // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.

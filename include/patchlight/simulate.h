@@ -40,7 +40,7 @@ struct TransportFacts {
 struct AccuracyStep {
   PatchIndex patches = 0;
   PatchIndex new_patches = 0;  ///< those not in the mesh before
-  int samples = 0;             ///< AssemblyOptions::samples of its plan
+  int samples = 0;             ///< samples_of() its plan
   double mesh = 0;
   double form_factor = 0;
   double solver = 0;

@@ -79,12 +79,14 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const C
   return marks;
 }
 
-Eigen::VectorXd importance(const RowTransport& transport, const RadiosityProblem& problem,
+Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityProblem& problem,
                            const Eigen::VectorXd& interest) {
   // With y = R psi it reads y = R interest + R F y.
   const Field wanted = interest.array().replicate(1, problem.exitance.cols());
   const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
-  const Field psi = solve(transport, adjoint, {.relative_error = 0.05}).irradiance.colwise() + interest.array();
+  const Solver solver = transport.is_reciprocal() ? Solver::cg : Solver::gmres;
+  const Solution found = solve(transport, adjoint, {.solver = solver, .relative_error = 0.05});
+  const Field psi = found.irradiance.colwise() + interest.array();
   return psi.rowwise().maxCoeff().matrix();
 }
 

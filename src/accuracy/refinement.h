@@ -65,9 +65,9 @@ struct CutGoal {
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const CutGoal& goal);
 
 /// How much a change of each patch's irradiance matters to the light on the patches of `interest` (1 or 0 per patch):
-/// the solution of the adjoint equation psi = interest + F R psi, worst band. As S is
-/// symmetric, F is its own adjoint in the norm weighted by area.
-Eigen::VectorXd importance(const RowTransport& transport, const RadiosityProblem& problem,
+/// the solution of the adjoint equation psi = interest + F R psi, worst band. As S is symmetric, F is its own adjoint
+/// in the norm weighted by area; of rows of rays it is but for their errors.
+Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityProblem& problem,
                            const Eigen::VectorXd& interest);
 
 }  // namespace patchlight

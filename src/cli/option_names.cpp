@@ -30,6 +30,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"assembly.storage=on_demand", "--on-demand"},
                                                 {"assembly.storage=rays", "--storage rays"},
                                                 {"assembly.storage=tiles", "--storage tiles"},
+                                                {"assembly.rays", "--rays"},
                                                 {"assembly.close=false", "--no-closure"},
                                                 {"assembly.estimator=", "--estimator "},
                                                 {"assembly.estimator", "--estimator"},

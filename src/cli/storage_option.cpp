@@ -26,12 +26,20 @@ void add_storage_options(CLI::App& command, Request& request) {
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
       "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
       "for more than 10,000 patches or where the\nmemory is too small; always pairs where something is asked for\nthat "
-      "rays do not have: --error-bars, --accuracy, a solver, another\nestimator and the like",
+      "rays do not have: a solver, another estimator and the like",
       [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
+  add(command, "--rays", "N",
+      "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
+      "--accuracy takes more where\nthat pays; default 64",
+      [&request](const std::string& text) {
+        request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 8192));
+      });
 }
 
 Request with_fitting_solver(Request request, bool solver_given) {
   Storage& storage = request.assembly.storage;
+  const bool rays_given = request.assembly.rays != AssemblyOptions().rays;
+  if (rays_given && storage == Storage::automatic) storage = Storage::rays;
   if (solver_given) {
     if (storage == Storage::automatic) storage = Storage::tiles;
   } else if (storage == Storage::rays) {

@@ -63,7 +63,7 @@ std::string advice_on_errors(const Report& report) {
   const bool by_rays = report.plan.assembly.storage == Storage::rays;
   return std::string("that is much; ") +
          (step.mesh >= step.form_factor ? "more --patches make it smaller, or --accuracy where they pay"
-          : by_rays                     ? "--storage tiles makes it smaller"
+          : by_rays                     ? "more --rays make it smaller"
                                         : "more --samples make it smaller") +
          '\n';
 }
@@ -233,8 +233,9 @@ std::string explain_not_accurate(const Report& report) {
                      ". ";
   if (by_solver) return text + "Give a smaller --tolerance, or none: then it is what the accuracy takes";
   if (report.plan.accuracy.seconds) return text + "Give a longer --time, or more --memory if it ended before";
-  return text + (by_mesh
-                     ? "Begin with more --patches"
+  return text + (by_mesh ? "Begin with more --patches"
+                 : report.plan.assembly.storage == Storage::rays
+                     ? "Begin with more --rays, or take --storage tiles"
                      : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
 }
 

@@ -7,9 +7,11 @@
 #include "cli/model_options.h"
 #include "cli/option_names.h"
 #include "cli/parse_value.h"
+#include "cli/storage_option.h"
 
 #include <array>
 #include <string>
+#include <utility>
 
 namespace patchlight::cli {
 
@@ -65,6 +67,7 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   add_patch_options(command, to.request);
   add_refinement_options(command, to.request);
   add_sampling_options(command, to.request);
+  add_storage_options(command, to.request);
   add_machine_options(command, to.request);
   return options;
 }
@@ -83,7 +86,9 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.bar = options.bar;
   arguments.request.accuracy.error_bars = !options.bar;
   // What rays err is in no --bar.
-  arguments.request.assembly.storage = Storage::tiles;
+  Storage& storage = arguments.request.assembly.storage;
+  if (options.bar && storage == Storage::automatic) storage = Storage::tiles;
+  arguments.request = with_fitting_solver(std::move(arguments.request), false);
   const OptionName error_bars{"accuracy.error_bars", "the error bars that verify takes without --bar PERCENT"};
   check_with_names(arguments.request, std::array{error_bars});
   arguments.json = options.json;

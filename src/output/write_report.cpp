@@ -50,6 +50,7 @@ Json request_part(const Request& request) {
   part["estimator"] = name_of(request.assembly.estimator);
   part["close"] = request.assembly.close;
   part["storage"] = name_of(request.assembly.storage);
+  part["rays"] = request.assembly.rays;
   part["seed"] = request.assembly.seed;
   part["threads"] = request.resources.threads;
   part["memory_bytes"] = json_of(request.resources.memory);
@@ -89,6 +90,7 @@ Json plan_part(const Report& report) {
   part["estimator"] = name_of(plan.assembly.estimator);
   part["close"] = plan.assembly.close;
   part["storage"] = name_of(plan.assembly.storage);
+  part["rays"] = plan.assembly.rays;
   part["lost_share_rays"] = plan.assembly.lost_share_rays;
   part["seed"] = plan.assembly.seed;
   part["solver"] = name_of(plan.solver.solver);

@@ -63,7 +63,7 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
   cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
 
   if (plan.assembly.storage == Storage::rays) {
-    cost.form_factor_seconds = seconds_per_row_of_rays * n;
+    cost.form_factor_seconds = seconds_per_row_of_rays * n * plan.assembly.rays / AssemblyOptions().rays;
     cost.solve_seconds = seconds_of_solution_by_rays * n;
     cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
     return cost;

@@ -50,6 +50,15 @@ std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, con
   return apart;
 }
 
+// Half as many towards bright patches as over the hemisphere, in packets of both halves.
+RayOptions rays_as_planned(const AssemblyOptions& assembly) {
+  constexpr int packets = 32;
+  return {.rays = assembly.rays,
+          .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
+          .lost_share_rays = assembly.lost_share_rays,
+          .seed = assembly.seed};
+}
+
 // H = F_lamps E_lamps for factors of one value per patch and lamp.
 Field irradiance_by(const LampValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
@@ -79,8 +88,8 @@ void find_lamps(RayLight& light, const Run& run, const Plan& plan, const PatchMe
     exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(patches.begin);
     std::fill(light.is_apart.begin() + patches.begin, light.is_apart.begin() + patches.end, 1);
   }
-  const LampFactors factors =
-      lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps, plan.assembly.seed, run.observer);
+  const LampFactors factors = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
+                                           {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
   for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
   light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
 }
@@ -101,8 +110,7 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
   const Field expected = emitted_in_rows(light) + problem.scattering.reflect(direct_of(light));
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches(mesh, summed_over_bands(expected), bright, occluder);
-  found.rows = trace_rows(mesh, occluder, bright_patches,
-                          {.lost_share_rays = plan.assembly.lost_share_rays, .seed = plan.assembly.seed}, run.observer);
+  found.rows = trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
   light.distance = std::move(found.rows.distance);
 
   // 3. Means over the exposed part of each patch, of what it holds back.

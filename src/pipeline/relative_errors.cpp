@@ -17,7 +17,7 @@ AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weig
   const auto patches = static_cast<PatchIndex>((weight.array() > 0).count());
   return {.patches = patches,
           .new_patches = patches,
-          .samples = simulation.plan.assembly.samples,
+          .samples = samples_of(simulation.plan.assembly),
           .mesh = relative(bars.mesh),
           .form_factor = relative(bars.form_factor),
           .solver = relative(bars.solver),

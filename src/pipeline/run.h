@@ -24,6 +24,9 @@ struct Run {
   const Observer& observer;
 };
 
+/// What of a run its steps give.
+Given given_by(const Steps& with);
+
 /// What is known from the mesh before.
 struct Known {
   std::vector<PatchIndex> place;     ///< per patch: the same one in that mesh, or no_patch

@@ -8,9 +8,11 @@
 #include "base/rounded.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/refine.h"
+#include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/with_error_bars.h"
+#include "plan/choose_storage.h"
 #include "plan/memory.h"
 
 #include <algorithm>
@@ -23,72 +25,18 @@
 namespace patchlight {
 namespace {
 
-// How an accuracy is shared out, in quadrature. The solver's bound for all patches together is asked to be a fiftieth,
-// so that what it leaves to single patches is about a tenth.
-constexpr double share_of_mesh = 0.7;
-constexpr double share_of_form_factors = 0.6;
+// The solver's bound for all patches together is asked to be a fiftieth of the accuracy, so that what it leaves to single
+// patches is about a tenth.
 constexpr double share_of_solver = 0.02;
 
 // What the solver may leave of the light that is of interest.
 constexpr double share_of_interest = 0.1;
 
-// Shadow rays of a pair, more than which are not worth their time.
-constexpr int most_samples = 256;
-
 // So many meshes at most.
 constexpr int most_steps = 20;
 
-// The number of patches for which the mesh error is expected to be `factor` times smaller.
-double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
-
-int next_samples(int samples, double factor) {
-  const double needed = samples * factor * factor;
-  int next = samples;
-  while (next < needed && next < most_samples) next = std::min(2 * next, most_samples);
-  return std::max(samples, next);
-}
-
-// What one error may be when the others are as they are: what they leave, but no less than its share.
-double allowed(double accuracy, double share, double others) {
-  return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
-}
-
-// Errors are brought this much lower than they have to be, as they are estimates, and enough is what is that much
-// lower.
-constexpr double error_margin = 1.25;
+// Enough is what is so much lower than was asked for, as errors are estimates.
 constexpr double enough = 1.1;
-
-// By what factor the mesh error has to fall, and that of shadow rays towards luminaires, sun and sky, which are as
-// many for every patch.
-double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  const double lights = solved.light_bar;
-  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
-  return error_margin * std::hypot(step.mesh, lights) /
-         allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
-}
-
-// What shadow rays err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
-// to do with their samples.
-double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  const double noise = solved.noise_bar;
-  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - noise * noise));
-  return allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver, beside));
-}
-
-// The factor by which the error has to fall.
-double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
-}
-
-// It falls as one over the root of samples and patches: samples for those patches that the mesh will need. As long as
-// that is far off, the usual number does.
-int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  constexpr double far_off = 1.5;
-  if (mesh_factor(solved, step, accuracy) > far_off) return step.samples;
-  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
-  return factor > error_margin ? next_samples(step.samples, factor) : step.samples;
-}
 
 // Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
 // of all other pairs. So many, as a share of all, are few.
@@ -135,11 +83,17 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
                     percent(reachable, 2) + "% or more: ask for that, or for an accuracy.interest");
 }
 
-// Once three meshes have told how the error falls with the number of patches: refuses what would take far more than
-// fits.
-void require_within_reach(const Plan& plan, const std::vector<AccuracyStep>& steps) {
+// What an accuracy takes.
+struct Needed {
+  double patches = 0;
+  double reachable = 0;  // the error with as many patches as fit
+};
+
+// Once three meshes have told how the error falls with the number of patches: set where far more are needed than fit.
+// Rows of rays err by their rays as well.
+std::optional<Needed> out_of_reach(const Plan& plan, const std::vector<AccuracyStep>& steps) {
   constexpr double far_more = 2;
-  if (steps.size() < 3) return;
+  if (steps.size() < 3 || plan.assembly.storage == Storage::rays) return std::nullopt;
   const AccuracyStep& before = steps[steps.size() - 3];
   const AccuracyStep& last = steps.back();
   const double finer = static_cast<double>(last.patches) / before.patches;
@@ -147,7 +101,8 @@ void require_within_reach(const Plan& plan, const std::vector<AccuracyStep>& ste
   const double at_least = std::max(order, mesh_order / 2);
   const double most = patches_that_fit(plan);
   const double needed = last.patches * std::pow(last.total / *plan.accuracy.relative_error, 1 / at_least);
-  if (needed > far_more * most) refuse(plan, needed, last.total * std::pow(last.patches / most, at_least));
+  if (needed <= far_more * most) return std::nullopt;
+  return Needed{needed, last.total * std::pow(last.patches / most, at_least)};
 }
 
 // How many parents can be cut, each into sixteen new patches, before there are so many.
@@ -161,9 +116,13 @@ std::optional<double> part_of_solver(const Run& run, double accuracy) {
   return asked || run.request.solver.relative_error ? asked : std::optional(share_of_interest * accuracy);
 }
 
-// With the samples of the next mesh, and what its solver may leave.
-Plan plan_of_next(Plan plan, int samples, const std::optional<double>& solver_part) {
-  plan.assembly.samples = samples;
+Plan with_samples(Plan plan, int samples) {
+  (plan.assembly.storage == Storage::rays ? plan.assembly.rays : plan.assembly.samples) = samples;
+  return plan;
+}
+
+// What the solver of the next mesh may leave.
+Plan with_solver_part(Plan plan, const std::optional<double>& solver_part) {
   plan.accuracy.solver_part = solver_part;
   return plan;
 }
@@ -209,35 +168,64 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 
 SolvedMesh Search::noted(SolvedMesh solved) {
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
+  solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
   if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
 
-// The largest number of patches in the time that is left.
-double Search::patches_in_time() const {
+// The largest number of patches in the time that is left, with so many samples of each.
+double Search::patches_in_time(const Plan& plan, int samples) const {
   if (!run_.plan.accuracy.seconds) return std::numeric_limits<double>::infinity();
   const AccuracyStep& step = steps_.back();
   const double before = steps_.size() > 1 ? steps_[steps_.size() - 2].seconds : 0;
-  const double seconds_per_pair = (step.seconds - before) / new_pairs(step);
-  return patches_in((*run_.plan.accuracy.seconds - step.seconds) / error_margin, seconds_per_pair, step.patches);
+  const double left = (*run_.plan.accuracy.seconds - step.seconds) / error_margin;
+  const double taken = step.seconds - before;
+  if (plan.assembly.storage == Storage::rays) return step.patches * (left / taken) * step.samples / samples;
+  return patches_in(left, taken / new_pairs(step), step.patches);
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
 // that does; and those that make the noise, if they are few or nothing else is left. Else more samples.
-Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy) const {
+Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const {
   const AccuracyStep& step = steps_.back();
+  const int samples = samples_of(plan.assembly);
   const bool by_time = run_.plan.accuracy.seconds.has_value();
+  int more = samples_for(solved, step, accuracy, plan);
+  // Without an accuracy only rows of rays, where samples cost no more than patches, take more of them.
+  if (by_time && (keeps_entries(plan.assembly.storage) || patches_in_time(plan, more) < step.patches)) more = samples;
   const std::size_t parents = solved.mesh.parents.size();
-  const std::size_t most = cuts_up_to(std::min(patches_that_fit(run_.plan), patches_in_time()), step);
+  const double fitting = patches_that_fit(with_samples(plan, more));
+  const std::size_t most = cuts_up_to(std::min(fitting, patches_in_time(plan, more)), step);
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
       parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
-  if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples))
-    return {either(std::move(cut), noisy), step.samples};
-  return {std::move(cut), by_time ? step.samples : samples_for(solved, step, accuracy)};
+  if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples(plan)))
+    return {either(std::move(cut), noisy), samples};
+  return {std::move(cut), more};
+}
+
+// Where all pairs do not fit any more the next mesh goes by rays, unless pairs were asked for.
+Plan Search::plan_after(const SolvedMesh& solved, double accuracy) {
+  const AccuracyStep& step = steps_.back();
+  const Plan& plan = solved.simulation.plan;
+  const bool may_be_stored_otherwise = run_.request.assembly.storage == Storage::automatic &&
+                                       plan.assembly.storage == Storage::tiles &&
+                                       !takes_pairs(run_.request, given_by(run_.with));
+  const bool by_error = !run_.plan.accuracy.seconds && step.total > accuracy;
+  const std::optional<Needed> needed = by_error ? out_of_reach(plan, steps_) : std::nullopt;
+  const bool is_full = mesh_factor(solved, step, accuracy) > 1 &&
+                       cuts_up_to(patches_that_fit(plan), step) < solved.mesh.parents.size() / 8;
+  if (may_be_stored_otherwise && (needed || is_full)) {
+    notes_.push_back("form factors of more than " + std::to_string(step.patches) +
+                     " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the "
+                     "accuracy takes do not fit into the memory");
+    return by_rays(plan);
+  }
+  if (needed) refuse(plan, needed->patches, needed->reachable);
+  return plan;
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
@@ -249,25 +237,27 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (enough * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
   // What a tolerance that was asked for leaves no mesh mends.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
-  if (!by_time && step.total > accuracy) require_within_reach(run_.plan, steps_);
 
-  const Refinement by = refinement(solved, accuracy);
-  const bool more_samples = by.samples > step.samples;
+  const Plan stored = plan_after(solved, accuracy);
+  const Refinement by = refinement(solved, accuracy, stored);
+  Plan plan = with_samples(stored, by.samples);
+  const bool other_samples = by.samples != samples_of(solved.simulation.plan.assembly) ||
+                             plan.assembly.storage != solved.simulation.plan.assembly.storage;
   const bool finer_mesh = count(by.cut) > 0;
   FinerMesh finer = refine(solved.mesh, by.cut);
-  const double most = patches_that_fit(run_.plan);
+  const double most = patches_that_fit(plan);
   const double factor = mesh_factor(solved, step, accuracy);
   if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
     if (by_time || step.total <= accuracy) return std::nullopt;
-    refuse(run_.plan, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
+    refuse(plan, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
   }
-  if (!more_samples && !finer_mesh) return std::nullopt;
+  if (!other_samples && !finer_mesh) return std::nullopt;
   // The solver's error is never asked to be larger than on the mesh before.
   MeshToSolve to_solve{std::move(finer.mesh),
-                       plan_of_next(solved.simulation.plan, by.samples, part_of_solver(run_, accuracy)),
+                       with_solver_part(std::move(plan), part_of_solver(run_, accuracy)),
                        {std::move(finer.place), {}, solved.simulation.transport.lost}};
   known_ = 0;
-  if (more_samples) return to_solve;
+  if (other_samples || to_solve.plan.assembly.storage == Storage::rays) return to_solve;
   to_solve.known.exchange = std::move(solved.raw);
   const std::vector<PatchIndex>& place = to_solve.known.place;
   known_ =

@@ -3,6 +3,7 @@
 #include "pipeline/run.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -28,13 +29,15 @@ class Search {
  private:
   struct Refinement;
   AccuracyStep step_of(const SolvedMesh& solved) const;
-  Refinement refinement(const SolvedMesh& solved, double accuracy) const;
-  double patches_in_time() const;
+  Plan plan_after(const SolvedMesh& solved, double accuracy);
+  Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
+  double patches_in_time(const Plan& plan, int samples) const;
 
   const Run& run_;
   double start_;      // wall-clock seconds
   double cpu_start_;  // processor seconds
   std::vector<AccuracyStep> steps_;
+  std::vector<std::string> notes_;
   PatchIndex known_ = 0;  // patches of the last mesh whose exchange areas were known
 };
 

@@ -13,6 +13,9 @@
 #include "transport/merged.h"
 #include "transport/on_demand.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <utility>
 
 namespace patchlight {
@@ -102,35 +105,73 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
+// Effects to a factor as shares of the squares of the error that they explain.
+Eigen::VectorXd scaled_to(const Eigen::VectorXd& squares, const Eigen::VectorXd& effects) {
+  const double sum = total(effects);
+  return sum > 0 ? Eigen::VectorXd(total(squares) / sum * effects) : effects;
+}
+
+// How much the light on each patch matters.
+Eigen::VectorXd weight_for(const TransportOperator& transport, const RadiosityProblem& problem,
+                           const Eigen::VectorXd& interest) {
+  return interest.minCoeff() == 1 ? interest : importance(transport, problem, interest);
+}
+
 // The sources' effects as shares of the errors that they explain, and the errors of gaps, which are their own.
 Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
                            const MeshBars& bars) {
   const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
-  const auto scaled_to = [&](const Field& bar, const Eigen::VectorXd& effects) -> Eigen::VectorXd {
-    const double sum = total(effects);
-    return sum > 0 ? Eigen::VectorXd(total(squares(bar)) / sum * effects) : effects;
-  };
   const auto shared_out = [&](const Field& bar, const Field& difference) {
-    return scaled_to(bar, effects_of_parents(result.raw->exchange_areas, result.mesh, solved, {difference, weight}));
+    return scaled_to(squares(bar),
+                     effects_of_parents(result.raw->exchange_areas, result.mesh, solved, {difference, weight}));
   };
   const Eigen::VectorXd unseen = summed_by_parent(result.mesh, bars.unseen.effects.array()).col(0).matrix();
   return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
          shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps) +
-         scaled_to(bars.unseen.error, unseen.cwiseMax(0.0));
+         scaled_to(squares(bars.unseen.error), unseen.cwiseMax(0.0));
+}
+
+// Rays from each quarter of a patch: more of them where rows have more, as what the bars may leave is smaller.
+int rays_of_quarters(const Simulation& simulation) {
+  const int usual = simulation.mesh.size() > many_patches ? few_rays_from_quarters : rays_from_quarters;
+  const int more = std::max(1, simulation.plan.assembly.rays / AssemblyOptions().rays);
+  return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(more)));
+}
+
+// What may be refined: parents by what their patches do, and none by its noise, which more rays take away.
+SolvedMesh with_effects(SolvedMesh result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
+                        const UnseenDifferences& unseen) {
+  const Simulation& simulation = result.simulation;
+  const auto relative = [&](const Field& bar) {
+    return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
+  };
+  result.effects = scaled_to(squares_of_parents(result.mesh, solved, unseen.error, weight),
+                             summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
+  result.noise = Eigen::VectorXd::Zero(result.effects.size());
+  result.noise_bar = relative(simulation.ray_standard_error);
+  if (simulation.direct_standard_error.size() == 0) return result;
+  result.effects += squares_of_parents(result.mesh, solved, simulation.direct_standard_error, weight);
+  result.light_bar = relative(simulation.direct_standard_error);
+  result.noise_bar =
+      std::sqrt(std::max(0.0, result.noise_bar * result.noise_bar - result.light_bar * result.light_bar));
+  return result;
 }
 
 // Rows of rays know what they err by themselves; the patches' part is found with rays of their own.
 SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTransport& transport) {
   if (!simulates(run.plan, Effect::interreflection)) return result;
   Simulation& simulation = result.simulation;
-  const int rays = simulation.mesh.size() > many_patches ? few_rays_from_quarters : rays_from_quarters;
-  result.interest = Eigen::VectorXd::Ones(simulation.problem.area.size());
-  const UnseenDifferences unseen = unseen_differences_of(run, simulation, transport, result.interest, rays);
+  const SolvedProblem solved{simulation.problem, simulation.solution};
+  result.interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
+  require_reflecting(run.scene, simulation.problem, result.interest);
+  const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
+  const UnseenDifferences unseen =
+      unseen_differences_of(run, simulation, transport, weight, rays_of_quarters(simulation));
   simulation.error_bars = {.mesh = unseen.error,
                            .form_factor = simulation.ray_standard_error,
-                           .solver = solver_errors({simulation.problem, simulation.solution}),
+                           .solver = solver_errors(solved),
                            .display = unseen.display};
-  return result;
+  return refines(run.plan.accuracy) ? with_effects(std::move(result), solved, weight, unseen) : result;
 }
 
 }  // namespace
@@ -153,8 +194,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   // 1. What counts.
   result.interest = interest_of(run.scene, mesh, simulation.plan.accuracy.interest);
   require_reflecting(run.scene, simulation.problem, result.interest);
-  const bool all = result.interest.minCoeff() == 1;
-  const Eigen::VectorXd weight = all ? result.interest : importance(rows, solved.problem, result.interest);
+  const Eigen::VectorXd weight = weight_for(rows, solved.problem, result.interest);
 
   // 2. What patches, samples and solver err.
   const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));

@@ -61,6 +61,8 @@ Asked error_bars(const AccuracyOptions& accuracy) {
   return {"accuracy.error_bars", accuracy.error_bars};
 }
 
+Asked rays(const Request& request) { return {"assembly.rays", request.assembly.rays != AssemblyOptions().rays}; }
+
 // Refuses those of `others` that are asked for beside `one`.
 void require_alone(const Asked& one, std::initializer_list<Asked> others, const std::string& why) {
   if (!one.is_asked) return;
@@ -123,6 +125,9 @@ void require_rows_possible(const Request& request, const Given& given) {
   require_alone(by_rays(request),
                 {other_estimator(request), short_cuts(request), kept_errors(request), samples(request)},
                 "rays take the place of pairs");
+  if (rays(request).is_asked && !by_rays(request).is_asked)
+    throw InputError("assembly.rays", std::string("found with assembly.storage=") + name_of(request.assembly.storage) +
+                                          "; it needs assembly.storage=rays");
 }
 
 void require_automatic_estimator(const Request& request) {
@@ -142,7 +147,6 @@ std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Give
   const char* const found_in_the_run = "error bars take the errors of form factors, found and kept in the run";
   const char* const closed = "error bars are those of closed rows";
   return {{on_demand(request), found_in_the_run},
-          {by_rays(request), "rows of rays have error bars without being asked, and are not refined"},
           {form_factors(given), found_in_the_run},
           {mesh_of(given), "error bars take a nested mesh"},
           {not_closed(request), closed},

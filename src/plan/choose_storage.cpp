@@ -2,11 +2,10 @@
 
 #include "plan/memory.h"
 
-namespace patchlight {
-namespace {
+#include <utility>
 
-// What rows of rays do not give: refinement, given matrices, rows that are not closed, another estimator or number of
-// its samples, other short cuts, light as if nothing stood in the way, and solvers that take columns or symmetry.
+namespace patchlight {
+
 bool takes_pairs(const Request& request, const Given& given) {
   const AssemblyOptions& assembly = request.assembly;
   const AssemblyOptions usual;
@@ -20,11 +19,29 @@ bool takes_pairs(const Request& request, const Given& given) {
       asked(Effect::closure) || asked(Effect::occlusion) || contains(request.effects.skip, Effect::interreflection);
   const Solver solver = request.solver.solver;
   const bool of_solver = solver != Solver::cg && (takes_rows(solver) || takes_reciprocity(solver));
-  return has_error_bars(request.accuracy) || given.form_factors || given.mesh || given.solver || of_effects ||
-         of_sampling || of_solver || request.solver.max_rows.has_value();
+  return given.form_factors || given.mesh || given.solver || of_effects || of_sampling || of_solver ||
+         request.solver.max_rows.has_value();
+}
+
+namespace {
+
+// Requests and plans have these parts in common.
+template <typename Parts>
+Parts stored_as_rays(Parts parts) {
+  parts.assembly.storage = Storage::rays;
+  if (parts.solver.solver == Solver::cg) parts.solver.solver = Solver::gmres;
+  return parts;
 }
 
 }  // namespace
+
+Request by_rays(Request request) { return stored_as_rays(std::move(request)); }
+
+Plan by_rays(Plan plan) {
+  plan = stored_as_rays(std::move(plan));
+  plan.assembly.keep_errors = false;
+  return plan;
+}
 
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
@@ -34,8 +51,7 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const bool fits = bytes <= usable_memory(request.resources);
   const bool too_many = light.patches > most_patches_in_pairs || !fits;
   if (!too_many || !light.is_reflected || takes_pairs(request, given)) return chosen;
-  chosen.request.assembly.storage = Storage::rays;
-  if (request.solver.solver == Solver::cg) chosen.request.solver.solver = Solver::gmres;
+  chosen.request = by_rays(std::move(chosen.request));
   chosen.note = "form factors are rows of rays (assembly.storage=rays), as all pairs of " +
                 std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
                 (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken") +

@@ -11,6 +11,17 @@ namespace patchlight {
 /// one or two, docs/theory.md section 12.
 inline constexpr std::size_t most_patches_in_pairs = 10000;
 
+/// True when something is asked for that rows of rays do not give: given matrices, meshes or solvers, rows that are not
+/// closed, another estimator or number of its samples, other short cuts, light as if nothing stood in the way, or a
+/// solver that takes columns or symmetry.
+bool takes_pairs(const Request& request, const Given& given);
+
+/// The same by rows of rays; Solver::cg, which takes a symmetric matrix, becomes gmres.
+Request by_rays(Request request);
+
+/// A plan that keeps all pairs made one that keeps rows of rays.
+Plan by_rays(Plan plan);
+
 /// A request with its storage decided.
 struct ChosenStorage {
   Request request;
@@ -24,8 +35,7 @@ struct StoredLight {
 };
 
 /// Storage::automatic becomes rows of rays for more than most_patches_in_pairs, and where all pairs do not fit into the
-/// memory, unless something that is asked for takes all pairs or no light is reflected; Solver::cg, which takes a
-/// symmetric matrix, becomes gmres with it. Another storage stays.
+/// memory, unless something that is asked for takes_pairs() or no light is reflected. Another storage stays.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

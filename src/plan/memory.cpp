@@ -24,7 +24,8 @@ constexpr double bytes_of_parents = 0.7;  // with error bars: the matrix of the 
 constexpr double bytes_while_refining =
     5.5;  // another matrix before closure, and at the end of a mesh that of the next
 constexpr double bytes_per_patch = 1500;
-constexpr double bytes_of_ray_rows = 2500;         // per patch: rows of rays, and the directions of the solver
+constexpr double bytes_of_ray_rows = 1500;         // per patch: the directions of the solver, and what rows all have
+constexpr double bytes_of_ray = 16;                // and for each of its rays
 constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
 
@@ -39,7 +40,7 @@ double bytes_of_a_pair(const AssemblyOptions& assembly, const AccuracyOptions& a
 }
 
 double bytes_of_a_patch(const AssemblyOptions& assembly) {
-  if (assembly.storage == Storage::rays) return bytes_per_patch + bytes_of_ray_rows;
+  if (assembly.storage == Storage::rays) return bytes_per_patch + bytes_of_ray_rows + bytes_of_ray * assembly.rays;
   return bytes_per_patch + (keeps_entries(assembly.storage) ? 0 : bytes_of_coarse_transport);
 }
 

@@ -10,6 +10,7 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -17,9 +18,11 @@
 namespace patchlight {
 namespace {
 
-// Shadow rays of a pair in one half, and where it is partly visible.
-constexpr std::uint32_t usual_rays = ShadowPacket::size;
-constexpr std::uint32_t rays_if_partial = 4 * ShadowPacket::size;
+// Shadow rays of a pair in one half; where it is partly visible four times as many.
+std::uint32_t usual_rays(const LampSampling& sampling) {
+  const auto packets = static_cast<std::uint32_t>(sampling.rays) / (4 * ShadowPacket::size);
+  return std::bit_ceil(std::max(packets, 1U)) * static_cast<std::uint32_t>(ShadowPacket::size);
+}
 
 // A patch farther from a lamp than so many of its diameters is taken at its centroid, and at three or four points
 // beyond the second number: the form factor of a point varies with the square of diameter over distance.
@@ -70,6 +73,7 @@ struct LampSampler {
   const Occluder& occluder;
   std::vector<LampPiece> pieces;
   std::vector<std::uint32_t> keys;
+  std::uint32_t usual;  // rays of a pair in one half
   SampleTable table;
   bool can_occlude;
   double scale;
@@ -142,11 +146,11 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   std::array<LampRays, 2> rays;
   for (std::uint32_t half = 0; half < 2; ++half) {
     sets[half] = table.of_pair(keys[i], piece.key, half);
-    trace(rays[half], sampled, piece, sets[half], usual_rays);
+    trace(rays[half], sampled, piece, sets[half], usual);
   }
   const std::array<bool, 2> more{rays[1].is_partial(), rays[0].is_partial()};
   for (std::size_t half = 0; half < 2; ++half)
-    if (more[half]) trace(rays[half], sampled, piece, sets[half], rays_if_partial);
+    if (more[half]) trace(rays[half], sampled, piece, sets[half], 4 * usual);
   shadow_rays += rays[0].all + rays[1].all;
 
   // 2. The form factor without occluders is not worth its time where nothing is seen.
@@ -209,13 +213,15 @@ LampValues standard_errors(const LampSampler& sampler, const PieceValues& values
 }  // namespace
 
 LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                         std::span<const LampSide> lamps, std::uint64_t seed, const Observer& observer) {
+                         std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
+  const std::uint32_t usual = usual_rays(sampling);
   const LampSampler sampler{mesh,
                             occluder,
                             lamp_pieces(scene, mesh, occluder, lamps, keys),
                             keys,
-                            SampleTable(rays_if_partial, hash({seed, 3})),
+                            usual,
+                            SampleTable(4 * usual, hash({sampling.seed, 3})),
                             occluder.can_occlude(),
                             occluder.frame().scale};
   const auto rows = static_cast<Eigen::Index>(mesh.size());

@@ -66,7 +66,7 @@ RowTracer::RowTracer(const PatchMesh& mesh, const Occluder& occluder, const Brig
       lookup_(mesh),
       keys_(patch_keys(mesh)),
       counts_(ray_counts(mesh, options.rays)),
-      table_(std::max(most_rays, toward_bright_), options.seed) {
+      table_(std::max(*std::max_element(counts_.begin(), counts_.end()), toward_bright_), options.seed) {
   assert(toward_bright_ % ShadowPacket::size == 0);
 }
 

@@ -267,7 +267,7 @@ class AccuracyTest(ToolTest):
         self.assertNotIn("error of the patches' means", done.stdout)
 
     def test_an_accuracy_out_of_memory_is_exit_code_4_with_what_can_be_had(self):
-        done = self.solve("--accuracy", "0.05%", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
+        done = self.solve("--accuracy", "0.05%", "--storage", "tiles", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
         found = re.search(r"--accuracy 0.05%: found that it takes about (\d+) patches and (\S+) GB, and 0.08 GB may be "
                           r"taken; expected about (\S+)% or more", done.stderr)
         self.assertIsNotNone(found, done.stderr)

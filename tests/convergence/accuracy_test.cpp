@@ -1,3 +1,4 @@
+#include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
@@ -19,6 +20,12 @@ Request asked(double accuracy) {
   Request request;
   request.mesh.sides = Sides::front;
   request.accuracy.relative_error = accuracy;
+  return request;
+}
+
+Request by_rays(Request request) {
+  request.assembly.storage = Storage::rays;
+  request.solver.solver = Solver::gmres;
   return request;
 }
 
@@ -47,6 +54,18 @@ TEST_P(AskedAccuracy, IsReached) {
   EXPECT_LE(error, simulation.accuracy.back().total);
 }
 
+// The same by rows of rays, of which more and more are taken.
+TEST_P(AskedAccuracy, IsReachedByRays) {
+  const Scene scene = varied_room(GetParam());
+  Request request = by_rays(asked(0.03));
+  const Simulation simulation = simulate(scene, request);
+  EXPECT_EQ(simulation.plan.assembly.storage, Storage::rays);
+  const double error = error_against(finer_reference(scene), simulation).relative;
+  EXPECT_LE(error, 0.03);
+  EXPECT_LE(simulation.accuracy.back().total, 0.03);
+  EXPECT_LE(error, simulation.accuracy.back().total);
+}
+
 INSTANTIATE_TEST_SUITE_P(OfRooms, AskedAccuracy, testing::Values("empty", "contact", "bright"),
                          [](const auto& param) { return std::string(param.param); });
 
@@ -57,6 +76,36 @@ TEST(AskedAccuracyOf, ALowerOneTakesFinerPatchesAndGivesLowerErrors) {
   const Simulation fine = simulate(scene, asked(0.015));
   EXPECT_GT(fine.mesh.size(), coarse.mesh.size());
   EXPECT_LT(error_against(reference, fine).relative, error_against(reference, coarse).relative);
+}
+
+// Four times the rays halve what is theirs of the error; smoothing takes over what is not noise.
+TEST(AskedAccuracyOf, MoreRaysErrLess) {
+  const Scene scene = varied_room("blocks");
+  const auto of_rays = [&](int rays) {
+    Request request;
+    request.mesh.sides = Sides::front;
+    request.mesh.patches = 2000;
+    request = by_rays(std::move(request));
+    request.assembly.rays = rays;
+    return simulate(scene, request).accuracy.back().form_factor;
+  };
+  EXPECT_LE(of_rays(256), 0.6 * of_rays(64));
+}
+
+// All pairs of some 2,500 patches fit into the memory, and the accuracy takes more.
+TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
+  const Scene scene = varied_room("blocks");
+  Request request = asked(0.01);
+  request.resources.memory = 100e6;
+  const Simulation simulation = simulate(scene, request);
+  EXPECT_EQ(simulation.plan.assembly.storage, Storage::rays);
+  EXPECT_EQ(simulation.plan.solver.solver, Solver::gmres);
+  EXPECT_LE(simulation.accuracy.back().total, 0.01);
+  EXPECT_LE(error_against(finer_reference(scene), simulation).relative, 0.01);
+  ASSERT_FALSE(simulation.notes.empty());
+  EXPECT_NE(simulation.notes.back().find("rows of rays"), std::string::npos) << simulation.notes.back();
+  request.assembly.storage = Storage::tiles;
+  EXPECT_THROW(simulate(scene, request), MemoryError);
 }
 
 // Noise of light straight from lamps does not fall with the number of receiving patches: it takes more rays from the

@@ -69,22 +69,23 @@ inline std::vector<std::pair<std::string, std::vector<std::string>>> exclusive_p
     others.insert(others.end(), bars.begin(), bars.end());
     return others;
   };
-  return {{"mesh.max_edge", {"mesh.patches"}},
-          {"mesh.sides=both", {"effects.force=reach", "effects.skip=backs"}},
-          {"mesh.kept_sides", {"effects.force=reach", "effects.skip=backs"}},
-          {"effects.force=sun", {"effects.skip=sun"}},
-          {"effects.force=closure", {"effects.skip=closure", "assembly.close=false", "assembly.storage=on_demand"}},
-          {"assembly.storage=on_demand", and_bars({"assembly.close=false", "assembly.estimator=area"})},
-          {"assembly.storage=rays", and_bars({"effects.force=closure", "effects.skip=closure", "assembly.close=false",
-                                              "assembly.estimator=area", "assembly.short_cuts", "assembly.keep_errors",
-                                              "assembly.samples", "solver.max_rows", "given.form_factors"})},
-          {"assembly.estimator=area", and_bars({"assembly.short_cuts", "assembly.keep_errors"})},
-          {"given.form_factors", and_bars({"effects.force=occlusion", "assembly.storage=on_demand"})},
-          {"given.mesh", bars},
-          {"assembly.close=false", bars},
-          {"effects.skip=closure", bars},
-          {"effects.skip=interreflection", bars},
-          {"solver.max_rows", bars}};
+  return {
+      {"mesh.max_edge", {"mesh.patches"}},
+      {"mesh.sides=both", {"effects.force=reach", "effects.skip=backs"}},
+      {"mesh.kept_sides", {"effects.force=reach", "effects.skip=backs"}},
+      {"effects.force=sun", {"effects.skip=sun"}},
+      {"effects.force=closure", {"effects.skip=closure", "assembly.close=false", "assembly.storage=on_demand"}},
+      {"assembly.storage=on_demand", and_bars({"assembly.close=false", "assembly.estimator=area"})},
+      {"assembly.storage=rays",
+       {"effects.force=closure", "effects.skip=closure", "assembly.close=false", "assembly.estimator=area",
+        "assembly.short_cuts", "assembly.keep_errors", "assembly.samples", "solver.max_rows", "given.form_factors"}},
+      {"assembly.estimator=area", and_bars({"assembly.short_cuts", "assembly.keep_errors"})},
+      {"given.form_factors", and_bars({"effects.force=occlusion", "assembly.storage=on_demand"})},
+      {"given.mesh", bars},
+      {"assembly.close=false", bars},
+      {"effects.skip=closure", bars},
+      {"effects.skip=interreflection", bars},
+      {"solver.max_rows", bars}};
 }
 
 }  // namespace patchlight::test

@@ -61,7 +61,14 @@ struct AssemblyOptions {
   bool close = true;                     ///< correct the form factors so that rows sum up to what is seen
   Storage storage = Storage::automatic;  ///< with rows on demand form factors are not closed
   int lost_share_rays = 256;             ///< hemisphere rays per patch
+  int rays = 64;  ///< with Storage::rays: of a patch over its hemisphere, in the mean; those towards lamps and bright
+                  ///< patches grow with them
 };
+
+/// What is raised where the sampling errs too much: rays of a patch, or shadow rays of a pair.
+constexpr int samples_of(const AssemblyOptions& assembly) {
+  return assembly.storage == Storage::rays ? assembly.rays : assembly.samples;
+}
 
 /// How the entries of a matrix came about.
 struct AssemblyCounts {

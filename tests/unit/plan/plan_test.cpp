@@ -111,7 +111,8 @@ TEST(MakePlan, TakesRaysForManyPatches) {
     return make_plan(scene, changed).assembly.storage;
   };
   EXPECT_EQ(storage_with([](Request& r) { r.assembly.storage = Storage::tiles; }), Storage::tiles);
-  EXPECT_EQ(storage_with([](Request& r) { r.accuracy.error_bars = true; }), Storage::tiles);
+  EXPECT_EQ(storage_with([](Request& r) { r.accuracy.error_bars = true; }), Storage::rays);
+  EXPECT_EQ(storage_with([](Request& r) { r.accuracy.relative_error = 0.01; }), Storage::rays);
   EXPECT_EQ(storage_with([](Request& r) { r.assembly.close = false; }), Storage::tiles);
   EXPECT_EQ(storage_with([](Request& r) { r.effects.force = {Effect::closure}; }), Storage::tiles);
   EXPECT_EQ(storage_with([](Request& r) { r.solver.solver = Solver::sor; }), Storage::tiles);

@@ -37,7 +37,7 @@ Scene under_bars(int bars, double slit) {
 LampFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex lamp, std::uint64_t seed) {
   const Occluder occluder(scene);
   const LampSide side{lamp, Side::front};
-  return lamp_factors(scene, mesh, occluder, {&side, 1}, seed);
+  return lamp_factors(scene, mesh, occluder, {&side, 1}, {.seed = seed});
 }
 
 // Without anything between, both halves are the closed form; against the sum of exchange areas with the lamp's patches,
