@@ -1,7 +1,9 @@
 #include "pipeline/ray_light.h"
 
+#include "accuracy/refinement.h"
 #include "base/vectors.h"
 #include "mesh/means_around.h"
+#include "pipeline/conserved_flux.h"
 #include "solve/scattering.h"
 #include "transport/bright_patches.h"
 #include "transport/smoothing.h"
@@ -147,21 +149,47 @@ Eigen::ArrayXd bias_over_variance(const SmoothedHalves& smooth, const std::array
   return quotient(bias, weighted(smooth.variance));
 }
 
+// Errors of single patches' irradiances that do not depend on each other.
+struct SingleVariances {
+  Field of_rows;    // of which all that gets lost is shared out again
+  Field of_lights;  // of lamps and lights that are no patches
+};
+
+// The variance of what all patches reflect together, relative to its square, per band. What a patch sends is reflected
+// by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is more than its own error;
+// but for rows only how far it is from the mean counts, as no flux gets lost.
+Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProblem& solved, const ConservedFlux& flux,
+                                 const SingleVariances& variances) {
+  const RadiosityProblem& problem = solved.problem;
+  const Eigen::VectorXd& area = problem.area;
+  const Eigen::VectorXd psi = importance(transport, problem, Eigen::VectorXd::Ones(area.size()));
+  const Field again = (psi.array() - 1).replicate(1, problem.exitance.cols());
+  const Field gain = problem.scattering.reflect(again);
+  const Field beyond_mean = gain.rowwise() - area_sum(flux.shape * gain, area).transpose();
+  const Field variance = beyond_mean.square() * variances.of_rows + gain.square() * variances.of_lights;
+  const Eigen::ArrayXd reflected = area_sum(solved.solution.radiosity - problem.exitance, area);
+  return quotient(area_sum(variance.colwise() * area.array(), area), reflected.square());
+}
+
 }  // namespace
 
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const SolverOptions& options) {
+                            const Eigen::VectorXd& row_sum, const SolverOptions& options) {
   const RadiosityProblem& all = light.lit.problem;
   const RadiosityProblem problem{all.scattering, emitted_in_rows(light), all.area, direct_of(light)};
 
-  // 1. Solve for what the rows carry.
-  Solution solution = simulates(run.plan, Effect::interreflection) ? solve(transport, problem, options, run.observer)
-                                                                   : reflected_once(transport, problem);
+  // 1. Solve for what the rows carry, without losing any of it.
+  const bool reflects_twice = simulates(run.plan, Effect::interreflection);
+  auto [solution, flux] =
+      reflects_twice
+          ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer), row_sum, run.observer)
+          : ConservingSolution{reflected_once(transport, problem), {}};
 
   // 2. Gather once more, by each half, and smooth.
-  const bool reflects_twice = simulates(run.plan, Effect::interreflection);
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
-  const std::array<Field, 2> raw{transport.apply_half(0, sources), transport.apply_half(1, sources)};
+  std::array<Field, 2> raw{transport.apply_half(0, sources), transport.apply_half(1, sources)};
+  if (reflects_twice)
+    for (Field& half : raw) half = flux.completed(std::move(half), sources, all.area);
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.
@@ -169,15 +197,22 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
   // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
   variance = variance.max(mean_around(mesh, all.area, variance)).eval();
-  if (light.lit.direct_standard_error.size() > 0) variance += light.lit.direct_standard_error.square();
-  RaySolution found;
-  found.standard_error = variance.sqrt();
+  SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), light.lamp_standard_error.square()};
+  if (light.lit.direct_standard_error.size() > 0) {
+    variance += light.lit.direct_standard_error.square();
+    single.of_lights += light.lit.direct_standard_error.square();
+  }
 
   // 4. B = E + rho o H with all that is emitted.
   solution.irradiance = (0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0) + problem.direct_irradiance;
   solution.radiosity = radiosity_from(all, solution.irradiance);
-  found.solution = std::move(solution);
-  return found;
+
+  // 5. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
+  if (reflects_twice) {
+    const Eigen::ArrayXd level = variance_of_level(transport, {all, solution}, flux, single);
+    variance += scaled((solution.irradiance - problem.direct_irradiance).square(), level);
+  }
+  return {std::move(solution), variance.sqrt()};
 }
 
 }  // namespace patchlight

@@ -36,10 +36,10 @@ struct RaySolution {
   Field standard_error;
 };
 
-/// Solves B = E + rho o (F B + H_direct) with lamps apart, gathers once more by each half of the rays, and smooths what
-/// comes from other patches: docs/theory.md section 12. What the halves differ tells the error, with the bias of
-/// smoothing. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
+/// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
+/// half of the rays, and smooths what comes from other patches: docs/theory.md section 12. What the halves differ tells
+/// the error, with the bias of smoothing. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const SolverOptions& options);
+                            const Eigen::VectorXd& row_sum, const SolverOptions& options);
 
 }  // namespace patchlight

@@ -25,8 +25,8 @@
 namespace patchlight {
 namespace {
 
-// The solver's bound for all patches together is asked to be a fiftieth of the accuracy, so that what it leaves to single
-// patches is about a tenth.
+// The solver's bound for all patches together is asked to be a fiftieth of the accuracy, so that what it leaves to
+// single patches is about a tenth.
 constexpr double share_of_solver = 0.02;
 
 // What the solver may leave of the light that is of interest.

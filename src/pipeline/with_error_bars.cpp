@@ -139,9 +139,9 @@ int rays_of_quarters(const Simulation& simulation) {
 }
 
 // What may be refined: parents by what their patches do, and none by its noise, which more rays take away.
-SolvedMesh with_effects(SolvedMesh result, const SolvedProblem& solved, const Eigen::VectorXd& weight,
-                        const UnseenDifferences& unseen) {
+SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen) {
   const Simulation& simulation = result.simulation;
+  const SolvedProblem solved{simulation.problem, simulation.solution};
   const auto relative = [&](const Field& bar) {
     return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
   };
@@ -171,7 +171,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
-  return refines(run.plan.accuracy) ? with_effects(std::move(result), solved, weight, unseen) : result;
+  return refines(run.plan.accuracy) ? with_effects(std::move(result), weight, unseen) : result;
 }
 
 }  // namespace

@@ -28,7 +28,9 @@ Asked on_demand(const Request& request) {
   return {"assembly.storage=on_demand", request.assembly.storage == Storage::on_demand};
 }
 
-Asked by_rays(const Request& request) { return {"assembly.storage=rays", request.assembly.storage == Storage::rays}; }
+Asked rows_of_rays(const Request& request) {
+  return {"assembly.storage=rays", request.assembly.storage == Storage::rays};
+}
 
 Asked not_closed(const Request& request) { return {"assembly.close=false", !request.assembly.close}; }
 
@@ -93,11 +95,11 @@ void require_consistent_effects(const Request& request, const Given& given) {
   decides(Effect::occlusion, form_factors(given), "form factors that are given decide it");
   require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
   require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
-  require_alone(forced(request, Effect::closure), {by_rays(request)}, "rows of rays are closed one by one");
+  require_alone(forced(request, Effect::closure), {rows_of_rays(request)}, "rows of rays are closed one by one");
 }
 
 void require_solver_for(const Request& request) {
-  require_alone(by_rays(request), {max_rows(request)}, "rows of rays are not taken one at a time");
+  require_alone(rows_of_rays(request), {max_rows(request)}, "rows of rays are not taken one at a time");
   const Solver solver = request.solver.solver;
   const std::string found = std::string("found with solver.solver=") + name_of(solver) + "; it needs solver.solver=";
   if (request.solver.relaxation && solver != Solver::sor)
@@ -107,8 +109,8 @@ void require_solver_for(const Request& request) {
     throw InputError(asked.part, found + name_of(Solver::progressive) + " or " + name_of(Solver::overshooting));
   }
   // Rows of rays are neither reciprocal nor had from the side of their sources.
-  if (by_rays(request).is_asked && (takes_rows(solver) || takes_reciprocity(solver)))
-    throw InputError(by_rays(request).part, found + "gmres, bicgstab, jacobi or chebyshev");
+  if (rows_of_rays(request).is_asked && (takes_rows(solver) || takes_reciprocity(solver)))
+    throw InputError(rows_of_rays(request).part, found + "gmres, bicgstab, jacobi or chebyshev");
   if (request.solver.reference)
     throw InputError("solver.reference", "found a solution to be met; before there is a mesh expected none");
 }
@@ -119,13 +121,13 @@ void require_rows_possible(const Request& request, const Given& given) {
   const Asked rows = on_demand(request);
   require_alone(not_closed(request), {rows}, "rows on demand are never closed");
   require_alone(other_estimator(request), {rows}, "rows on demand are found by the automatic one");
-  require_alone(form_factors(given), {rows, by_rays(request)}, "these are a matrix");
-  require_alone(by_rays(request), {not_closed(request), skipped(request, Effect::closure)},
+  require_alone(form_factors(given), {rows, rows_of_rays(request)}, "these are a matrix");
+  require_alone(rows_of_rays(request), {not_closed(request), skipped(request, Effect::closure)},
                 "rows of rays are closed one by one");
-  require_alone(by_rays(request),
+  require_alone(rows_of_rays(request),
                 {other_estimator(request), short_cuts(request), kept_errors(request), samples(request)},
                 "rays take the place of pairs");
-  if (rays(request).is_asked && !by_rays(request).is_asked)
+  if (rays(request).is_asked && !rows_of_rays(request).is_asked)
     throw InputError("assembly.rays", std::string("found with assembly.storage=") + name_of(request.assembly.storage) +
                                           "; it needs assembly.storage=rays");
 }

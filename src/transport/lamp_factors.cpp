@@ -20,8 +20,8 @@ namespace {
 
 // Shadow rays of a pair in one half; where it is partly visible four times as many.
 std::uint32_t usual_rays(const LampSampling& sampling) {
-  const auto packets = static_cast<std::uint32_t>(sampling.rays) / (4 * ShadowPacket::size);
-  return std::bit_ceil(std::max(packets, 1U)) * static_cast<std::uint32_t>(ShadowPacket::size);
+  constexpr std::uint32_t packet = ShadowPacket::size;
+  return packet * std::bit_ceil(std::max(static_cast<std::uint32_t>(sampling.rays) / (4 * packet), 1U));
 }
 
 // A patch farther from a lamp than so many of its diameters is taken at its centroid, and at three or four points

@@ -90,6 +90,22 @@ class OnDemandTest(ToolTest):
         self.assertIn("stopped after 10 % of the rows of form factors", done.stderr)
         self.assertTrue((self.folder / "early.png").exists())
 
+    def test_a_number_of_rays_takes_rays(self):
+        def report_with(*options):
+            done = self.run_tool("solve", "room.obj", "--patches", 200, "--report", "report.json", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads((self.folder / "report.json").read_text())
+
+        report = report_with("--rays", 128)
+        self.assertEqual((report["plan"]["storage"], report["plan"]["rays"], report["request"]["rays"]),
+                         ("rays", 128, 128))
+        fewer = report_with("--storage", "rays")
+        self.assertEqual(fewer["plan"]["rays"], 64)
+        self.assertLess(report["relative_error"]["form_factor"], fewer["relative_error"]["form_factor"])
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--rays", 128, "--storage", "tiles")
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("--rays: found with --storage tiles; it needs --storage rays", done.stderr)
+
     def test_shares_of_rows_that_are_refused(self):
         for text in ("5", "0%", "-5%", "%", "5%%", "nan%", "five%"):
             done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--solver", "progressive", "--max-rows", text)

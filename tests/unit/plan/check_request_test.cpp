@@ -104,6 +104,18 @@ TEST(CheckRequest, KnowsWhatLeavesNoErrorBars) {
   }
 }
 
+TEST(CheckRequest, RefusesANumberOfRaysWhereRowsAreNotOfRays) {
+  for (const Storage storage : {Storage::automatic, Storage::tiles, Storage::rays}) {
+    const std::string said = refusal({{"rays", [&](Request& request, Given&) {
+                                         request.assembly.rays = 128;
+                                         request.assembly.storage = storage;
+                                         request.solver.solver = Solver::gmres;
+                                       }}});
+    EXPECT_EQ(said.empty(), storage == Storage::rays) << said;
+    EXPECT_TRUE(said.empty() || has(said, "needs assembly.storage=rays")) << said;
+  }
+}
+
 TEST(CheckRequest, RefusesASolutionToBeMetBeforeThereIsAMesh) {
   EXPECT_TRUE(has(refusal({{"reference", [](Request& request, Given&) { request.solver.reference = Field(1, 1); }}}),
                   "solver.reference: "));
