@@ -141,6 +141,14 @@ struct Search::Refinement {
   int samples = 0;
 };
 
+// The next mesh and its plan.
+struct Search::Finer {
+  FinerMesh mesh;
+  Plan plan;
+  bool has_more_patches = false;
+  bool fits = false;
+};
+
 Search::Search(const Run& run) : run_(run), start_(wall_seconds()), cpu_start_(cpu_seconds()) {}
 
 MeshToSolve Search::first() const {
@@ -207,30 +215,41 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   return {std::move(cut), more};
 }
 
-// Where all pairs do not fit any more the next mesh goes by rays, unless pairs were asked for.
-Plan Search::plan_after(const SolvedMesh& solved, double accuracy) {
-  const AccuracyStep& step = steps_.back();
+bool Search::may_go_by_rays(const Plan& plan) const {
+  return run_.request.assembly.storage == Storage::automatic && plan.assembly.storage == Storage::tiles &&
+         !takes_pairs(run_.request, given_by(run_.with));
+}
+
+Plan Search::gone_by_rays(const Plan& plan) {
+  notes_.push_back("form factors of more than " + std::to_string(steps_.back().patches) +
+                   " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
+                   "takes do not fit into the memory");
+  return by_rays(plan);
+}
+
+// Where the accuracy is out of reach with all pairs, the next mesh goes by rays, unless pairs were asked for.
+Plan Search::stored_for(const SolvedMesh& solved, double accuracy) {
   const Plan& plan = solved.simulation.plan;
-  const bool may_be_stored_otherwise = run_.request.assembly.storage == Storage::automatic &&
-                                       plan.assembly.storage == Storage::tiles &&
-                                       !takes_pairs(run_.request, given_by(run_.with));
-  const bool by_error = !run_.plan.accuracy.seconds && step.total > accuracy;
-  const std::optional<Needed> needed = by_error ? out_of_reach(plan, steps_) : std::nullopt;
-  const bool is_full = mesh_factor(solved, step, accuracy) > 1 &&
-                       cuts_up_to(patches_that_fit(plan), step) < solved.mesh.parents.size() / 8;
-  if (may_be_stored_otherwise && (needed || is_full)) {
-    notes_.push_back("form factors of more than " + std::to_string(step.patches) +
-                     " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the "
-                     "accuracy takes do not fit into the memory");
-    return by_rays(plan);
-  }
-  if (needed) refuse(plan, needed->patches, needed->reachable);
-  return plan;
+  if (run_.plan.accuracy.seconds || steps_.back().total <= accuracy) return plan;
+  const std::optional<Needed> needed = out_of_reach(plan, steps_);
+  if (!needed) return plan;
+  if (may_go_by_rays(plan)) return gone_by_rays(plan);
+  refuse(plan, needed->patches, needed->reachable);
+}
+
+Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const {
+  const Refinement by = refinement(solved, accuracy, plan);
+  Finer next{refine(solved.mesh, by.cut), with_samples(plan, by.samples), count(by.cut) > 0};
+  const AccuracyStep& step = steps_.back();
+  const double most = patches_that_fit(next.plan);
+  const bool nothing_more_fits = cuts_up_to(most, step) == 0;
+  const bool needs_more = mesh_factor(solved, step, accuracy) > 1;
+  next.fits = next.mesh.mesh.patches.size() <= most && (next.has_more_patches || !needs_more || !nothing_more_fits);
+  return next;
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!refines(run_.plan.accuracy) || !solved.simulation.solution.converged) return std::nullopt;
-  const bool by_time = run_.plan.accuracy.seconds.has_value();
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
@@ -238,26 +257,27 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   // What a tolerance that was asked for leaves no mesh mends.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
 
-  const Plan stored = plan_after(solved, accuracy);
-  const Refinement by = refinement(solved, accuracy, stored);
-  Plan plan = with_samples(stored, by.samples);
-  const bool other_samples = by.samples != samples_of(solved.simulation.plan.assembly) ||
-                             plan.assembly.storage != solved.simulation.plan.assembly.storage;
-  const bool finer_mesh = count(by.cut) > 0;
-  FinerMesh finer = refine(solved.mesh, by.cut);
-  const double most = patches_that_fit(plan);
-  const double factor = mesh_factor(solved, step, accuracy);
-  if (finer.mesh.patches.size() > most || (!finer_mesh && factor > 1 && cuts_up_to(most, step) == 0)) {
-    if (by_time || step.total <= accuracy) return std::nullopt;
-    refuse(plan, std::max<double>(finer.mesh.patches.size(), patches_for(step.patches, factor)), step.total);
+  // 1. More patches and samples, by rays where all pairs of them do not fit.
+  Plan plan = stored_for(solved, accuracy);
+  Finer more = finer(solved, accuracy, plan);
+  if (!more.fits && may_go_by_rays(plan)) more = finer(solved, accuracy, gone_by_rays(plan));
+  if (!more.fits) {
+    if (run_.plan.accuracy.seconds || step.total <= accuracy) return std::nullopt;
+    const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
+    refuse(more.plan, std::max<double>(more.mesh.mesh.patches.size(), patches), step.total);
   }
-  if (!other_samples && !finer_mesh) return std::nullopt;
-  // The solver's error is never asked to be larger than on the mesh before.
-  MeshToSolve to_solve{std::move(finer.mesh),
-                       with_solver_part(std::move(plan), part_of_solver(run_, accuracy)),
-                       {std::move(finer.place), {}, solved.simulation.transport.lost}};
+  const AssemblyOptions& before = solved.simulation.plan.assembly;
+  const AssemblyOptions& after = more.plan.assembly;
+  const bool all_anew = after.storage != before.storage || samples_of(after) != samples_of(before);
+  if (!all_anew && !more.has_more_patches) return std::nullopt;
+
+  // 2. What is known of them. The solver's error is never asked to be larger than on the mesh before.
+  const bool keeps_known = !all_anew && keeps_entries(after.storage);
+  MeshToSolve to_solve{std::move(more.mesh.mesh),
+                       with_solver_part(more.plan, part_of_solver(run_, accuracy)),
+                       {std::move(more.mesh.place), {}, solved.simulation.transport.lost}};
   known_ = 0;
-  if (other_samples || to_solve.plan.assembly.storage == Storage::rays) return to_solve;
+  if (!keeps_known) return to_solve;
   to_solve.known.exchange = std::move(solved.raw);
   const std::vector<PatchIndex>& place = to_solve.known.place;
   known_ =

@@ -28,8 +28,12 @@ class Search {
 
  private:
   struct Refinement;
+  struct Finer;
   AccuracyStep step_of(const SolvedMesh& solved) const;
-  Plan plan_after(const SolvedMesh& solved, double accuracy);
+  bool may_go_by_rays(const Plan& plan) const;
+  Plan gone_by_rays(const Plan& plan);
+  Plan stored_for(const SolvedMesh& solved, double accuracy);
+  Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   double patches_in_time(const Plan& plan, int samples) const;
 

@@ -1,6 +1,7 @@
 #include "pipeline/with_error_bars.h"
 
 #include "accuracy/errors.h"
+#include "accuracy/errors_within_parents.h"
 #include "accuracy/interest.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
@@ -145,7 +146,7 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   const auto relative = [&](const Field& bar) {
     return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
   };
-  result.effects = scaled_to(squares_of_parents(result.mesh, solved, unseen.error, weight),
+  result.effects = scaled_to(squares_of_parents(result.mesh, solved, simulation.error_bars->mesh, weight),
                              summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   result.noise_bar = relative(simulation.ray_standard_error);
@@ -167,7 +168,10 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
   const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
   const UnseenDifferences unseen =
       unseen_differences_of(run, simulation, transport, weight, rays_of_quarters(simulation));
-  simulation.error_bars = {.mesh = unseen.error,
+  const bool has_parents = result.mesh.parents.size() > 0;
+  const Field mesh =
+      has_parents ? Field(unseen.error.max(errors_within_parents(result.mesh, transport, solved))) : unseen.error;
+  simulation.error_bars = {.mesh = mesh,
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};

@@ -45,6 +45,8 @@ Plan by_rays(Plan plan) {
 
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
+  const bool has_bars = light.is_reflected && !given.mesh;
+  if (request.assembly.storage == Storage::rays && has_bars) chosen.request.accuracy.error_bars = true;
   if (request.assembly.storage != Storage::automatic) return chosen;
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
@@ -52,6 +54,7 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const bool too_many = light.patches > most_patches_in_pairs || !fits;
   if (!too_many || !light.is_reflected || takes_pairs(request, given)) return chosen;
   chosen.request = by_rays(std::move(chosen.request));
+  chosen.request.accuracy.error_bars = true;
   chosen.note = "form factors are rows of rays (assembly.storage=rays), as all pairs of " +
                 std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
                 (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken") +

@@ -177,6 +177,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
+  if (has_error_bars(request.accuracy) != has_error_bars(asked.accuracy)) size = patch_size(scene, request, sides);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
