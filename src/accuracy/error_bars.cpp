@@ -19,7 +19,7 @@ double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const
   const Eigen::ArrayXd error = area_norm(problem.scattering.reflect(bar), area);
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
   // Of what reflects nothing every error is infinitely large.
-  const Eigen::ArrayXd relative = (error > 0).select(error / reflected, 0.0);
+  const Eigen::ArrayXd relative = (error == 0).select(0.0, error / reflected);
   return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : largest(relative);
 }
 

@@ -38,8 +38,10 @@ std::string convergence(const Report& report) {
 }
 
 std::string parts(const AccuracyStep& step) {
-  return percent(step.total, 2) + " %: mesh " + percent(step.mesh, 2) + ", form factors " +
-         percent(step.form_factor, 2) + ", solver " + percent(step.solver, 1) + "; drawn with one value a patch " +
+  const bool solver_known = std::isfinite(step.solver);
+  return percent(solver_known ? step.total : std::hypot(step.mesh, step.form_factor), 2) + " %: mesh " +
+         percent(step.mesh, 2) + ", form factors " + percent(step.form_factor, 2) + ", solver " +
+         (solver_known ? percent(step.solver, 1) : "not known and not in it") + "; drawn with one value a patch " +
          percent(step.display, 2) + " %";
 }
 
@@ -153,6 +155,9 @@ std::string details(const Report& report) {
   }
   text << "estimator of form factors: " << name_of(report.plan.assembly.estimator) << '\n';
   if (report.form_factors.counts) return text.str() + assembly(report.form_factors);
+  if (report.plan.assembly.storage == Storage::rays)
+    return text.str() + "form factors: sparse rows of " + std::to_string(report.plan.assembly.rays) +
+           " rays of a patch in the mean\n";
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 
@@ -224,6 +229,12 @@ std::string explain_not_accurate(const Report& report) {
   const AccuracyStep& step = report.accuracy.back();
   const bool by_mesh = step.mesh >= step.form_factor;
   const bool by_solver = step.solver > std::max(step.mesh, step.form_factor);
+  if (!std::isfinite(step.solver)) {
+    return "accuracy of " + percent(*report.plan.accuracy.relative_error, 3) +
+           " % NOT known to be reached: no bound on the solver's error is known, as somewhere next to nothing is "
+           "absorbed. Lower the largest reflectance, " +
+           rounded(report.solution.highest_reflectance, 6);
+  }
   std::string text = "accuracy of " + percent(*report.plan.accuracy.relative_error, 3) +
                      " % NOT reached: the error is about " + percent(step.total, 2) + " % after " +
                      rounded(step.seconds) + " s; most of it is from the " +

@@ -92,7 +92,9 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t 
   double edge = max_edge_for(scene, sides, wanted / 4);
   double number = static_cast<double>(nest(tessellate(scene, sides, edge)).patches.size());
   const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
-  if (number >= enough * static_cast<double>(wanted)) return edge;
+  // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
+  const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - static_cast<double>(least)); };
+  if (beyond_faces(number) >= enough * beyond_faces(static_cast<double>(wanted))) return edge;
   std::size_t few = std::max(wanted / 4, least);
   std::size_t many = wanted;
   for (int k = 0; k < guesses && many > few + 1; ++k) {
@@ -108,14 +110,15 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t 
 // The largest edge for the number of patches that is asked for.
 PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides) {
   const std::size_t least = least_patches(scene, sides);
-  // What is refined begins with no more than it has to.
-  const std::size_t wanted = refines(request.accuracy) ? std::max(asked, least) : enough_patches(asked, least);
+  // What is refined begins with no more than it has to; but so many rows of rays are not traced twice for nothing.
+  const bool begins_coarse = refines(request.accuracy) && request.assembly.storage != Storage::rays;
+  const std::size_t wanted = begins_coarse ? std::max(asked, least) : enough_patches(asked, least);
   // A nested mesh is made from parents with edges twice as long.
   PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, wanted, least) / 2
                                                   : max_edge_for(scene, sides, wanted),
                  wanted,
                  {}};
-  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(scene, asked, wanted));
+  if (wanted > asked && !begins_coarse) size.notes.push_back(note_on_patches(scene, asked, wanted));
   return size;
 }
 
@@ -177,7 +180,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
-  if (has_error_bars(request.accuracy) != has_error_bars(asked.accuracy)) size = patch_size(scene, request, sides);
+  if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);

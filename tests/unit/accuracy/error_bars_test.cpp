@@ -62,6 +62,16 @@ TEST(RelativeBar, IsRelativeToTheReflectedLight) {
   EXPECT_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 0)), 0);
 }
 
+// An error that nothing bounds is infinite, also where one of the patches reflects nothing of it.
+TEST(RelativeBar, IsInfiniteWhereNoBoundIsKnown) {
+  const RadiosityProblem problem{Eigen::Array2d(0.5, 0), Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
+  Solution solution;
+  solution.radiosity = Eigen::Array2d(10, 0);
+  solution.irradiance = Eigen::Array2d(6, 1);
+  const Field bar = solver_errors({problem, solution});
+  EXPECT_TRUE(std::isinf(relative_bar(bar, problem, solution, Eigen::Vector2d(1, 1))));
+}
+
 // Of two independent values, each a standard deviation sigma off, the difference has sqrt(2) sigma; where nothing
 // reflects, that is all.
 TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {

@@ -165,14 +165,37 @@ TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
   }
 }
 
-// With error bars large patches are cut in four and small faces stay whole: neither all nor a quarter of the patches
-// are parents. 60 small boxes in a room.
-TEST(MakePlan, MeetsTheNumberOfPatchesOfNestedMeshesWithManySmallFaces) {
+// Small boxes in a room, in layers of 60.
+Scene room_with_boxes(int boxes) {
   Scene scene = furnished_room(0.5);
-  for (int k = 0; k < 60; ++k) {
-    const Point corner(0.2 + 0.3 * (k % 10), 0.2 + 0.4 * (k / 10 % 6), 0.1);
+  for (int k = 0; k < boxes; ++k) {
+    const Point corner(0.2 + 0.3 * (k % 10), 0.2 + 0.4 * (k / 10 % 6), 0.1 + 0.2 * (k / 60));
     scene = with_box(std::move(scene), corner, corner + Vector(0.1, 0.1, 0.1), false);
   }
+  return scene;
+}
+
+// Where the faces alone are as many patches as are asked for the large ones are cut all the same, with and without
+// error bars: those beyond the faces are theirs.
+TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
+  const Scene scene = room_with_boxes(240);
+  for (const bool error_bars : {false, true}) {
+    Request request;
+    request.mesh.patches = 100;
+    request.mesh.sides = Sides::front;
+    request.accuracy.error_bars = error_bars;
+    const Plan plan = make_plan(scene, request);
+    const double least = tessellate(scene, plan.sides, 100).size();
+    const NestedMesh nested = nest(tessellate(scene, plan.sides, 2 * plan.max_edge));
+    const double count = error_bars ? nested.patches.size() : tessellate(scene, plan.sides, plan.max_edge).size();
+    EXPECT_NEAR((count - least) / (least / 4), 1, 0.4) << error_bars;
+  }
+}
+
+// With error bars large patches are cut in four and small faces stay whole: neither all nor a quarter of the patches
+// are parents.
+TEST(MakePlan, MeetsTheNumberOfPatchesOfNestedMeshesWithManySmallFaces) {
+  const Scene scene = room_with_boxes(60);
   for (const std::size_t patches : {500U, 1500U, 4000U}) {
     Request request;
     request.mesh.patches = patches;
