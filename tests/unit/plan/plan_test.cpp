@@ -177,7 +177,7 @@ Scene room_with_boxes(int boxes) {
 
 // Where the faces alone are as many patches as are asked for the large ones are cut all the same, with and without
 // error bars: those beyond the faces are theirs.
-TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
+TEST(MakePlan, CutsLargeFacesBesideFacesThatAreEnoughPatches) {
   const Scene scene = room_with_boxes(240);
   for (const bool error_bars : {false, true}) {
     Request request;
