@@ -32,14 +32,13 @@ void add_storage_options(CLI::App& command, Request& request) {
       "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
       "--accuracy takes more where\nthat pays; default 64",
       [&request](const std::string& text) {
-        request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 8192));
+        request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
+        if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
       });
 }
 
 Request with_fitting_solver(Request request, bool solver_given) {
   Storage& storage = request.assembly.storage;
-  const bool rays_given = request.assembly.rays != AssemblyOptions().rays;
-  if (rays_given && storage == Storage::automatic) storage = Storage::rays;
   if (solver_given) {
     if (storage == Storage::automatic) storage = Storage::tiles;
   } else if (storage == Storage::rays) {

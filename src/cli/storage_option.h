@@ -9,8 +9,8 @@ namespace patchlight::cli {
 /// Adds --storage and --on-demand. What is parsed lands in `request`, which must outlive the command.
 void add_storage_options(CLI::App& command, Request& request);
 
-/// Rows of rays where a number of rays is asked for. Where no solver is asked for, one that can do with the storage;
-/// where one is, pairs unless another storage is asked for.
+/// Where no solver is asked for, one that can do with the storage; where one is, pairs unless another storage is asked
+/// for.
 Request with_fitting_solver(Request request, bool solver_given);
 
 }  // namespace patchlight::cli

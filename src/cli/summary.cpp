@@ -37,10 +37,15 @@ std::string convergence(const Report& report) {
   return text.str();
 }
 
+// Of all that is known of it.
+double known_error(const AccuracyStep& step) {
+  return std::isfinite(step.solver) ? step.total : std::hypot(step.mesh, step.form_factor);
+}
+
 std::string parts(const AccuracyStep& step) {
   const bool solver_known = std::isfinite(step.solver);
-  return percent(solver_known ? step.total : std::hypot(step.mesh, step.form_factor), 2) + " %: mesh " +
-         percent(step.mesh, 2) + ", form factors " + percent(step.form_factor, 2) + ", solver " +
+  return percent(known_error(step), 2) + " %: mesh " + percent(step.mesh, 2) + ", form factors " +
+         percent(step.form_factor, 2) + ", solver " +
          (solver_known ? percent(step.solver, 1) : "not known and not in it") + "; drawn with one value a patch " +
          percent(step.display, 2) + " %";
 }
@@ -61,7 +66,7 @@ std::string errors(const Report& report) {
 std::string advice_on_errors(const Report& report) {
   constexpr double large = 0.05;
   const AccuracyStep& step = report.accuracy.back();
-  if (refines(report.plan.accuracy) || !(step.total > large)) return {};
+  if (refines(report.plan.accuracy) || !(known_error(step) > large)) return {};
   const bool by_rays = report.plan.assembly.storage == Storage::rays;
   return std::string("that is much; ") +
          (step.mesh >= step.form_factor ? "more --patches make it smaller, or --accuracy where they pay"
@@ -246,7 +251,8 @@ std::string explain_not_accurate(const Report& report) {
   if (report.plan.accuracy.seconds) return text + "Give a longer --time, or more --memory if it ended before";
   return text + (by_mesh ? "Begin with more --patches"
                  : report.plan.assembly.storage == Storage::rays
-                     ? "Begin with more --rays, or take --storage tiles"
+                     ? "Begin with more --rays, unless it is of luminaires, sun or sky (error_direct_irradiance); "
+                       "a lamp that nearly touches a surface takes very many"
                      : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
 }
 

@@ -77,13 +77,21 @@ double root_mean_square(const Field& values) {
   return std::sqrt(squares.sum() / static_cast<double>(std::max<Eigen::Index>(1, values.isFinite().count())));
 }
 
+// Without the solver's where no bound is known: an infinite one would grant everything.
+Field known_bars(const ErrorBars& bars) {
+  if (bars.solver.allFinite()) return bars.total();
+  return (bars.mesh.square() + bars.form_factor.square()).sqrt();
+}
+
 // What the irradiances are granted.
 std::string bars(const std::optional<double>& bar, const Simulation& simulation) {
   if (bar) return "a bar of " + percent(*bar) + " % of the irradiance, or of its mean where that is larger";
   const AccuracyStep& errors = simulation.accuracy.back();
-  return "the error bars of the patches, " + percent(errors.total, 2) + " % as a whole (mesh " +
-         percent(errors.mesh, 2) + ", form factors " + percent(errors.form_factor, 2) + ", solver " +
-         percent(errors.solver, 1) + ")";
+  const bool solver_known = std::isfinite(errors.solver);
+  const double all = solver_known ? errors.total : std::hypot(errors.mesh, errors.form_factor);
+  return "the error bars of the patches, " + percent(all, 2) + " % as a whole (mesh " + percent(errors.mesh, 2) +
+         ", form factors " + percent(errors.form_factor, 2) + ", solver " +
+         (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
 }
 
 // What the differences of a part come to.
@@ -181,7 +189,7 @@ ExitCode verify(const VerifyArguments& arguments) {
 
   // 2. Trace paths, and compare
   const double begin = wall_seconds();
-  const Field bar = arguments.bar ? irradiance_bar(simulation, *arguments.bar) : simulation.error_bars->total();
+  const Field bar = arguments.bar ? irradiance_bar(simulation, *arguments.bar) : known_bars(*simulation.error_bars);
   const Verification verification = patchlight::verify(scene, simulation, bar, arguments.options, observer);
   const double seconds = wall_seconds() - begin;
   line.hide();

@@ -85,8 +85,12 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
   arguments.request.accuracy.error_bars = !options.bar;
-  // What rays err is in no --bar.
   Storage& storage = arguments.request.assembly.storage;
+  if (options.bar && storage == Storage::rays) {
+    throw UsageError(
+        "--bar: found with --storage rays or --rays; it takes the place of all errors, and what rays err "
+        "is in none that is given. Give one of them");
+  }
   if (options.bar && storage == Storage::automatic) storage = Storage::tiles;
   arguments.request = with_fitting_solver(std::move(arguments.request), false);
   const OptionName error_bars{"accuracy.error_bars", "the error bars that verify takes without --bar PERCENT"};

@@ -39,9 +39,16 @@ ConservingSolution conserving_flux(const TransportOperator& transport, const Rad
       solve(transport, of_a_watt, {.solver = Solver::gmres, .relative_error = error_of_response}, observer);
   const Eigen::ArrayXd lacking_again = missing(flux, transport.apply(response.radiosity), response.radiosity, area);
 
+  constexpr double most_again = 0.5;
+  if (!solution.converged || !response.converged || (lacking_again > most_again).any()) {
+    flux.shape.setZero();
+    return {std::move(solution), std::move(flux)};
+  }
+
   // 3. All of it together.
-  const Eigen::ArrayXd watts = lacking / (1 - lacking_again);
-  solution.radiosity += scaled(response.radiosity, watts);
+  const Field added = scaled(response.radiosity, lacking / (1 - lacking_again));
+  solution.radiosity += added;
+  if (solution.error.size() > 0) solution.error += error_of_response * added.abs();
   return {std::move(solution), std::move(flux)};
 }
 

@@ -20,12 +20,16 @@ struct ConservedFlux {
   Field completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const;
 };
 
-/// A solution B = E + R (F B + H_direct) made one that conserves flux, by the Sherman-Morrison formula: a second
-/// solution, of `shape` reflected, tells what a missing watt changes. `row_sum` is s_j. \throws Cancelled.
+/// A solution and what it conserves. `solution` has the radiosity of that; its irradiance is the one before.
 struct ConservingSolution {
   Solution solution;
   ConservedFlux flux;
 };
+
+/// A solution B = E + R (F B + H_direct) made one that conserves flux, by the Sherman-Morrison formula: a second
+/// solution, of `shape` reflected, tells what a missing watt changes. What the second leaves is added to the error of
+/// the first. `row_sum` is s_j. Where one of both does not converge, the solution stays as it is, and `shape` is 0.
+/// \throws Cancelled.
 ConservingSolution conserving_flux(const TransportOperator& transport, const RadiosityProblem& problem,
                                    Solution solution, const Eigen::VectorXd& row_sum, const Observer& observer = {});
 

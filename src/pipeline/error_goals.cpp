@@ -25,7 +25,7 @@ double allowed(double accuracy, double share, double others) {
   return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
 }
 
-// What shadow rays err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
+// What samples err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
 // to do with their samples.
 double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
   const double noise = solved.noise_bar;

@@ -155,9 +155,9 @@ struct SingleVariances {
   Field of_lights;  // of lamps and lights that are no patches
 };
 
-// The variance of what all patches reflect together, relative to its square, per band. What a patch sends is reflected
-// by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is more than its own error;
-// but for rows only how far it is from the mean counts, as no flux gets lost.
+// The variance of the flux that all patches reflect of light from other patches, relative to its square, per band. What
+// a patch sends is reflected by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is
+// more than its own error; but for rows only how far it is from the mean counts, as no flux gets lost.
 Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProblem& solved, const ConservedFlux& flux,
                                  const SingleVariances& variances) {
   const RadiosityProblem& problem = solved.problem;
@@ -167,8 +167,20 @@ Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProb
   const Field gain = problem.scattering.reflect(again);
   const Field beyond_mean = gain.rowwise() - area_sum(flux.shape * gain, area).transpose();
   const Field variance = beyond_mean.square() * variances.of_rows + gain.square() * variances.of_lights;
-  const Eigen::ArrayXd reflected = area_sum(solved.solution.radiosity - problem.exitance, area);
+  const Field from_patches = solved.solution.irradiance - problem.direct_irradiance;
+  const Eigen::ArrayXd reflected = area_sum(problem.scattering.reflect(from_patches), area);
   return quotient(area_sum(variance.colwise() * area.array(), area), reflected.square());
+}
+
+// The last gather by each half of the rays.
+std::array<Field, 2> gathered(const RayTransport& transport, const Field& sources, const ConservedFlux* flux,
+                              const Eigen::VectorXd& area) {
+  std::array<Field, 2> halves;
+  for (std::size_t half = 0; half < 2; ++half) {
+    halves[half] = transport.apply_half(half, sources);
+    if (flux != nullptr) halves[half] = flux->completed(std::move(halves[half]), sources, area);
+  }
+  return halves;
 }
 
 }  // namespace
@@ -187,9 +199,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
 
   // 2. Gather once more, by each half, and smooth.
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
-  std::array<Field, 2> raw{transport.apply_half(0, sources), transport.apply_half(1, sources)};
-  if (reflects_twice)
-    for (Field& half : raw) half = flux.completed(std::move(half), sources, all.area);
+  const std::array<Field, 2> raw = gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area);
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.
@@ -209,7 +219,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
 
   // 5. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
   if (reflects_twice) {
-    const Eigen::ArrayXd level = variance_of_level(transport, {all, solution}, flux, single);
+    const Eigen::ArrayXd level = variance_of_level(transport, {problem, solution}, flux, single);
     variance += scaled((solution.irradiance - problem.direct_irradiance).square(), level);
   }
   return {std::move(solution), variance.sqrt()};

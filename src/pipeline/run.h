@@ -34,10 +34,10 @@ struct Known {
   std::optional<LostShare> lost;     ///< its lost shares; none: all are new
 };
 
-/// A mesh whose solution is wanted. Without parents there are no error bars.
+/// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
 struct MeshToSolve {
   NestedMesh mesh;
-  Plan plan;  ///< that of the run, with the samples and the solver's error that this mesh is worth
+  Plan plan;  ///< that of the run, with the storage, samples and solver's error that this mesh is worth
   Known known;
 };
 
@@ -49,7 +49,7 @@ struct SolvedMesh {
   Eigen::VectorXd interest = {};     ///< with parents: 1 for each patch whose error counts, else 0
   Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(), and of what light_bar is of
   Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
-  double noise_bar = 0;              ///< with parents: what shadow rays between patches err, as relative_bar()
+  double noise_bar = 0;              ///< with parents: what rays between patches err, as relative_bar()
   double light_bar = 0;              ///< with parents: and those towards luminaires, sun and sky
 };
 

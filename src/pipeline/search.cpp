@@ -200,7 +200,7 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   const int samples = samples_of(plan.assembly);
   const bool by_time = run_.plan.accuracy.seconds.has_value();
   int more = samples_for(solved, step, accuracy, plan);
-  // Without an accuracy only rows of rays, where samples cost no more than patches, take more of them.
+  // By time only rows of rays, where samples cost no more than patches, take more of them.
   if (by_time && (keeps_entries(plan.assembly.storage) || patches_in_time(plan, more) < step.patches)) more = samples;
   const std::size_t parents = solved.mesh.parents.size();
   const double fitting = patches_that_fit(with_samples(plan, more));
@@ -216,8 +216,8 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
 }
 
 bool Search::may_go_by_rays(const Plan& plan) const {
-  return run_.request.assembly.storage == Storage::automatic && plan.assembly.storage == Storage::tiles &&
-         !takes_pairs(run_.request, given_by(run_.with));
+  return !run_.plan.accuracy.seconds && run_.request.assembly.storage == Storage::automatic &&
+         plan.assembly.storage == Storage::tiles && !takes_pairs(run_.request, given_by(run_.with));
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {
@@ -249,7 +249,7 @@ Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Pla
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
-  if (!refines(run_.plan.accuracy) || !solved.simulation.solution.converged) return std::nullopt;
+  if (!refines(run_.plan.accuracy) || !solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);

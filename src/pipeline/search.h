@@ -9,7 +9,8 @@
 namespace patchlight {
 
 /// The way to an accuracy: finer and finer meshes, with more samples where these are what limits, until the plan's
-/// accuracy is reached or its time is up. A run that asks for none has one mesh.
+/// accuracy is reached or its time is up; by rows of rays where all pairs of the next mesh do not fit into the memory,
+/// unless these or a time were asked for. A run that asks for none has one mesh.
 class Search {
  public:
   /// Time counts from here on. `run` has to outlive the search.

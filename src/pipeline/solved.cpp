@@ -15,8 +15,14 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   const TransportFacts& facts = simulation.transport;
   SolverOptions options = simulation.plan.solver;
   options.largest_row_sum = largest(facts.row_sum);
-  RaySolution found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts.row_sum, options);
-  simulation.solution = std::move(found.solution);
+  RaySolution found;
+  const Solve once = [&](const SolverOptions& by) {
+    found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts.row_sum, by);
+    return found.solution;
+  };
+  SolvedWith best = solve_for_interest(run, simulation, options, once);
+  simulation.plan.solver.relative_error = best.relative_error;
+  simulation.solution = std::move(best.solution);
   simulation.ray_standard_error = std::move(found.standard_error);
   simulation.balance = energy_balance(simulation.problem, simulation.solution, facts.row_sum, facts.lost);
   return simulation;

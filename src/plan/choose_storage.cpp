@@ -1,5 +1,6 @@
 #include "plan/choose_storage.h"
 
+#include "plan/decide.h"
 #include "plan/memory.h"
 
 #include <utility>
@@ -40,14 +41,17 @@ Request by_rays(Request request) { return stored_as_rays(std::move(request)); }
 Plan by_rays(Plan plan) {
   plan = stored_as_rays(std::move(plan));
   plan.assembly.keep_errors = false;
+  for (Decision& decision : plan.decisions)
+    if (decision.effect == Effect::closure) decision = closed_by_rays();
   return plan;
 }
 
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
-  const bool has_bars = light.is_reflected && !given.mesh;
-  if (request.assembly.storage == Storage::rays && has_bars) chosen.request.accuracy.error_bars = true;
-  if (request.assembly.storage != Storage::automatic) return chosen;
+  const bool asks_for_rays = request.assembly.storage == Storage::rays;
+  if (asks_for_rays && light.is_reflected && !given.mesh) chosen.request.accuracy.error_bars = true;
+  const bool lacks_bars = asks_for_rays && !light.is_reflected && has_error_bars(request.accuracy);
+  if (request.assembly.storage != Storage::automatic && !lacks_bars) return chosen;
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
   const bool fits = bytes <= usable_memory(request.resources);

@@ -35,8 +35,9 @@ struct StoredLight {
 };
 
 /// Storage::automatic becomes rows of rays for more than most_patches_in_pairs, and where all pairs do not fit into the
-/// memory, unless something that is asked for takes_pairs() or no light is reflected. Another storage stays. Rows of
-/// rays have error bars, and with these nested meshes.
+/// memory, unless something that is asked for takes_pairs() or no light is reflected. Another storage stays, but
+/// rays where error bars are wanted of light that is not reflected: that takes tiles. Rows of rays have error bars, and
+/// with these nested meshes.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

@@ -145,8 +145,7 @@ Decision sky(const EffectFacts& facts) {
 Decision closure(const Request& request, bool interreflects) {
   Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
                     "a few products with the matrix"};
-  if (request.assembly.storage == Storage::rays)
-    return {Effect::closure, false, "each row of rays is closed by itself", "products with the matrix"};
+  if (request.assembly.storage == Storage::rays) return closed_by_rays();
   if (!keeps_entries(request.assembly.storage))
     return {Effect::closure, false, "rows on demand cannot be closed", "the matrix"};
   if (!interreflects)
@@ -191,6 +190,10 @@ bool is_there(Effect effect, const EffectFacts& facts) {
 }
 
 }  // namespace
+
+Decision closed_by_rays() {
+  return {Effect::closure, false, "each row of rays is closed by itself", "products with the matrix"};
+}
 
 std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
   std::vector<Decision> decisions = {occlusion(facts),

@@ -16,6 +16,9 @@ namespace patchlight {
 /// that is not there cannot be forced.
 std::vector<Decision> decide(const EffectFacts& facts, const Request& request);
 
+/// The decision about closure where form factors are rows of rays.
+Decision closed_by_rays();
+
 /// A note on every effect that is to be forced or skipped and of which the scene has nothing.
 std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request);
 

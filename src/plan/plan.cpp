@@ -89,6 +89,9 @@ struct PatchSize {
 double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t wanted, std::size_t least) {
   constexpr double enough = 0.8;
   constexpr int guesses = 6;
+  // What no memory holds is refused later, and not meshed to find that out.
+  constexpr std::size_t too_many = 5'000'000;
+  if (wanted > too_many) return 2 * max_edge_for(scene, sides, wanted);
   double edge = max_edge_for(scene, sides, wanted / 4);
   double number = static_cast<double>(nest(tessellate(scene, sides, edge)).patches.size());
   const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
@@ -118,7 +121,7 @@ PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& r
                                                   : max_edge_for(scene, sides, wanted),
                  wanted,
                  {}};
-  if (wanted > asked && !begins_coarse) size.notes.push_back(note_on_patches(scene, asked, wanted));
+  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(scene, asked, wanted));
   return size;
 }
 
@@ -139,7 +142,8 @@ PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides
 // Error bars follow from the errors of the entries.
 AssemblyOptions decided(AssemblyOptions assembly, const Request& request, bool close) {
   assembly.close = close;
-  assembly.keep_errors = assembly.keep_errors || has_error_bars(request.accuracy);
+  const bool of_pairs = assembly.storage != Storage::rays && has_error_bars(request.accuracy);
+  assembly.keep_errors = assembly.keep_errors || of_pairs;
   return assembly;
 }
 

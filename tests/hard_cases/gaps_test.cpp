@@ -78,6 +78,7 @@ class Gaps : public testing::TestWithParam<Gap> {};
 // where they are wide.
 struct Compared {
   double chi_square = 0;  // mean over the patches
+  double scatter = 0;     // of that mean where bars are just right: its standard deviation
   double width = 0;       // of the bars, as a share of the light there
 };
 
@@ -100,7 +101,8 @@ Compared with_paths(const Scene& scene, const Simulation& simulation) {
     bars += bar(patches[k], 0) * bar(patches[k], 0);
     if (off != 0) chi_square += std::min(off * off / (expected * expected), 1e6);
   }
-  return {chi_square / static_cast<double>(patches.size()), std::sqrt(bars) / paths.irradiance.matrix().norm()};
+  const auto count = static_cast<double>(patches.size());
+  return {chi_square / count, std::sqrt(2 / count), std::sqrt(bars) / paths.irradiance.matrix().norm()};
 }
 
 Compared solved_and_traced(const std::vector<Quad>& faces, double size, std::size_t patches, Storage storage) {
@@ -123,10 +125,11 @@ TEST_P(Gaps, LeakNoMoreThanBarsSay) {
   }
 }
 
+// Noise of the rays is most of these bars: they are as wide as what they state, not wider.
 TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
   for (const double size : {1.0, 1e-3}) {
     const Compared by = solved_and_traced(GetParam().faces, size, 2000, Storage::rays);
-    EXPECT_LT(by.chi_square, 1) << "size " << size;
+    EXPECT_LT(by.chi_square, 1 + 2 * by.scatter) << "size " << size << ", scatter " << by.scatter;
     EXPECT_LT(by.width, 0.2) << "bars that tell nothing, size " << size;
   }
 }
