@@ -52,7 +52,8 @@ struct FacesUnderRims {
   const Scene& scene;
   const Shells& shells;
   FaceTree tree;
-  double near;  // metres
+  double near;    // metres
+  double extent;  // metres, of the scene
 
   bool is_closed(const std::vector<Point>& outline, PolygonIndex shell) const;
   bool shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const;
@@ -75,7 +76,7 @@ bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex s
                         rim.normal,
                         largest_tilt,
                         rim.normal.dot(outline[0]),
-                        extent_of(scene)};
+                        extent};
   std::vector<std::vector<Point>> left;
   for (const Triangle& triangle : triangles_of(outline)) left.emplace_back(triangle.begin(), triangle.end());
   std::size_t triangles = 0;
@@ -104,6 +105,18 @@ std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimE
   return lids;
 }
 
+// Do all these polygons lie in one plane? Then nothing closes them to a solid.
+bool are_flat(const Scene& scene, const std::vector<PolygonIndex>& polygons, double near) {
+  const Vector normal = front_normal(scene, polygons.front());
+  const Point& on_plane = scene.vertices[scene.polygons[polygons.front()].corners[0]];
+  const auto in_plane = [&](std::uint32_t corner) {
+    return std::abs(normal.dot(scene.vertices[corner] - on_plane)) <= near;
+  };
+  return std::all_of(polygons.begin(), polygons.end(), [&](PolygonIndex p) {
+    return std::all_of(scene.polygons[p].corners.begin(), scene.polygons[p].corners.end(), in_plane);
+  });
+}
+
 FaceTree tree_of(const Scene& scene) {
   std::vector<FlatFace> faces;
   faces.reserve(scene.polygons.size());
@@ -123,9 +136,10 @@ std::vector<Solid> standing_solids(const Scene& scene, const Shells& shells) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (shells.rimmed[p]) members[shells.shell[p]].push_back(p);
   }
-  const FacesUnderRims search{scene, shells, tree_of(scene), weld_distance(scene)};
+  const FacesUnderRims search{scene, shells, tree_of(scene), weld_distance(scene), extent_of(scene)};
   std::vector<Solid> solids;
   for (const auto& [shell, edges] : rims) {
+    if (are_flat(scene, members[shell], search.near)) continue;
     std::optional<std::vector<Triangle>> lids = search.lids(edges);
     if (!lids) continue;
     std::optional<Solid> solid = solid_of(scene, std::move(members[shell]), shells, std::move(*lids));

@@ -76,7 +76,7 @@ TEST(Rays, BalanceTheFlux) {
 }
 
 // All that patches send arrives: the errors of rows do not change the level of the light, which 1 / (1 - rho) = 33
-// reflections would multiply. Root mean square of four seeds; without it .6 %.
+// reflections would multiply. Root mean square of four seeds.
 TEST(Rays, KeepTheLevelOfBrightRooms) {
   const Scene scene = test_room(0.97);
   const auto level = [](const Simulation& s) { return (reflected(s).col(0) * s.problem.area.array()).sum(); };
