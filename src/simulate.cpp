@@ -1,5 +1,7 @@
 #include "patchlight/simulate.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/parallel.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
@@ -21,6 +23,15 @@
 #include <vector>
 
 namespace patchlight {
+namespace {
+
+Simulation finished(Simulation simulation, const Scene& scene, const StageClock& clock) {
+  simulation.spaces = errors_by_space(scene, simulation);
+  simulation.costs = clock.costs();
+  return of_whole_patches(std::move(simulation), scene);
+}
+
+}  // namespace
 
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
   const ThreadLimit threads(request.resources.threads);
@@ -43,38 +54,42 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   const Run run{lit, request, plan, notes, tracing, with, observer};
 
   Search search(run);
-  for (std::optional<MeshToSolve> next = search.first();;) {
-    // 4. Subdivide the kept sides of the polygons into patches.
-    const MeshToSolve& meshed = *next;
-    require_memory(meshed.mesh.patches.size(), request, meshed.plan);
-    clock.finish(Stage::mesh);
+  try {
+    for (std::optional<MeshToSolve> next = search.first();;) {
+      // 4. Subdivide the kept sides of the polygons into patches.
+      const MeshToSolve& meshed = *next;
+      require_memory(meshed.mesh.patches.size(), request, meshed.plan);
+      clock.finish(Stage::mesh);
 
-    // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
-    RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::move(next->known));
-    clock.finish(Stage::form_factors);
-    MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
-    clock.finish(Stage::closure);
+      // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
+      RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::move(next->known));
+      clock.finish(Stage::form_factors);
+      MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
+      clock.finish(Stage::closure);
 
-    // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
-    LitProblem problem =
-        transport.light ? transport.light->lit : lit_problem(run, meshed.plan, meshed.mesh.patches, transport.area);
-    if (has_point_or_daylight(lit)) clock.finish(Stage::direct_light);
+      // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
+      LitProblem problem =
+          transport.light ? transport.light->lit : lit_problem(run, meshed.plan, meshed.mesh.patches, transport.area);
+      if (has_point_or_daylight(lit)) clock.finish(Stage::direct_light);
 
-    // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
-    Simulation simulation = solved(run, meshed, transport, std::move(problem));
-    clock.finish(Stage::solve);
+      // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
+      Simulation simulation = solved(run, meshed, transport, std::move(problem));
+      clock.finish(Stage::solve);
+      search.keep(simulation);
+      if (simulation.solution.stopped) throw Cancelled();
 
-    // 8. How far that may be off.
-    SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
-    clock.finish(Stage::error_bars);
+      // 8. How far that may be off.
+      SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
+      clock.finish(Stage::error_bars);
 
-    // 9. Refine where that pays, or end.
-    result = search.noted(std::move(result));
-    next = search.next(result);
-    if (next) continue;
-    result.simulation.spaces = errors_by_space(lit, result.simulation);
-    result.simulation.costs = clock.costs();
-    return of_whole_patches(std::move(result.simulation), lit);
+      // 9. Refine where that pays, or end.
+      result = search.noted(std::move(result));
+      next = search.next(result);
+      if (!next) return finished(std::move(result.simulation), lit, clock);
+    }
+  } catch (const Cancelled&) {
+    if (!search.kept()) throw;
+    return finished(*search.kept(), lit, clock);
   }
 }
 

@@ -76,6 +76,7 @@ struct Simulation {
   Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
                                   ///< the solver err, which are not known; else empty
+  bool unfinished = false;        ///< stopped by the observer, with Steps::keeps_unfinished
   std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
                                                 ///< the solution; never null after simulate()
 };
@@ -99,6 +100,9 @@ struct Steps {
   SolveWith solve = {};      ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
+  /// When the observer stops the run, simulate() returns the last mesh that was solved, or, as long as there is none,
+  /// the last iterate of its solver, as Simulation::unfinished. Else, and where there is neither, it throws Cancelled.
+  bool keeps_unfinished = false;
 };
 
 /// From a scene to converged radiosities: the whole program.

@@ -64,7 +64,7 @@ std::string not_reached(const Comparison& comparison) {
 ExitCode compare(const CompareArguments& arguments) {
   check_comparison_writable(arguments.output);
   const ThreadLimit limit(arguments.request.resources.threads);
-  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 
   // 1. Read the model, run the solvers

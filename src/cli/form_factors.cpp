@@ -72,7 +72,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
     check_form_factors_writable(arguments.output);
   }
   const ThreadLimit limit(arguments.request.resources.threads);
-  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 
   // 1. Read the model, find the form factors

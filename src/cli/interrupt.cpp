@@ -13,23 +13,33 @@ namespace {
 
 // A signal handler can reach nothing but static state.
 std::atomic<bool> stop_asked{false};
+std::atomic<bool> end_asked{false};
+std::atomic<bool> keeping{false};
 std::atomic<bool> writing{false};
 std::atomic<bool> on_terminal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may use lock-free atomics only");
 
 constexpr suseconds_t patience_microseconds = 500'000;
 
-extern "C" void end_at_once(int) {
-  if (writing) return;
-  // Only what is safe inside a signal handler; the line break leaves the progress line.
-  std::string_view message = "\npatchlight: error: interrupted; no further file was written\n";
+// Only what is safe inside a signal handler; the line break leaves the progress line.
+void say(std::string_view message) {
   if (!on_terminal) message.remove_prefix(1);
   [[maybe_unused]] const ssize_t count = write(STDERR_FILENO, message.data(), message.size());
+}
+
+extern "C" void end_at_once(int) {
+  if (writing) return;
+  say("\npatchlight: error: interrupted; no further file was written\n");
   _exit(interrupted_run);
 }
 
-extern "C" void ask_to_stop(int) {
-  stop_asked = true;
+extern "C" void ask_to_stop(int signal) {
+  const bool again = stop_asked.exchange(true);
+  if (keeping && signal == SIGINT && !again) {
+    say("\npatchlight: note: stopping, to write what is there; Ctrl-C once more ends without\n");
+    return;
+  }
+  end_asked = true;
   itimerval timer{};
   timer.it_value.tv_usec = patience_microseconds;
   setitimer(ITIMER_REAL, &timer, nullptr);
@@ -56,6 +66,15 @@ void watch_interrupts() {
 }
 
 bool interrupted() { return stop_asked; }
+
+void keep_what_is_there() { keeping = true; }
+
+bool may_write_what_is_there() {
+  keeping = false;
+  if (end_asked) return false;
+  stop_asked = false;
+  return !end_asked;
+}
 
 WritingGuard::WritingGuard() { writing = true; }
 

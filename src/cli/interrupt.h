@@ -10,6 +10,14 @@ void watch_interrupts();
 /// True once the run was asked to stop.
 bool interrupted();
 
+/// From now on there is something to write: the first Ctrl-C only asks the run to stop, however long that takes. A
+/// second one, SIGTERM and SIGHUP end it as before.
+void keep_what_is_there();
+
+/// After such a first Ctrl-C: forgets it, so that what is there can be written; the next one ends the run. False when
+/// the run was asked to end.
+bool may_write_what_is_there();
+
 /// Results are being written while this lives: the file at hand is finished or removed before the run stops.
 class WritingGuard {
  public:

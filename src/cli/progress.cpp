@@ -35,29 +35,42 @@ void ProgressLine::name(std::string work) {
   stage_.reset();
 }
 
-void ProgressLine::show(const Progress& progress) {
-  if (!visible_) return;
-  const double now = wall_seconds();
+std::string ProgressLine::text_of(const Progress& progress, double now) {
   if (stage_ != progress.stage) {
     stage_ = progress.stage;
     stage_begin_ = now;
   }
-
-  std::string line = work_ + name_of(progress.stage);
-  line += ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
+  std::string text = work_ + name_of(progress.stage);
+  text += ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
   // The time left follows from the time taken; too early it would only flicker.
   const double taken = now - stage_begin_;
   if (taken > 1 && progress.fraction > 0.02 && progress.fraction < 1) {
-    line += ", " + duration(taken * (1 - progress.fraction) / progress.fraction) + " left";
+    text += ", " + duration(taken * (1 - progress.fraction) / progress.fraction) + " left";
   }
-
-  const std::size_t length = line.size();
-  if (length < width_) line.append(width_ - length, ' ');  // covers what is left of a longer line
-  width_ = length;
-  std::cerr << '\r' << line << std::flush;
+  return text;
 }
 
-bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
+void ProgressLine::show(const Progress& progress, double now) {
+  if (shown_ == ProgressShown::nothing) return;
+  std::string text = text_of(progress, now);
+  if (shown_ == ProgressShown::log) {
+    constexpr double interval = 10;
+    if (!next_line_) next_line_ = now + interval;
+    if (now < *next_line_) return;
+    next_line_ = now + interval;
+    std::cerr << "patchlight: " << text << std::endl;
+    return;
+  }
+  const std::size_t length = text.size();
+  if (length < width_) text.append(width_ - length, ' ');  // covers what is left of a longer line
+  width_ = length;
+  std::cerr << '\r' << text << std::flush;
+}
+
+ProgressShown progress_shown(bool quiet) {
+  if (quiet) return ProgressShown::nothing;
+  return isatty(STDERR_FILENO) == 1 ? ProgressShown::line : ProgressShown::log;
+}
 
 Observer observer_on(ProgressLine& line) {
   return [&line](const Progress& progress) {

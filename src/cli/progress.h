@@ -3,6 +3,8 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/input/read_scene.h"
 
+#include "base/parallel.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -11,31 +13,39 @@
 
 namespace patchlight::cli {
 
-/// One line on stderr that is rewritten while the work goes on: stage, percent, time left. Erased at the end.
+/// How progress is told: not at all, in one line that is rewritten, or, where that cannot be, in a line every ten
+/// seconds.
+enum class ProgressShown { nothing, line, log };
+
+/// The line where stderr is a terminal, else the log.
+ProgressShown progress_shown(bool quiet);
+
+/// Stage, percent and time left on stderr while the work goes on. A line that is rewritten is erased at the end.
 class ProgressLine {
  public:
-  /// An invisible line shows nothing.
-  explicit ProgressLine(bool visible) : visible_(visible) {}
+  explicit ProgressLine(ProgressShown shown) : shown_(shown) {}
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// What is at work, before stage, percent and time left; nothing at first.
   void name(std::string work);
-  void show(const Progress& progress);
+  void show(const Progress& progress) { show(progress, wall_seconds()); }
+  /// At this time, in wall seconds.
+  void show(const Progress& progress, double now);
   /// Erases the line, so that something else can be printed.
   void hide();
 
  private:
-  bool visible_;
+  std::string text_of(const Progress& progress, double now);
+
+  ProgressShown shown_;
   std::string work_;
   std::optional<Stage> stage_;
-  double stage_begin_ = 0;  // wall seconds
-  std::size_t width_ = 0;   // characters on the line
+  double stage_begin_ = 0;           // wall seconds
+  std::optional<double> next_line_;  // of the log, wall seconds
+  std::size_t width_ = 0;            // characters on the line
 };
-
-/// True when stderr is a terminal.
-bool stderr_is_terminal();
 
 /// Shows progress on the line, which must outlive it, and lets the work go on until the run is interrupted.
 Observer observer_on(ProgressLine& line);

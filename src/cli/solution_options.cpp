@@ -169,6 +169,9 @@ void add_solver_options(CLI::App& command, SolutionOptions& options, Request& re
 }
 
 void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
+  command.add_flag(
+      "--discard", options.discards,
+      "Ctrl-C writes nothing; default: what is there, once a\nmesh is solved or an iterate of the first is");
   command.add_flag("-q,--quiet", options.quiet, "says nothing but errors; default: progress and a summary");
   command.add_flag("-v,--verbose", options.verbose, "adds decisions, counts and speed to the summary; default: off");
 }
@@ -192,6 +195,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   if (!arguments.points_outputs.empty() && !may_have_sensors(arguments, options)) {
     throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
   }
+  arguments.discards = options.discards;
   if (options.quiet) arguments.verbosity = Verbosity::quiet;
   if (options.verbose) arguments.verbosity = Verbosity::verbose;
   require_distinct(outputs_of(arguments));

@@ -21,6 +21,7 @@ struct SolutionOptions {
   std::vector<std::string> points_outputs;
   std::optional<Camera> camera;  ///< model units
   std::optional<PictureColors> colors;
+  bool discards = false;
   bool quiet = false;
   bool verbose = false;
 };

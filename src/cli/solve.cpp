@@ -49,6 +49,27 @@ struct Results {
   Provenance provenance;
 };
 
+// The iterates of the mesh at hand, and of the one before, which is what is left when the run is stopped.
+class IteratesOfMeshes {
+ public:
+  explicit IteratesOfMeshes(bool wanted) : wanted_(wanted) {}
+
+  void add(const Progress& progress) {
+    if (!wanted_ || progress.irradiance == nullptr) return;
+    if (progress.iteration->number == 0) before_ = std::exchange(last_, {});
+    last_.emplace_back(progress.irradiance->cast<float>());
+  }
+
+  std::vector<IterateIrradiance> of_mesh(PatchIndex patches) {
+    const bool is_last = !last_.empty() && last_.front().rows() == static_cast<Eigen::Index>(patches);
+    return std::move(is_last ? last_ : before_);
+  }
+
+ private:
+  bool wanted_;
+  std::vector<IterateIrradiance> before_, last_;
+};
+
 void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.results) check_writable(file);
   if (!arguments.series.empty()) check_series_writable(arguments.series);
@@ -110,15 +131,16 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   reading.finish(Stage::read);
 
   // 2. Solve
-  const auto keep_iterates = [&](const Progress& progress) {
-    if (progress.irradiance && !arguments.series.empty()) {
-      // A finer mesh begins anew.
-      if (progress.iteration->number == 0) results.iterates.clear();
-      results.iterates.emplace_back(progress.irradiance->cast<float>());
-    }
+  IteratesOfMeshes iterates(!arguments.series.empty());
+  const auto observed = [&](const Progress& progress) {
+    if (progress.iteration != nullptr && !arguments.discards) keep_what_is_there();
+    iterates.add(progress);
     return observer(progress);
   };
-  simulation = simulate(results.scene, input.request, keep_iterates, {.exchange = input.exchange});
+  simulation = simulate(results.scene, input.request, observed,
+                        {.exchange = input.exchange, .keeps_unfinished = !arguments.discards});
+  if (simulation.unfinished && !may_write_what_is_there()) throw Cancelled();
+  results.iterates = iterates.of_mesh(simulation.mesh.size());
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
@@ -171,7 +193,8 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
 }
 
 // Said of a result without error bars.
-std::string how_to_know_errors(const SolveArguments& arguments) {
+std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished) {
+  if (unfinished) return "";
   if (!arguments.form_factors.empty()) return " with stored form factors";
   const auto part = part_without_error_bars(arguments.request);
   return part ? " with " + with_option_names(*part) : "; --error-bars tells them, in about twice the time";
@@ -186,7 +209,7 @@ ExitCode solve(const SolveArguments& arguments) {
   const bool quiet = arguments.verbosity == Verbosity::quiet;
   if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
   const Results results = [&] {
-    ProgressLine line(!quiet && stderr_is_terminal());
+    ProgressLine line(progress_shown(quiet));
     return compute(arguments, observer_on(line));
   }();
   const std::vector<std::filesystem::path> written = write(arguments, results);
@@ -194,8 +217,13 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.sensors.warnings) print_message("warning", warning);
-    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose, how_to_know_errors(arguments));
+    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
+                         how_to_know_errors(arguments, results.report.solution.unfinished));
     std::cout << files_line(written) << std::flush;
+  }
+  if (results.report.solution.unfinished) {
+    print_message("warning", explain_unfinished(results.report));
+    return interrupted_run;
   }
   if (!results.report.solution.converged) {
     print_message("warning", explain_not_converged(results.report));

@@ -59,7 +59,7 @@ std::string facts(const Scene& scene, const Study& study) {
 ExitCode study(const StudyArguments& arguments) {
   check_study_writable(arguments.output);
   const ThreadLimit limit(arguments.request.resources.threads);
-  ProgressLine line(!arguments.quiet && stderr_is_terminal());
+  ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 
   // 1. Read the model, solve it in many ways

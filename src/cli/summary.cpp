@@ -256,6 +256,15 @@ std::string explain_not_accurate(const Report& report) {
                      : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
 }
 
+std::string explain_unfinished(const Report& report) {
+  const std::string begin = "UNFINISHED, as it was stopped: what is written is ";
+  const std::string end = "; --discard writes nothing of a run that is stopped";
+  if (!report.solution.converged) return begin + "the last iterate of the solver, which has not converged" + end;
+  if (report.accuracy.empty()) return begin + "the solution of the first mesh, whose errors are not known yet" + end;
+  return begin + "the last mesh that was solved, with an error of about " +
+         percent(known_error(report.accuracy.back()), 2) + " %" + end;
+}
+
 std::string explain_not_converged(const Report& report) {
   const Plan& plan = report.plan;
   const SolutionFacts& solution = report.solution;

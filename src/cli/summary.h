@@ -19,6 +19,9 @@ std::string summary(const Report& report, bool long_form, const std::string& how
 /// "wrote a, b, c" as one line.
 std::string files_line(const std::vector<std::filesystem::path>& files);
 
+/// Why a run was left unfinished, and what the files hold.
+std::string explain_unfinished(const Report& report);
+
 /// Why a solution that has not converged probably has not, and what to do.
 std::string explain_not_converged(const Report& report);
 

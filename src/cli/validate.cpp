@@ -39,7 +39,7 @@ std::string table(const std::vector<ValidationResult>& results) {
 
 // One case after the other, saying which.
 std::vector<ValidationResult> run(std::span<const ValidationCase> cases) {
-  ProgressLine line(stderr_is_terminal());
+  ProgressLine line(progress_shown(false));
   std::vector<ValidationResult> results;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     line.name("case " + std::to_string(k + 1) + " of " + std::to_string(cases.size()) + ": ");

@@ -173,7 +173,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
   if (const auto note = note_on_accuracy(arguments.request)) print_message("note", *note);
-  ProgressLine line(stderr_is_terminal());
+  ProgressLine line(progress_shown(false));
   const Observer observer = observer_on(line);
 
   // 1. Solve

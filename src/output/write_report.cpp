@@ -189,6 +189,7 @@ Json solution_part(const Report& report) {
   Json part;
   part["solver"] = name_of(report.plan.solver.solver);
   part["converged"] = solution.converged;
+  part["unfinished"] = solution.unfinished;
   part["singular"] = solution.trapped.empty() ? Json() : Json(solution.trapped);
   part["patch_bound"] = solution.patch_bound;
   part["iterations"] = Json::array();

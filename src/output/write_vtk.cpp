@@ -109,6 +109,7 @@ Pointer<vtkDoubleArray> column(const char* name, const std::vector<Iteration>& h
 void add_history(vtkFieldData& facts, const Simulation& simulation) {
   const std::vector<Iteration>& history = simulation.solution.history;
   facts.AddArray(numbers<vtkIntArray>("converged", std::array{simulation.solution.converged ? 1 : 0}));
+  facts.AddArray(numbers<vtkIntArray>("unfinished", std::array{simulation.unfinished ? 1 : 0}));
   facts.AddArray(column("iteration", history, &Iteration::number));
   facts.AddArray(column("iteration_relative_residual", history, &Iteration::relative_residual));
   facts.AddArray(column("iteration_error_bound", history, &Iteration::error_bound));

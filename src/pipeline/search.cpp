@@ -158,6 +158,7 @@ MeshToSolve Search::first() const {
   } else {
     first.mesh = first_mesh(run_.scene, run_.plan);
   }
+  first.plan.solver.keeps_unfinished = run_.with.keeps_unfinished;
   if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {
     first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy.relative_error;
     first.plan.accuracy.solver_part = part_of_solver(run_, *run_.plan.accuracy.relative_error);
@@ -174,10 +175,17 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
   return step;
 }
 
+void Search::keep(const Simulation& simulation) {
+  if (!run_.with.keeps_unfinished || (kept_ && !simulation.error_bars)) return;
+  kept_ = simulation;
+  kept_->unfinished = true;
+}
+
 SolvedMesh Search::noted(SolvedMesh solved) {
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
+  if (refines(run_.plan.accuracy)) keep(solved.simulation);
   if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
@@ -281,6 +289,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   MeshToSolve to_solve{std::move(more.mesh.mesh),
                        with_solver_part(more.plan, part_of_solver(run_, accuracy)),
                        {std::move(more.mesh.place), {}, solved.simulation.transport.lost}};
+  to_solve.plan.solver.keeps_unfinished = false;
   known_ = 0;
   if (!keeps_known) return to_solve;
   to_solve.known.exchange = std::move(solved.raw);

@@ -19,6 +19,12 @@ class Search {
   /// The mesh to begin with: Steps::mesh, else first_mesh().
   MeshToSolve first() const;
 
+  /// Keeps a solution, where Steps::keeps_unfinished, in case the run is stopped before there is a better one: that of
+  /// the first mesh before its errors are known, every later one with them.
+  void keep(const Simulation& simulation);
+  /// What was kept last.
+  const std::optional<Simulation>& kept() const { return kept_; }
+
   /// The solved mesh with the accuracy of all meshes until now, as Steps::look is told on the way to an accuracy.
   SolvedMesh noted(SolvedMesh solved);
 
@@ -43,6 +49,7 @@ class Search {
   double cpu_start_;  // processor seconds
   std::vector<AccuracyStep> steps_;
   std::vector<std::string> notes_;
+  std::optional<Simulation> kept_;
   PatchIndex known_ = 0;  // patches of the last mesh whose exchange areas were known
 };
 

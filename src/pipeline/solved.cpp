@@ -15,6 +15,8 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   const TransportFacts& facts = simulation.transport;
   SolverOptions options = simulation.plan.solver;
   options.largest_row_sum = largest(facts.row_sum);
+  // Several solutions stand behind one by rays: none of them is one without the others.
+  options.keeps_unfinished = false;
   RaySolution found;
   const Solve once = [&](const SolverOptions& by) {
     found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts.row_sum, by);

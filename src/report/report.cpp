@@ -134,7 +134,7 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
 bool stopped_by_rows(const Simulation& simulation) {
   const SolverOptions& options = simulation.plan.solver;
   const Solution& solution = simulation.solution;
-  if (solution.converged || !solution.trapped.empty() || solution.history.empty()) return false;
+  if (solution.converged || solution.stopped || !solution.trapped.empty() || solution.history.empty()) return false;
   const auto shots = static_cast<double>(solution.history.back().number);
   return options.max_rows && shots < static_cast<double>(options.max_iterations) * simulation.mesh.size();
 }
@@ -146,7 +146,8 @@ SolutionFacts solution_facts(const Simulation& simulation) {
           .patch_bound = solution.patch_bound,
           .history = solution.history,
           .highest_reflectance = simulation.problem.scattering.reflectance.maxCoeff(),
-          .stopped_by_rows = stopped_by_rows(simulation)};
+          .stopped_by_rows = stopped_by_rows(simulation),
+          .unfinished = simulation.unfinished};
 }
 
 }  // namespace

@@ -96,13 +96,19 @@ void Iterations::tell(const Iterate& iterate) {
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
   const double of_rows = options_.max_rows ? std::min(1.0, work_ / *options_.max_rows) : 0;
   fraction_ = std::max(reached / wanted, of_rows);
-  if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) throw Cancelled();
+  if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) stop();
+}
+
+// What stops is not asked again whether it should.
+void Iterations::stop() {
+  if (!options_.keeps_unfinished) throw Cancelled();
+  solution_.stopped = true;
 }
 
 void Iterations::keep_observer() {
   constexpr double interval = 0.1;
   if (!observer_ || wall_seconds() < next_report_) return;
-  if (!observer_({.stage = Stage::solve, .fraction = fraction_})) throw Cancelled();
+  if (!observer_({.stage = Stage::solve, .fraction = fraction_})) stop();
   next_report_ = wall_seconds() + interval;
 }
 

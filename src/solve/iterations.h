@@ -41,7 +41,8 @@ class Iterations {
   /// Counts work that was done otherwise, in applications.
   void count(double applications) { work_ += applications; }
 
-  /// Lets the observer know between two iterates, at most ten times a second. \throws Cancelled.
+  /// Lets the observer know between two iterates, at most ten times a second. \throws Cancelled, as record(), unless
+  /// SolverOptions::keeps_unfinished.
   void keep_observer();
 
   /// Puts E into the history, with F E as it is found from the lamps. True when that is good enough.
@@ -56,8 +57,8 @@ class Iterations {
 
   const Field& direct_irradiance() const { return solution_.direct_irradiance; }
   /// True when there is nothing more to do: the last iterate was good enough, or no further one will be better: the
-  /// residual is not finite any more, or has come down to rounding.
-  bool ended() const { return solution_.converged || hopeless_; }
+  /// residual is not finite any more, or has come down to rounding; or the observer has stopped the run.
+  bool ended() const { return solution_.converged || hopeless_ || solution_.stopped; }
   /// B = E + rho o H with the H of the last iterate.
   Solution finish();
 
@@ -66,6 +67,7 @@ class Iterations {
   bool is_good(const Iteration& iteration) const;
   bool wants_weights() const;
   void tell(const Iterate& iterate);
+  void stop();
 
   const TransportOperator& transport_;
   const RadiosityProblem& problem_;

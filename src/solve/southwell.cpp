@@ -108,7 +108,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
     coarse.learn(source, shot_radiosity, arriving);
     iterations.count(1.0 / static_cast<double>(n));
     iterations.keep_observer();
-    if (shots < next_record && shots < most) continue;
+    if (shots < next_record && shots < most && !iterations.ended()) continue;
     iterations.show(coarse.ambient(unshot));
     iterations.record({radiosity_from(problem, H), H, unshot}, static_cast<int>(shots));
     // Ever longer pauses, up to an eighth of all patches.

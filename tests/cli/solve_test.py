@@ -12,7 +12,7 @@ from support import TOOL, ToolTest
 
 OPTIONS = """--output --series --report --picture --false-color --camera --view --points --points-output --format --unit --up
 --sides --set --max-edge --patches --accuracy --time --interest --error-bars --on-demand --solver --tolerance
---max-iterations --samples --seed --threads --memory --quiet --verbose --help""".split()
+--max-iterations --samples --seed --threads --memory --discard --quiet --verbose --help""".split()
 
 NOT_CONVERGED, INTERRUPTED = 3, 130
 
@@ -135,19 +135,36 @@ class SolveTest(ToolTest):
                 self.assertIn(b"interrupted", shown)
                 self.assertEqual(self.names(), before)
 
-    def interrupt_in_stage(self, stage, sent):
+    def test_interrupt_writes_what_is_there(self):
+        """A solution on demand takes minutes; its last iterate is there at any time."""
+        options = ["--on-demand", "--patches", "4000", "--report", "out.json"]
+        shown, code = self.interrupt_in_stage(rb"solve [1-9]", signal.SIGINT, options)
+        self.assertEqual(code, INTERRUPTED, shown)
+        self.assertIn(b"UNFINISHED", shown)
+        self.assertLessEqual({"out.vtp", "out.png", "out.json"}, self.names())
+        solution = json.loads(self.read("out.json"))["solution"]
+        self.assertEqual((solution["unfinished"], solution["converged"]), (True, False))
+
+    def test_interrupt_discards_when_asked(self):
+        for sent, more in ((signal.SIGINT, ["--discard"]), (signal.SIGTERM, [])):
+            with self.subTest(sent.name):
+                before = self.names()
+                shown, code = self.interrupt_in_stage(rb"solve [1-9]", sent, ["--on-demand", "--patches", "4000", *more])
+                self.assertEqual(code, INTERRUPTED, shown)
+                self.assertEqual(self.names(), before)
+
+    def interrupt_in_stage(self, stage, sent, options=("--patches", "12000", "--storage", "tiles", "--samples", "4096")):
         """Starts a run of minutes on a terminal, sends the signal once the stage shows; what was shown, the exit code."""
         ours, theirs = pty.openpty()
-        command = [TOOL, "solve", "room.obj", "--patches", "12000", "--storage", "tiles", "--samples", "4096", "-o", "out.vtp", "--picture",
-                   "out.png"]
+        command = [TOOL, "solve", "room.obj", *options, "-o", "out.vtp", "--picture", "out.png"]
         with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
             os.close(theirs)
             shown = b""
-            while stage not in shown:
+            while not re.search(stage, shown):
                 shown += os.read(ours, 4096)
             process.send_signal(sent)
             # The tool promises a second; a run that overlooks the signal takes minutes.
-            code = process.wait(timeout=10)
+            code = process.wait(timeout=30)
             try:
                 while part := os.read(ours, 4096):
                     shown += part

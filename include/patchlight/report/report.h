@@ -111,6 +111,7 @@ struct SolutionFacts {
   std::vector<Iteration> history;  ///< from iteration 0
   double highest_reflectance = 0;  ///< of all patches and bands
   bool stopped_by_rows = false;    ///< not converged, as SolverOptions::max_rows ended it before
+  bool unfinished = false;         ///< Simulation::unfinished
 };
 
 /// All that is told of a run. Text, JSON and whatever else prints a run take their numbers from here.

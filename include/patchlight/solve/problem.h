@@ -44,6 +44,7 @@ struct Solution {
   Field ambient;  ///< progressive refinement's estimate of the irradiance still under way, for display; else empty
   std::vector<Iteration> history;  ///< from iteration 0
   bool converged = false;
+  bool stopped = false;  ///< by the observer, with SolverOptions::keeps_unfinished: the last iterate
   std::string
       trapped;  ///< light that can neither leave nor be absorbed: why the system is singular; empty if it is not
   Field error;  ///< per-patch bound on the error of `radiosity`, W/m^2; empty where none is known

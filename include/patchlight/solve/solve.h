@@ -59,6 +59,8 @@ struct SolverOptions {
   std::optional<Field> reference = {};  ///< a solution to be met, radiosity in W/m^2 of all bands: stop when ||B_ref -
                                         ///< B_k||_A / ||B_ref - E||_A, worst band, is below relative_error
   bool every_band = false;              ///< solve bands that follow from others, too
+  bool keeps_unfinished = false;        ///< an observer that returns false ends the iterations with the last iterate,
+                                        ///< Solution::stopped, instead of throwing Cancelled
 };
 
 /// The relative error at which a solver with these options stops.

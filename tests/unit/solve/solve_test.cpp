@@ -234,6 +234,31 @@ TEST_P(EverySolver, StopsWhenTheObserverSaysSo) {
   EXPECT_THROW(solve(*room.transport, room.problem, {.solver = GetParam()}, observer), Cancelled);
 }
 
+// What is stopped after the second iterate is that iterate, which the observer was shown last, or with the H that it
+// brings.
+TEST_P(EverySolver, GivesItsLastIterateWhenThatIsAskedFor) {
+  const Room room = made_up(100, 0.9);
+  Field shown;
+  int last = 0;
+  const Observer observer = [&](const Progress& progress) {
+    if (progress.iteration == nullptr) return true;
+    shown = *progress.irradiance;
+    last = progress.iteration->number;
+    return last < 2;
+  };
+  const Solution stopped =
+      solve(*room.transport, room.problem, {.solver = GetParam(), .keeps_unfinished = true}, observer);
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_FALSE(stopped.converged);
+  EXPECT_EQ(stopped.history.back().number, last);
+  const Field iterate = radiosity_from(room.problem, shown);
+  const bool shoots = is_shooting(GetParam());
+  const Field expected = shoots ? iterate : radiosity_from(room.problem, room.transport->apply(iterate));
+  const double rounding = 1e-12 * stopped.radiosity.maxCoeff();
+  EXPECT_LT((expected - stopped.radiosity).abs().maxCoeff(), rounding);
+  EXPECT_FALSE(solve(*room.transport, room.problem, {.solver = GetParam(), .keeps_unfinished = true}).stopped);
+}
+
 // H = F B and nothing else.
 class Applied : public TransportOperator {
  public:
