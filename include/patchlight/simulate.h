@@ -58,6 +58,7 @@ struct SpaceErrors {
 };
 
 class Tracing;
+struct RayExchange;
 
 /// A solved scene.
 struct Simulation {
@@ -84,6 +85,9 @@ struct Simulation {
 /// The exchange between the patches of a mesh where it is known already.
 using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 
+/// Rows of rays between the patches of a mesh where they are known already.
+using RayExchangeOf = std::function<RayExchange(const PatchMesh& mesh)>;
+
 /// The mesh where it is known already.
 using MeshOf = std::function<PatchMesh()>;
 
@@ -96,8 +100,9 @@ using LookAt = std::function<void(const Simulation& simulation)>;
 
 /// Steps of simulate() that may be done otherwise.
 struct Steps {
-  ExchangeOf exchange = {};  ///< empty: form factors are computed
-  SolveWith solve = {};      ///< empty: patchlight::solve()
+  ExchangeOf exchange = {};         ///< empty: form factors are computed
+  RayExchangeOf ray_exchange = {};  ///< with Storage::rays, without error bars of the mesh; empty: rays are traced
+  SolveWith solve = {};             ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
   /// When the observer stops the run, simulate() returns the last mesh that was solved, or, as long as there is none,

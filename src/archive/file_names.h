@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 // The files of a folder of form factors.
 namespace patchlight::file_name {
 
@@ -16,6 +18,14 @@ inline constexpr const char* scene = "scene.json";
 inline constexpr const char* info = "info.json";
 inline constexpr const char* by_material = "by_material.csv";
 inline constexpr const char* by_object = "by_object.csv";
+
+// Those of rows of rays; each of the first six twice, for both halves of the rays.
+inline constexpr std::array<const char*, 6> of_half = {"hit_begin",   "hits",          "hit_weight",
+                                                       "entry_begin", "entry_columns", "entries"};
+inline constexpr const char* hit_distance = "hit_distance.npy";
+inline constexpr const char* lamps = "lamps.npy";
+inline constexpr std::array<const char*, 2> lamp_factors = {"lamp_factors_0.npy", "lamp_factors_1.npy"};
+inline constexpr const char* lamp_standard_error = "lamp_standard_error.npy";
 
 /// The value of info.json's key "kind".
 inline constexpr const char* kind = "patchlight form factors";

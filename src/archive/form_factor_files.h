@@ -47,8 +47,10 @@ struct FormFactorInfo {
   double metres_per_unit = 1;   ///< of the model
   PatchIndex patches = 0;
   MatrixFormat format = MatrixFormat::npy;
-  std::string closure;  ///< the method that closed them; empty if none did
-  double max_edge = 0;  ///< metres
+  Storage storage = Storage::tiles;  ///< or rays: then neither a matrix nor samples, estimator, counts and errors of it
+  int rays = 0;                      ///< AssemblyOptions::rays
+  std::string closure;               ///< the method that closed them; empty if none did
+  double max_edge = 0;               ///< metres
   Sides sides = Sides::automatic;
   int samples = 8;
   std::uint64_t seed = 1;
@@ -63,6 +65,21 @@ bool is_closed(const FormFactorInfo& info);
 
 /// Reads info.json of such a folder. \throws InputError.
 FormFactorInfo read_form_factor_info(const std::filesystem::path& folder);
+
+/// True for a folder with the files of form factors and no others, which may be replaced.
+bool is_earlier_form_factors(const std::filesystem::path& folder);
+
+/// \throws InputError, which says how to mend it, when the form factors are those of other patches.
+void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);
+
+/// What is stored of the patches.
+struct StoredShares {
+  Eigen::VectorXd area;  ///< exposed, m^2
+  LostShare lost;
+};
+
+/// \throws InputError where areas are not positive, or shares none.
+StoredShares read_shares(const std::filesystem::path& folder, const FormFactorInfo& info);
 
 /// Reads the form factors of this mesh. \throws InputError when they belong to another one, or are none.
 Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 namespace patchlight {
 namespace {
@@ -97,7 +98,55 @@ std::string open_npy(const std::filesystem::path& file, std::ifstream& stream) {
                                       "or two dimensions, and as many values as its header says");
 }
 
+template <class Number>
+std::string type_of() {
+  return std::string(std::is_floating_point_v<Number> ? "<f" : "<i") + std::to_string(sizeof(Number));
+}
+
 }  // namespace
+
+template <class Number>
+void write_npy_numbers(const std::filesystem::path& file, std::span<const Number> values) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << header(type_of<Number>(), std::to_string(values.size()) + ',');
+    stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+    close_or_fail(stream, file);
+  });
+}
+
+std::size_t npy_count(const std::filesystem::path& file) {
+  std::ifstream stream;
+  const std::vector<std::size_t> shape = shape_of(value_of(open_npy(file, stream), "'shape':"));
+  if (shape.size() == 1) return shape[0];
+  throw InputError(file.string(), "found another array than one of one dimension; make the form factors anew");
+}
+
+template <class Number>
+LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size_t count) {
+  std::ifstream stream;
+  const std::string text = open_npy(file, stream);
+  const std::uintmax_t bytes = std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream.tellg());
+  const bool good = value_of(text, "'descr':").starts_with("'" + type_of<Number>() + "'") &&
+                    shape_of(value_of(text, "'shape':")) == std::vector{count} && bytes % sizeof(Number) == 0 &&
+                    bytes / sizeof(Number) == count;
+  if (!good)
+    throw InputError(file.string(), "found another array than one of " + std::to_string(count) + " numbers of type '" +
+                                        type_of<Number>() + "'; make the form factors anew");
+  LargeArray<Number> values(count);
+  stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(Number)));
+  if (!stream) throw InputError(file.string(), "cannot be read to its end");
+  return values;
+}
+
+template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int32_t>);
+template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int64_t>);
+template void write_npy_numbers(const std::filesystem::path&, std::span<const float>);
+template void write_npy_numbers(const std::filesystem::path&, std::span<const double>);
+template LargeArray<std::int32_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template LargeArray<std::int64_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template LargeArray<float> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template LargeArray<double> read_npy_numbers(const std::filesystem::path&, std::size_t);
 
 void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns,
                const std::function<void(std::size_t row, std::span<float> values)>& fill) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "patchlight/base/large_array.h"
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +24,17 @@ void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values)
 
 /// Writes an array of bytes of one dimension. \throws OutputError.
 void write_npy(const std::filesystem::path& file, std::span<const std::uint8_t> values);
+
+/// Writes numbers of one dimension as they are: of 32 or 64 bits, whole or floats. \throws OutputError.
+template <class Number>
+void write_npy_numbers(const std::filesystem::path& file, std::span<const Number> values);
+
+/// Reads such an array with `count` numbers of this very type. \throws InputError.
+template <class Number>
+LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size_t count);
+
+/// How many numbers an array of one dimension has. \throws InputError.
+std::size_t npy_count(const std::filesystem::path& file);
 
 /// Reads an array of 32 or 64-bit floats in C order of one dimension (one column) or two, row by row.
 class NpyReader {

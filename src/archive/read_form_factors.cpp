@@ -35,6 +35,13 @@ Sides sides_of(const std::string& name) {
   throw InputError("sides", "found '" + name + "'; expected auto, front or both");
 }
 
+Storage storage_of(const std::string& name) {
+  for (const Storage storage : {Storage::tiles, Storage::rays}) {
+    if (name == name_of(storage)) return storage;
+  }
+  throw InputError("storage", "found '" + name + "'; expected tiles or rays");
+}
+
 Estimator estimator_of(const std::string& name) {
   for (const Estimator estimator :
        {Estimator::automatic, Estimator::area, Estimator::point_polygon, Estimator::hemisphere, Estimator::contour}) {
@@ -43,24 +50,39 @@ Estimator estimator_of(const std::string& name) {
   throw InputError("estimator", "found '" + name + "'; expected auto, area, point-polygon, hemisphere or contour");
 }
 
-FormFactorInfo info_of(const nlohmann::json& json) {
+// What both kinds of form factors have.
+FormFactorInfo info_of_any(const nlohmann::json& json) {
   FormFactorInfo info;
   info.geometry_sha256 = json.at("geometry_sha256").get<std::string>();
   info.model = json.at("input").at("file").get<std::string>();
   info.metres_per_unit = json.at("input").value("metres_per_unit", 1.0);
   info.patches = json.at("patches").get<PatchIndex>();
-  info.format = json.at("matrix").get<std::string>() == "npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
-  if (!json.at("closure").is_null()) info.closure = json.at("closure").get<std::string>();
+  // Folders of earlier versions do not have this.
+  info.storage = storage_of(json.value("storage", name_of(Storage::tiles)));
   const nlohmann::json& options = json.at("options");
   info.max_edge = options.at("max_edge_m").get<double>();
   info.sides = sides_of(options.at("sides").get<std::string>());
-  info.samples = options.at("samples").get<int>();
   info.seed = options.at("seed").get<std::uint64_t>();
   info.lost_share_rays = options.at("lost_share_rays").get<int>();
+  if (!(info.max_edge > 0 && std::isfinite(info.max_edge) && info.lost_share_rays >= 1))
+    throw std::out_of_range("an option has a value that it cannot have");
+  return info;
+}
+
+FormFactorInfo info_of(const nlohmann::json& json) {
+  FormFactorInfo info = info_of_any(json);
+  const nlohmann::json& options = json.at("options");
+  if (info.storage == Storage::rays) {
+    info.rays = options.at("rays").get<int>();
+    if (info.rays < 1) throw std::out_of_range("an option has a value that it cannot have");
+    return info;
+  }
+  if (!json.at("closure").is_null()) info.closure = json.at("closure").get<std::string>();
+  info.samples = options.at("samples").get<int>();
   const std::string matrix = json.at("matrix").get<std::string>();
-  const bool good = info.max_edge > 0 && std::isfinite(info.max_edge) && info.samples >= 1 &&
-                    info.lost_share_rays >= 1 && (matrix == "npy" || matrix == "mtx");
-  if (!good) throw std::out_of_range("an option has a value that it cannot have");
+  info.format = matrix == "npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
+  if (info.samples < 1 || (matrix != "npy" && matrix != "mtx"))
+    throw std::out_of_range("an option has a value that it cannot have");
   const nlohmann::json& counts = json.at("counts");
   info.counts.facing_pairs = counts.at("facing_pairs").get<std::uint64_t>();
   info.counts.near_pairs = counts.at("near_pairs").get<std::uint64_t>();
@@ -73,22 +95,6 @@ FormFactorInfo info_of(const nlohmann::json& json) {
   info.estimator = estimator_of(options.value("estimator", name_of(Estimator::automatic)));
   info.error = sampling_error_of(json.value("sampling_error", nlohmann::json()));
   return info;
-}
-
-void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
-  const std::string wanted = geometry_hash(mesh);
-  if (info.geometry_sha256 == wanted && info.patches == mesh.size()) return;
-  std::ostringstream text;
-  text << "found form factors of " << info.patches << " patches with geometry " << info.geometry_sha256.substr(0, 12)
-       << ", made from " << info.model << " with edges up to " << info.max_edge
-       << " m and mesh.sides=" << name_of(info.sides) << "; expected those of " << mesh.size()
-       << " patches with geometry " << wanted.substr(0, 12)
-       << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
-       << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
-          "mesh.patches; with mesh.sides=auto "
-          "the lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
-       << folder.string();
-  throw InputError(folder.string(), text.str());
 }
 
 void require_positive(const std::filesystem::path& file, const Eigen::VectorXd& values) {
@@ -207,6 +213,31 @@ FormFactorInfo read_form_factor_info(const std::filesystem::path& folder) {
   }
 }
 
+void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
+  const std::string wanted = geometry_hash(mesh);
+  if (info.geometry_sha256 == wanted && info.patches == mesh.size()) return;
+  std::ostringstream text;
+  text << "found form factors of " << info.patches << " patches with geometry " << info.geometry_sha256.substr(0, 12)
+       << ", made from " << info.model << " with edges up to " << info.max_edge
+       << " m and mesh.sides=" << name_of(info.sides) << "; expected those of " << mesh.size()
+       << " patches with geometry " << wanted.substr(0, 12)
+       << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
+       << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
+          "mesh.patches; with mesh.sides=auto "
+          "the lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
+       << folder.string();
+  throw InputError(folder.string(), text.str());
+}
+
+StoredShares read_shares(const std::filesystem::path& folder, const FormFactorInfo& info) {
+  const std::size_t size = info.patches;
+  Eigen::VectorXd area = read_npy(folder / file_name::area, size, 1);
+  require_positive(folder / file_name::area, area);
+  const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 3);
+  require_shares(folder / file_name::lost_share, lost);
+  return {std::move(area), {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays}};
+}
+
 bool is_closed(const FormFactorInfo& info) { return !info.closure.empty() && !info.closure.starts_with("none"); }
 
 Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
@@ -216,16 +247,13 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
                      "found F.mtx; expected F.npy. Make the form factors anew, with the matrix as npy");
   }
   const std::size_t size = info.patches;
-  Eigen::VectorXd area = read_npy(folder / file_name::area, size, 1);
-  require_positive(folder / file_name::area, area);
-  const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 3);
-  require_shares(folder / file_name::lost_share, lost);
+  auto [area, lost] = read_shares(folder, info);
   Eigen::VectorXd raw_row_sum = read_npy(folder / file_name::raw_row_sum, size, 1);
   ExchangeAreas S = read_exchange_areas(folder / file_name::dense, area);
   Exchange exchange{std::move(S),
                     std::move(area),
                     std::move(raw_row_sum),
-                    {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays},
+                    std::move(lost),
                     info.counts,
                     info.error,
                     read_entry_errors(folder / file_name::entry_errors, mesh),

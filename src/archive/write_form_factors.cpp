@@ -151,6 +151,7 @@ std::string info_json(const FormFactorResult& result) {
   json["input"] = {
       {"file", result.scene.file}, {"sha256", result.scene.sha256}, {"metres_per_unit", result.scene.metres_per_unit}};
   json["patches"] = mesh.size();
+  json["storage"] = name_of(Storage::tiles);
   json["matrix"] = result.format == MatrixFormat::npy ? "npy" : "mtx";
   json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
   json["options"] = {{"max_edge_m", plan.max_edge},
@@ -167,23 +168,43 @@ std::string info_json(const FormFactorResult& result) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// hits_0.npy and the like.
+bool is_of_half(const std::string& name) {
+  return std::any_of(file_name::of_half.begin(), file_name::of_half.end(),
+                     [&](const std::string& begin) { return name == begin + "_0.npy" || name == begin + "_1.npy"; });
+}
+
+}  // namespace
+
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
-bool is_earlier_result(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 13> names = {
-      file_name::dense,        file_name::sparse, file_name::dense_error, file_name::sparse_error,
-      file_name::entry_errors, file_name::area,   file_name::lost_share,  file_name::raw_row_sum,
-      file_name::mesh,         file_name::scene,  file_name::info,        file_name::by_material,
-      file_name::by_object};
+bool is_earlier_form_factors(const std::filesystem::path& folder) {
+  static constexpr std::array<std::string_view, 18> names = {file_name::dense,
+                                                             file_name::sparse,
+                                                             file_name::dense_error,
+                                                             file_name::sparse_error,
+                                                             file_name::entry_errors,
+                                                             file_name::area,
+                                                             file_name::lost_share,
+                                                             file_name::raw_row_sum,
+                                                             file_name::mesh,
+                                                             file_name::scene,
+                                                             file_name::info,
+                                                             file_name::by_material,
+                                                             file_name::by_object,
+                                                             file_name::hit_distance,
+                                                             file_name::lamps,
+                                                             file_name::lamp_factors[0],
+                                                             file_name::lamp_factors[1],
+                                                             file_name::lamp_standard_error};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (std::find(names.begin(), names.end(), name) == names.end() || !entry.is_regular_file()) return false;
+    const bool is_named = std::find(names.begin(), names.end(), name) != names.end() || is_of_half(name);
+    if (!is_named || !entry.is_regular_file()) return false;
   }
   std::ifstream stream(folder / file_name::info);
   const Json json = Json::parse(stream, nullptr, false);
   return json.is_object() && json.value("kind", Json()) == file_name::kind;
 }
-
-}  // namespace
 
 void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,
                   const Observer& observer) {
@@ -192,7 +213,7 @@ void write_matrix(const std::filesystem::path& file, const Exchange& exchange, M
 
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result, const Observer& observer) {
   const Exchange& exchange = result.form_factors.exchange;
-  write_whole_folder(folder, is_earlier_result, [&](const std::filesystem::path& in) {
+  write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
     const bool dense = result.format == MatrixFormat::npy;
     write_matrix(in / (dense ? file_name::dense : file_name::sparse), exchange, result.format, observer);
     if (exchange.entry_errors.size() > 0) {
@@ -205,7 +226,9 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     lost << exchange.lost.escaped, exchange.lost.at_backs, exchange.lost.covered;
     write_npy(in / file_name::lost_share, lost);
     write_npy(in / file_name::raw_row_sum, exchange.raw_row_sum);
-    write_mesh(in / file_name::mesh, result.scene, result.form_factors);
+    write_mesh(in / file_name::mesh, result.scene,
+               {result.form_factors.mesh, exchange.area, row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area),
+                exchange.raw_row_sum});
     for (const GroupFactors& groups : result.groups) {
       write_groups(in / (groups.by == GroupBy::material ? file_name::by_material : file_name::by_object), groups);
     }
@@ -215,7 +238,7 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
 }
 
 void check_form_factors_writable(const std::filesystem::path& folder) {
-  check_folder_writable(folder, is_earlier_result);
+  check_folder_writable(folder, is_earlier_form_factors);
 }
 
 }  // namespace patchlight

@@ -6,6 +6,7 @@
 #include "cli/model_options.h"
 #include "cli/option_names.h"
 #include "cli/parse_value.h"
+#include "cli/storage_option.h"
 
 #include <array>
 #include <string>
@@ -44,6 +45,21 @@ void add_without(CLI::App& command, ShortCuts& short_cuts) {
       ->option_text("hidden|free|far");
 }
 
+bool is_by_rays(const FormFactorOptions& options) { return options.request.assembly.storage == Storage::rays; }
+
+// A matrix and tables of groups are of all pairs.
+void require_pairs(const FormFactorOptions& options) {
+  if (!is_by_rays(options)) return;
+  const std::filesystem::path extension = std::filesystem::path(options.output).extension();
+  const char* const wanted = options.format                               ? "--matrix"
+                             : options.by                                 ? "--by"
+                             : extension == ".npy" || extension == ".mtx" ? "-o FILE"
+                                                                          : nullptr;
+  if (wanted == nullptr) return;
+  throw UsageError(std::string(wanted) +
+                   ": found with --storage rays; it needs --storage tiles, the form factors of all pairs");
+}
+
 }  // namespace
 
 std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
@@ -79,6 +95,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   add_without(command, to.request.assembly.short_cuts);
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
   add_patch_options(command, to.request);
+  add_stored_options(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and a summary");
@@ -93,6 +110,8 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
   arguments.request.assembly.close = !options.raw;
+  require_pairs(options);
+  if (is_by_rays(options)) arguments.request.solver.solver = Solver::gmres;
   check_with_names(arguments.request, std::array{OptionName{"assembly.close=false", "--raw"}});
   arguments.by = options.by;
   arguments.quiet = options.quiet;
@@ -109,7 +128,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
       throw UsageError("--matrix: contradicts -o '" + options.output + "'; give one of them");
     }
     arguments.format = named;
-  } else {
+  } else if (!is_by_rays(options)) {
     arguments.request.assembly.keep_errors = arguments.request.assembly.estimator == Estimator::automatic;
   }
   require_not_read({{"-o", arguments.output}}, arguments.models);

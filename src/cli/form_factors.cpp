@@ -1,5 +1,6 @@
 #include "cli/form_factors.h"
 
+#include "archive/ray_row_files.h"
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -63,6 +64,51 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   return text.str();
 }
 
+// What is told of them.
+struct Written {
+  std::vector<std::string> notes;
+  std::string summary;
+};
+
+// Of either kind of form factors.
+template <class Found>
+std::vector<std::string> notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
+  std::vector<std::string> all;
+  for (const auto* notes : {&scene.notes, &found.plan.sides.notes, &found.plan.notes, &found.notes})
+    all.insert(all.end(), notes->begin(), notes->end());
+  if (found.request.mesh.sides != arguments.request.mesh.sides)
+    all.emplace_back("without a lamp --sides auto cannot tell where light gets to: the front sides are used");
+  return all;
+}
+
+Written write_pairs(const FormFactorArguments& arguments, const Scene& scene, const Observer& observer) {
+  const FormFactors found = find_form_factors(scene, arguments.request, observer);
+  std::vector<GroupFactors> groups;
+  if (arguments.by) groups.push_back(group_factors(scene, found, *arguments.by));
+  const WritingGuard guard;
+  if (is_one_file(arguments)) {
+    write_matrix(arguments.output, found.exchange, arguments.format, observer);
+  } else {
+    write_form_factors(arguments.output, {scene, found, groups, arguments.command_line, arguments.format}, observer);
+  }
+  Written written{notes_on(arguments, scene, found), summary(scene, found)};
+  if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) written.notes.push_back(*note);
+  for (const GroupFactors& table_of : groups) written.summary += table(table_of);
+  return written;
+}
+
+Written write_rays(const FormFactorArguments& arguments, const Scene& scene, const Observer& observer) {
+  const RayFormFactors found = find_ray_form_factors(scene, arguments.request, observer);
+  const WritingGuard guard;
+  write_ray_rows(arguments.output, scene, found, arguments.command_line);
+  std::ostringstream text;
+  text << shown_name(scene.file) << ": " << found.mesh.size() << " patches with edges up to " << std::setprecision(3)
+       << found.plan.max_edge << " m; " << found.exchange.rows.rays << " rays over hemispheres, "
+       << found.exchange.rows.shadow_rays << " towards bright patches, " << found.exchange.lamps.size()
+       << (found.exchange.lamps.size() == 1 ? " lamp" : " lamps") << " apart\n";
+  return {notes_on(arguments, scene, found), text.str()};
+}
+
 }  // namespace
 
 ExitCode form_factors(const FormFactorArguments& arguments) {
@@ -75,38 +121,21 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 
-  // 1. Read the model, find the form factors
+  // 1. Read the model
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   if (is_one_file(arguments)) {
     require_not_read({{"-o", arguments.output}}, scene.inputs);
   } else {
     require_not_read_from({"-o", arguments.output}, scene.inputs);
   }
-  const FormFactors found = find_form_factors(scene, arguments.request, observer);
-  std::vector<GroupFactors> groups;
-  if (arguments.by) groups.push_back(group_factors(scene, found, *arguments.by));
 
-  // 2. Write them
-  const WritingGuard guard;
-  if (is_one_file(arguments)) {
-    write_matrix(arguments.output, found.exchange, arguments.format, observer);
-  } else {
-    write_form_factors(arguments.output, {scene, found, groups, arguments.command_line, arguments.format}, observer);
-  }
+  // 2. Find the form factors and write them
+  const Written written = arguments.request.assembly.storage == Storage::rays ? write_rays(arguments, scene, observer)
+                                                                              : write_pairs(arguments, scene, observer);
   if (arguments.quiet) return good;
   line.hide();
-  for (const std::string& note : scene.notes) print_message("note", note);
-  for (const std::string& note : found.plan.sides.notes) print_message("note", note);
-  for (const auto* notes : {&found.plan.notes, &found.notes}) {
-    for (const std::string& note : *notes) print_message("note", note);
-  }
-  if (found.request.mesh.sides != arguments.request.mesh.sides) {
-    print_message("note", "without a lamp --sides auto cannot tell where light gets to: the front sides are used");
-  }
-  if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) print_message("note", *note);
-  std::cout << summary(scene, found);
-  for (const GroupFactors& table_of : groups) std::cout << table(table_of);
-  std::cout << "wrote " << shown_name(arguments.output.string()) << std::endl;
+  for (const std::string& note : written.notes) print_message("note", note);
+  std::cout << written.summary << "wrote " << shown_name(arguments.output.string()) << std::endl;
   return good;
 }
 

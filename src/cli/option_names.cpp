@@ -48,6 +48,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"accuracy.error_bars", "--error-bars"},
                                                 {"resources.memory", "--memory"},
                                                 {"given.form_factors", "--form-factors"},
+                                                {"given.ray_rows", "--form-factors"},
                                                 {"compare.relaxation", "--relaxation"},
                                                 {"compare.contestants", "--solvers"}};
   return names;

@@ -137,8 +137,9 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
     iterates.add(progress);
     return observer(progress);
   };
-  simulation = simulate(results.scene, input.request, observed,
-                        {.exchange = input.exchange, .keeps_unfinished = !arguments.discards});
+  simulation = simulate(
+      results.scene, input.request, observed,
+      {.exchange = input.exchange, .ray_exchange = input.ray_exchange, .keeps_unfinished = !arguments.discards});
   if (simulation.unfinished && !may_write_what_is_there()) throw Cancelled();
   results.iterates = iterates.of_mesh(simulation.mesh.size());
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());

@@ -3,7 +3,9 @@
 #include "patchlight/base/error.h"
 
 #include "archive/form_factor_files.h"
+#include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
+#include "plan/choose_storage.h"
 #include "scene/transmittance.h"
 
 #include <cmath>
@@ -44,13 +46,13 @@ std::vector<double> held_shares(const Scene& scene) {
 }
 
 // What clear faces let through is in the form factors, and in the area of their patches.
-void require_same_panes(const std::filesystem::path& folder, const Exchange& exchange, const PatchMesh& mesh,
+void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
                         const std::vector<double>& held) {
   constexpr double rounding = 1e-5;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const double then = exchange.area[i] / mesh.area[i];
+    const double then = stored.area[i] / mesh.area[i];
     const double now = held[mesh.polygon[i]];
-    if (exchange.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
+    if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
     std::ostringstream text;
     text << "found form factors with a face that lets the share " << 1 - then << " of light through; now it lets "
          << 1 - now << " through. Set the transmittance of then, or make them anew: patchlight form-factors MODEL "
@@ -64,8 +66,12 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   Request request = arguments.request;
   if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;
   if (request.mesh.sides == Sides::automatic) request.mesh.sides = info.sides;
-  request.assembly.samples = info.samples;
   request.assembly.seed = info.seed;
+  if (info.storage == Storage::rays) {
+    request.assembly.rays = info.rays;
+    return by_rays(std::move(request));
+  }
+  request.assembly.samples = info.samples;
   request.assembly.estimator = info.estimator;
   if (!is_closed(info)) return request;
   if (request.assembly.close && !contains(request.effects.skip, Effect::closure)) {
@@ -82,7 +88,7 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
 
 SolveInput read_input(const SolveArguments& arguments) {
   const std::filesystem::path& folder = arguments.form_factors;
-  if (folder.empty()) return {read_scene(arguments.models, arguments.read), arguments.request, {}};
+  if (folder.empty()) return {read_scene(arguments.models, arguments.read), arguments.request};
 
   SolveInput input;
   std::optional<KeptSides> sides;
@@ -98,9 +104,17 @@ SolveInput read_input(const SolveArguments& arguments) {
   input.request = request_as_then(arguments, info);
   input.request.mesh.kept_sides = std::move(sides);
   require_room_for(folder, info, input.scene, input.request);
+  if (info.storage == Storage::rays) {
+    input.ray_exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
+      RayExchange exchange = read_ray_rows(folder, info, mesh);
+      require_same_panes(folder, {exchange.rows.area, exchange.rows.lost}, mesh, held);
+      return exchange;
+    };
+    return input;
+  }
   input.exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
     Exchange exchange = read_exchange(folder, info, mesh);
-    require_same_panes(folder, exchange, mesh, held);
+    require_same_panes(folder, {exchange.area, exchange.lost}, mesh, held);
     return exchange;
   };
   return input;

@@ -10,7 +10,8 @@ namespace patchlight::cli {
 struct SolveInput {
   Scene scene;
   Request request;
-  ExchangeOf exchange;  ///< reads stored form factors; empty: they are computed
+  ExchangeOf exchange = {};         ///< reads stored form factors; empty: they are computed
+  RayExchangeOf ray_exchange = {};  ///< reads stored rows of rays; empty: they are traced
 };
 
 /// Reads the scene from the models, or where there are none from the folder of form factors. Stored form factors bring

@@ -15,6 +15,16 @@ Storage storage_named(const std::string& text) {
   throw refusal("--storage", text, "auto, tiles, rays or on-demand");
 }
 
+void add_rays_option(CLI::App& command, Request& request) {
+  add(command, "--rays", "N",
+      "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
+      "--accuracy takes more where\nthat pays; default 64",
+      [&request](const std::string& text) {
+        request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
+        if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
+      });
+}
+
 }  // namespace
 
 void add_storage_options(CLI::App& command, Request& request) {
@@ -28,13 +38,19 @@ void add_storage_options(CLI::App& command, Request& request) {
       "for more than 10,000 patches or where the\nmemory is too small; always pairs where something is asked for\nthat "
       "rays do not have: a solver, another estimator and the like",
       [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
-  add(command, "--rays", "N",
-      "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
-      "--accuracy takes more where\nthat pays; default 64",
+  add_rays_option(command, request);
+}
+
+void add_stored_options(CLI::App& command, Request& request) {
+  add(command, "--storage", "tiles|rays",
+      "form factors of all pairs of patches, or sparse rows of what some\nrays from each patch meet, for many patches; "
+      "default tiles",
       [&request](const std::string& text) {
-        request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
-        if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
+        const Storage storage = storage_named(text);
+        if (storage != Storage::tiles && storage != Storage::rays) throw refusal("--storage", text, "tiles or rays");
+        request.assembly.storage = storage;
       });
+  add_rays_option(command, request);
 }
 
 Request with_fitting_solver(Request request, bool solver_given) {

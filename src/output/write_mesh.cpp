@@ -7,10 +7,8 @@
 
 namespace patchlight {
 
-void write_mesh(const std::filesystem::path& file, const Scene& scene, const FormFactors& form_factors) {
-  const PatchMesh& mesh = form_factors.mesh;
-  const Exchange& exchange = form_factors.exchange;
-  const Eigen::VectorXd row_sum = row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area);
+void write_mesh(const std::filesystem::path& file, const Scene& scene, const MeshOfRows& rows) {
+  const PatchMesh& mesh = rows.mesh;
   std::vector<std::uint32_t> objects, faces;
   for (const PolygonIndex polygon : mesh.polygon) {
     objects.push_back(scene.polygons[polygon].group);
@@ -21,9 +19,9 @@ void write_mesh(const std::filesystem::path& file, const Scene& scene, const For
 
   const Pointer<vtkPolyData> polygons = polygons_of(mesh);
   vtkCellData& cell_data = *polygons->GetCellData();
-  cell_data.AddArray(numbers<vtkDoubleArray>("area", exchange.area));
-  cell_data.AddArray(numbers<vtkDoubleArray>("row_sum", row_sum));
-  cell_data.AddArray(numbers<vtkDoubleArray>("raw_row_sum", exchange.raw_row_sum));
+  cell_data.AddArray(numbers<vtkDoubleArray>("area", rows.area));
+  cell_data.AddArray(numbers<vtkDoubleArray>("row_sum", rows.row_sum));
+  if (rows.raw_row_sum.size() > 0) cell_data.AddArray(numbers<vtkDoubleArray>("raw_row_sum", rows.raw_row_sum));
   cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
   cell_data.AddArray(numbers<vtkIntArray>("object_id", objects));
   cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));

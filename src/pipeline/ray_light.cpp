@@ -80,47 +80,75 @@ Field direct_of(const RayLight& light) {
   return direct;
 }
 
-void find_lamps(RayLight& light, const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  const RadiosityProblem& problem = light.lit.problem;
+// The factors of the lamps that are apart, without rows.
+RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
   const std::vector<LampSide> lamps = lamps_apart(run.scene, mesh, problem);
-  light.is_apart.assign(mesh.size(), 0);
-  Field exitance(static_cast<Eigen::Index>(lamps.size()), problem.exitance.cols());
-  for (std::size_t k = 0; k < lamps.size(); ++k) {
-    const PatchRange patches = mesh.patches_on(lamps[k].polygon, lamps[k].side);
-    exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(patches.begin);
-    std::fill(light.is_apart.begin() + patches.begin, light.is_apart.begin() + patches.end, 1);
+  RayExchange found;
+  for (const LampSide& lamp : lamps) found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
+  found.lamp_factors = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
+                                    {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+  return found;
+}
+
+// The light of the lamps apart, as means over whole patches.
+RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
+  RayLight light{.lit = std::move(lit), .is_apart = {}, .by_lamps = {}, .lamp_standard_error = {}, .distance = {}};
+  const RadiosityProblem& problem = light.lit.problem;
+  light.is_apart.assign(patches, 0);
+  Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
+  for (std::size_t k = 0; k < exchange.lamps.size(); ++k) {
+    const auto [begin, end] = exchange.lamps[k];
+    exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(begin);
+    std::fill(light.is_apart.begin() + begin, light.is_apart.begin() + end, 1);
   }
-  const LampFactors factors = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
-                                           {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+  const LampFactors& factors = exchange.lamp_factors;
   for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
   light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
+  return light;
+}
+
+// Rows, with rays towards what the light makes bright.
+TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
+  const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
+  const Occluder& occluder = run.tracing->between_patches();
+  const BrightPatches bright_patches(mesh, summed_over_bands(expected), bright, occluder);
+  return trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
+}
+
+struct ExchangeAndLight {
+  RayExchange exchange;
+  RayLight light;  // means over whole patches
+};
+
+ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  LitProblem lit = lit_problem(run, plan, mesh, area);
+  const bool is_known = static_cast<bool>(run.with.ray_exchange);
+  RayExchange exchange = is_known ? run.with.ray_exchange(mesh) : traced_lamps(run, plan, mesh, lit.problem);
+  RayLight light = light_of(exchange, std::move(lit), mesh.size());
+  if (!is_known) exchange.rows = traced_rows(run, plan, mesh, light);
+  return {std::move(exchange), std::move(light)};
 }
 
 }  // namespace
 
+RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  return exchange_and_light(run, plan, mesh).exchange;
+}
+
 RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  // 1. Rows, and light where it first arrives.
+  auto [exchange, light] = exchange_and_light(run, plan, mesh);
+  light.distance = std::move(exchange.rows.distance);
+
+  // 2. Means over the exposed part of each patch, of what it holds back.
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
-  RayTransportAndLight found;
-  RayLight& light = found.light;
-
-  // 1. Light where it first arrives.
-  light.lit = lit_problem(run, plan, mesh, area);
-  find_lamps(light, run, plan, mesh);
-
-  // 2. Rows, with rays towards what that makes bright.
-  const RadiosityProblem& problem = light.lit.problem;
-  const Field expected = emitted_in_rows(light) + problem.scattering.reflect(direct_of(light));
+  light.lit.problem.area = exchange.rows.area;
+  Eigen::ArrayXd exposed = exchange.rows.area.array() / area.array();
   const Occluder& occluder = run.tracing->between_patches();
-  const BrightPatches bright_patches(mesh, summed_over_bands(expected), bright, occluder);
-  found.rows = trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
-  light.distance = std::move(found.rows.distance);
-
-  // 3. Means over the exposed part of each patch, of what it holds back.
-  light.lit.problem.area = found.rows.area;
-  Eigen::ArrayXd exposed = found.rows.area.array() / area.array();
   for (PatchIndex i = 0; i < mesh.size(); ++i) exposed[i] /= occluder.held_share(mesh.polygon[i]);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
-  return found;
+  return {std::move(exchange.rows), std::move(light)};
 }
 
 namespace {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "pipeline/lit_problem.h"
-#include "transport/lamp_factors.h"
-#include "transport/ray_rows.h"
+#include "transport/ray_exchange.h"
 #include "transport/ray_transport.h"
 
 #include <array>
@@ -27,8 +26,12 @@ struct RayTransportAndLight {
 
 /// Lamps are apart where they emit more than four times the mean over all patches, the strongest first, up to sixteen
 /// triangles and convex quadrilaterals: what all surfaces emit alike, and the light of many lamps, stays in the rows,
-/// which send rays towards bright patches on purpose. \throws Cancelled.
+/// which send rays towards bright patches on purpose. By Steps::ray_exchange where it is given; what emits and is no
+/// lamp of that stays in the rows. \throws Cancelled.
 RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
+
+/// Rows and lamps alone, as ray_light() traces them, to be used again. \throws Cancelled.
+RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh);
 
 /// A solution by rows of rays, and the standard error of its irradiance, W/m^2.
 struct RaySolution {

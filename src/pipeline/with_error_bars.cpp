@@ -160,7 +160,8 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
 
 // Rows of rays know what they err by themselves; the patches' part is found with rays of their own.
 SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTransport& transport) {
-  if (!simulates(run.plan, Effect::interreflection)) return result;
+  // Where rows are known no further ray is traced.
+  if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
   result.interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);

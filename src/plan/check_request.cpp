@@ -36,6 +36,8 @@ Asked not_closed(const Request& request) { return {"assembly.close=false", !requ
 
 Asked form_factors(const Given& given) { return {"given.form_factors", given.form_factors}; }
 
+Asked ray_rows(const Given& given) { return {"given.ray_rows", given.ray_rows}; }
+
 Asked mesh_of(const Given& given) { return {"given.mesh", given.mesh}; }
 
 Asked other_estimator(const Request& request) {
@@ -92,7 +94,8 @@ void require_consistent_effects(const Request& request, const Given& given) {
             "that says already which sides take part");
     decides(effect, {"mesh.kept_sides", mesh.kept_sides.has_value()}, "these are all that take part");
   }
-  decides(Effect::occlusion, form_factors(given), "form factors that are given decide it");
+  for (const Asked& known : {form_factors(given), ray_rows(given)})
+    decides(Effect::occlusion, known, "form factors that are given decide it");
   require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
   require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
   require_alone(forced(request, Effect::closure), {rows_of_rays(request)}, "rows of rays are closed one by one");
@@ -150,6 +153,7 @@ std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Give
   const char* const closed = "error bars are those of closed rows";
   return {{on_demand(request), found_in_the_run},
           {form_factors(given), found_in_the_run},
+          {ray_rows(given), "error bars of the mesh take further rays, and none is traced"},
           {mesh_of(given), "error bars take a nested mesh"},
           {not_closed(request), closed},
           {skipped(request, Effect::closure), closed},

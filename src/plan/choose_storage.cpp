@@ -20,7 +20,7 @@ bool takes_pairs(const Request& request, const Given& given) {
       asked(Effect::closure) || asked(Effect::occlusion) || contains(request.effects.skip, Effect::interreflection);
   const Solver solver = request.solver.solver;
   const bool of_solver = solver != Solver::cg && (takes_rows(solver) || takes_reciprocity(solver));
-  return given.form_factors || given.mesh || given.solver || of_effects || of_sampling || of_solver ||
+  return given.form_factors || given.ray_rows || given.mesh || given.solver || of_effects || of_sampling || of_solver ||
          request.solver.max_rows.has_value();
 }
 
@@ -49,7 +49,7 @@ Plan by_rays(Plan plan) {
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
   const bool asks_for_rays = request.assembly.storage == Storage::rays;
-  if (asks_for_rays && light.is_reflected && !given.mesh) chosen.request.accuracy.error_bars = true;
+  if (asks_for_rays && light.is_reflected && !given.mesh && !given.ray_rows) chosen.request.accuracy.error_bars = true;
   const bool lacks_bars = asks_for_rays && !light.is_reflected && has_error_bars(request.accuracy);
   if (request.assembly.storage != Storage::automatic && !lacks_bars) return chosen;
   chosen.request.assembly.storage = Storage::tiles;

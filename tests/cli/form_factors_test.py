@@ -17,7 +17,7 @@ def load(file):
     (length,) = struct.unpack("<H", data[8:10])
     header = ast.literal_eval(data[10 : 10 + length].decode())
     assert not header["fortran_order"]
-    letter, size = {"<f4": ("f", 4), "<f8": ("d", 8)}[header["descr"]]
+    letter, size = {"<f4": ("f", 4), "<f8": ("d", 8), "<i4": ("i", 4), "<i8": ("q", 8)}[header["descr"]]
     values = data[10 + length :]
     return header["shape"], struct.unpack(f"<{len(values) // size}{letter}", values)
 
@@ -45,6 +45,36 @@ class FormFactorsTest(ToolTest):
                 self.assertAlmostEqual(area[i] * F[i * size + j], area[j] * F[j * size + i], delta=1e-6 * area[i])
         self.assertEqual(set(info["files"]) | {"info.json"}, {path.name for path in folder.iterdir()})
         self.assertRegex(info["geometry_sha256"], "^[0-9a-f]{64}$")
+
+    def test_rows_of_rays_sum_up_to_what_patches_see(self):
+        self.find("-o", "room.ff", "--storage", "rays", "--patches", "300")
+        folder = self.folder / "room.ff"
+        info = json.loads((folder / "info.json").read_text())
+        self.assertEqual(set(info["files"]) | {"info.json"}, {path.name for path in folder.iterdir()})
+        size = info["patches"]
+        _, lost = load(folder / "lost_share.npy")
+        for half in (0, 1):
+            begin, hits, weight, entry_begin, columns, entries = (
+                load(folder / f"{name}_{half}.npy")[1]
+                for name in ("hit_begin", "hits", "hit_weight", "entry_begin", "entry_columns", "entries"))
+            self.assertEqual((len(begin), len(weight), len(entry_begin)), (size + 1, size, size + 1))
+            self.assertEqual((begin[size], entry_begin[size]), (len(hits), len(entries)))
+            self.assertTrue(all(0 <= column < size for column in (*hits, *columns)))
+            for i in range(size):
+                total = (begin[i + 1] - begin[i]) * weight[i] + sum(entries[entry_begin[i] : entry_begin[i + 1]])
+                self.assertAlmostEqual(total, 1 - lost[3 * i] - lost[3 * i + 1], delta=1e-6)
+
+    def test_rows_of_rays_are_no_matrix(self):
+        for more in (["--matrix", "npy"], ["--by", "material"]):
+            with self.subTest(more[0]):
+                done = self.find("-o", "room.ff", "--storage", "rays", *more, code=USAGE)
+                self.assertIn("--storage tiles", done.stderr)
+        done = self.find("-o", "F.npy", "--storage", "rays", code=USAGE)
+        self.assertIn("--storage tiles", done.stderr)
+        done = self.find("-o", "room.ff", "--storage", "on-demand", code=USAGE)
+        self.assertIn("tiles or rays", done.stderr)
+        done = self.find("-o", "room.ff", "--storage", "rays", "--raw", code=USAGE)
+        self.assertIn("--raw", done.stderr)
 
     def test_raw_rows_are_not_closed(self):
         self.find("-o", "raw.ff", "--raw", "--patches", "150")

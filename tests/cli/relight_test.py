@@ -218,5 +218,18 @@ class RelightTest(ToolTest):
         self.good("relight", "room.ff", *to)
 
 
+    def test_rows_of_rays_take_any_light(self):
+        """B is linear in E: a lamp of twice the exitance gives twice the light, to the digits written."""
+        self.find("--storage", "rays", folder="rays.ff")
+        for name, words in (("once", []), ("twice", ["--set", "lamp.radiance=16"])):
+            self.good("relight", "rays.ff", *words, "--report", name + ".json", "-o", name + ".vtp")
+        once, twice = self.report("once.json"), self.report("twice.json")
+        self.assertFalse(once["transport"]["shadow_rays"])
+        for a, b in zip(once["energy_balance"]["absorbed_W"], twice["energy_balance"]["absorbed_W"]):
+            self.assertAlmostEqual(b / a, 2, delta=1e-9)
+        refused = self.run_tool("solve", "room.obj", "--form-factors", "rays.ff", "--error-bars")
+        self.assertEqual(refused.returncode, INPUT, refused.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

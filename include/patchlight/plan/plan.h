@@ -72,6 +72,7 @@ struct Plan {
 /// What of a run is given, so that it is not found anew.
 struct Given {
   bool form_factors = false;
+  bool ray_rows = false;  ///< form factors as rows of rays
   bool mesh = false;
   bool solver = false;
 };

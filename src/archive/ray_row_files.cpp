@@ -1,0 +1,250 @@
+#include "archive/ray_row_files.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/output/provenance.h"
+
+#include "archive/file_names.h"
+#include "archive/geometry_hash.h"
+#include "archive/npy.h"
+#include "archive/scene_file.h"
+#include "base/parallel.h"
+#include "output/whole_folder.h"
+#include "output/write_bytes.h"
+#include "output/write_mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What stored rows may be off by of what their patches see: their entries are floats.
+constexpr double row_sum_tolerance = 1e-5;
+
+std::filesystem::path file_of_half(const std::filesystem::path& folder, std::size_t which, std::size_t half) {
+  return folder / (std::string(file_name::of_half.at(which)) + "_" + std::to_string(half) + ".npy");
+}
+
+template <class To, class From, class Value>
+std::vector<To> values_of(const From& from, const Value& value) {
+  std::vector<To> values;
+  values.reserve(from.size());
+  for (const auto& one : from) values.push_back(static_cast<To>(value(one)));
+  return values;
+}
+
+template <class To, class From>
+void write_as(const std::filesystem::path& file, const From& from) {
+  const std::vector<To> values = values_of<To>(from, [](const auto& one) { return one; });
+  write_npy_numbers(file, std::span<const To>(values));
+}
+
+void write_half(const std::filesystem::path& folder, std::size_t half, const RayRows& rows) {
+  const auto file = [&](std::size_t which) { return file_of_half(folder, which, half); };
+  write_as<std::int64_t>(file(0), rows.first_hit);
+  write_as<std::int32_t>(file(1), rows.hits);
+  write_as<double>(file(2), rows.hit_weight);
+  write_as<std::int64_t>(file(3), rows.first_entry);
+  write_as<std::int32_t>(file(4), values_of<PatchIndex>(rows.entries, [](const RayEntry& e) { return e.patch; }));
+  write_as<float>(file(5), values_of<float>(rows.entries, [](const RayEntry& e) { return e.form_factor; }));
+}
+
+void write_lamps(const std::filesystem::path& folder, const RayExchange& exchange) {
+  std::vector<std::int64_t> ranges;
+  for (const auto& [begin, end] : exchange.lamps) ranges.insert(ranges.end(), {begin, end});
+  write_as<std::int64_t>(folder / file_name::lamps, ranges);
+  const auto write = [&](const char* name, const LampValues& values) {
+    const std::span<const float> all(values.data(), static_cast<std::size_t>(values.size()));
+    write_npy_numbers(folder / name, all);
+  };
+  const LampFactors& factors = exchange.lamp_factors;
+  for (std::size_t half = 0; half < 2; ++half) write(file_name::lamp_factors.at(half), factors.halves.at(half));
+  write(file_name::lamp_standard_error, factors.standard_error);
+}
+
+Json files_of_rows() {
+  Json part;
+  const std::array<const char*, 6> meaning = {"where the hits of each row begin in hits; one more at the end",
+                                              "the patches that rays of each row have met: column j, once for each ray",
+                                              "per row the form factor of each of its hits; unit 1",
+                                              "where the entries of each row begin; one more at the end",
+                                              "the columns of entries",
+                                              "form factors found by rays towards bright patches; unit 1"};
+  for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t which = 0; which < meaning.size(); ++which)
+      part[file_of_half({}, which, half).string()] = meaning.at(which);
+  part[file_name::lamps] = "first patch of each lamp that is apart from the rows, and the one after its last";
+  for (const char* name : file_name::lamp_factors)
+    part[name] = "form factors to these lamps as wholes, row by row, a column for each; unit 1";
+  part[file_name::lamp_standard_error] = "standard error of the mean of both";
+  part[file_name::hit_distance] = "harmonic mean of the lengths of each patch's rays; unit m";
+  part[file_name::area] = "exposed area A_i of each patch; unit m^2";
+  part[file_name::lost_share] =
+      "per patch the share of its hemisphere that is open, that shows sides without patches, and the covered share of "
+      "its area; unit 1";
+  part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
+  part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
+  return part;
+}
+
+std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const std::string& command_line) {
+  const LostShare& lost = found.exchange.rows.lost;
+  Json json;
+  json["kind"] = file_name::kind;
+  json["version"] = version();
+  json["command_line"] = command_line;
+  json["geometry_sha256"] = geometry_hash(found.mesh);
+  json["input"] = {{"file", scene.file}, {"sha256", scene.sha256}, {"metres_per_unit", scene.metres_per_unit}};
+  json["patches"] = found.mesh.size();
+  json["storage"] = name_of(Storage::rays);
+  json["options"] = {{"max_edge_m", found.plan.max_edge},
+                     {"sides", name_of(found.request.mesh.sides)},
+                     {"rays", found.plan.assembly.rays},
+                     {"seed", found.plan.assembly.seed},
+                     {"lost_share_rays", lost.rays_per_patch}};
+  json["counts"] = {{"rays", found.exchange.rows.rays}, {"shadow_rays", found.exchange.rows.shadow_rays}};
+  json["files"] = files_of_rows();
+  // Names from a model may hold bytes that are not UTF-8: they are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
+  throw InputError(file.string(), "found " + found + "; expected " + expected + ". Make the form factors anew");
+}
+
+// Where rows begin among all their entries.
+std::vector<std::uint64_t> read_begins(const std::filesystem::path& file, std::size_t rows) {
+  const LargeArray<std::int64_t> stored = read_npy_numbers<std::int64_t>(file, rows + 1);
+  const bool rises = stored.front() == 0 && std::is_sorted(stored.begin(), stored.end());
+  if (!rises) refuse(file, "rows that begin before those above them", "0 first, then no number below the one before");
+  return {stored.begin(), stored.end()};
+}
+
+LargeArray<PatchIndex> read_columns(const std::filesystem::path& file, std::size_t count, std::size_t patches) {
+  const LargeArray<std::int32_t> stored = read_npy_numbers<std::int32_t>(file, count);
+  const auto is_patch = [&](std::int32_t j) { return j >= 0 && static_cast<std::size_t>(j) < patches; };
+  const auto other = std::find_if_not(stored.begin(), stored.end(), is_patch);
+  if (other != stored.end())
+    refuse(file, "column " + std::to_string(*other), "one of " + std::to_string(patches) + " patches, from 0");
+  return {stored.begin(), stored.end()};
+}
+
+RayRows read_half(const std::filesystem::path& folder, std::size_t half, std::size_t patches) {
+  const auto file = [&](std::size_t which) { return file_of_half(folder, which, half); };
+  RayRows rows;
+  rows.first_hit = read_begins(file(0), patches);
+  rows.hits = read_columns(file(1), rows.first_hit.back(), patches);
+  const LargeArray<double> weights = read_npy_numbers<double>(file(2), patches);
+  rows.hit_weight.assign(weights.begin(), weights.end());
+  rows.first_entry = read_begins(file(3), patches);
+  const LargeArray<PatchIndex> columns = read_columns(file(4), rows.first_entry.back(), patches);
+  const LargeArray<float> entries = read_npy_numbers<float>(file(5), rows.first_entry.back());
+  rows.entries.reserve(entries.size());
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (!(entries[k] >= 0)) refuse(file(5), "a form factor of " + std::to_string(entries[k]), "numbers from 0 on");
+    rows.entries.push_back({columns[k], entries[k]});
+  }
+  return rows;
+}
+
+// Each row as long as it has any entries sums up to what its patch sees.
+void require_sums(const std::filesystem::path& file, const RayRows& rows, const Eigen::VectorXd& wanted) {
+  for (std::size_t i = 0; i < rows.hit_weight.size(); ++i) {
+    const std::uint64_t hits = rows.first_hit[i + 1] - rows.first_hit[i];
+    double sum = static_cast<double>(hits) * rows.hit_weight[i];
+    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
+      sum += static_cast<double>(rows.entries[k].form_factor);
+    const bool is_empty = hits == 0 && rows.first_entry[i] == rows.first_entry[i + 1];
+    const double expected = wanted[static_cast<Eigen::Index>(i)];
+    const bool is_weighed = rows.hit_weight[i] >= -row_sum_tolerance;
+    if (is_weighed && (is_empty || std::abs(sum - expected) <= row_sum_tolerance)) continue;
+    std::ostringstream found, right;
+    found << "form factors that sum to " << sum << " in row " << i + 1;
+    right << expected << ", as lost_share.npy says";
+    refuse(file, found.str(), right.str());
+  }
+}
+
+LampValues read_lamp_values(const std::filesystem::path& file, std::size_t patches, std::size_t lamps) {
+  // A form factor is a mean of shares of the hemisphere.
+  constexpr float most = 1.001F;
+  const LargeArray<float> stored = read_npy_numbers<float>(file, patches * lamps);
+  const auto is_factor = [](float value) { return value >= 0 && value <= most; };
+  const auto other = std::find_if_not(stored.begin(), stored.end(), is_factor);
+  if (other != stored.end()) refuse(file, "a form factor of " + std::to_string(*other), "numbers from 0 to 1");
+  return Eigen::Map<const LampValues>(stored.data(), static_cast<Eigen::Index>(patches),
+                                      static_cast<Eigen::Index>(lamps));
+}
+
+std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const PatchMesh& mesh) {
+  constexpr std::size_t most = 1000;
+  const std::size_t count = npy_count(file);
+  if (count % 2 != 0 || count > 2 * most) refuse(file, std::to_string(count) + " numbers", "two for each lamp");
+  const LargeArray<std::int64_t> stored = read_npy_numbers<std::int64_t>(file, count);
+  std::vector<PatchRange> lamps;
+  for (std::size_t k = 0; k < count; k += 2) {
+    const std::int64_t begin = stored[k], end = stored[k + 1];
+    const bool is_range = begin >= 0 && begin < end && end <= static_cast<std::int64_t>(mesh.size());
+    if (!is_range)
+      refuse(file, "patches " + std::to_string(begin) + " to " + std::to_string(end), "some of the patches");
+    lamps.push_back({static_cast<PatchIndex>(begin), static_cast<PatchIndex>(end)});
+  }
+  return lamps;
+}
+
+}  // namespace
+
+void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, const RayFormFactors& found,
+                    const std::string& command_line) {
+  const TracedRows& rows = found.exchange.rows;
+  write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
+    for (std::size_t half = 0; half < 2; ++half) write_half(in, half, rows.halves.at(half));
+    write_lamps(in, found.exchange);
+    write_as<float>(in / file_name::hit_distance, rows.distance);
+    write_npy(in / file_name::area, rows.area);
+    Eigen::MatrixXd lost(rows.area.size(), 3);
+    lost << rows.lost.escaped, rows.lost.at_backs, rows.lost.covered;
+    write_npy(in / file_name::lost_share, lost);
+    write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, expected_row_sum(rows.lost), {}});
+    write_stored_scene(in / file_name::scene, scene, found.plan.sides);
+    write_bytes(in / file_name::info, info_of_rows(scene, found, command_line));
+  });
+}
+
+RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh) {
+  require_same_geometry(folder, info, mesh);
+  const std::size_t patches = mesh.size();
+  RayExchange exchange;
+  TracedRows& rows = exchange.rows;
+  const StoredShares shares = read_shares(folder, info);
+  rows.area = shares.area;
+  rows.lost = shares.lost;
+  const Eigen::VectorXd wanted = expected_row_sum(rows.lost);
+  for (std::size_t half = 0; half < 2; ++half) {
+    rows.halves.at(half) = read_half(folder, half, patches);
+    require_sums(file_of_half(folder, 2, half), rows.halves.at(half), wanted);
+  }
+  const LargeArray<float> distance = read_npy_numbers<float>(folder / file_name::hit_distance, patches);
+  rows.distance.assign(distance.begin(), distance.end());
+  const auto is_length = [](float metres) { return std::isfinite(metres) && metres >= 0; };
+  if (!std::all_of(rows.distance.begin(), rows.distance.end(), is_length))
+    refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "metres from 0 on");
+  exchange.lamps = read_lamps(folder / file_name::lamps, mesh);
+  LampFactors& factors = exchange.lamp_factors;
+  for (std::size_t half = 0; half < 2; ++half)
+    factors.halves.at(half) =
+        read_lamp_values(folder / file_name::lamp_factors.at(half), patches, exchange.lamps.size());
+  factors.standard_error = read_lamp_values(folder / file_name::lamp_standard_error, patches, exchange.lamps.size());
+  return exchange;
+}
+
+}  // namespace patchlight

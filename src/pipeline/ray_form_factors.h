@@ -1,0 +1,26 @@
+#pragma once
+
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+
+#include "transport/ray_exchange.h"
+
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// Rows of rays between the patches of a scene.
+struct RayFormFactors {
+  Request request;  ///< as it was carried out
+  Plan plan;
+  PatchMesh mesh;
+  RayExchange exchange;
+  std::vector<std::string> notes = {};  ///< on polygons that lie one on the other
+};
+
+/// As find_form_factors() finds all pairs: what Steps::ray_exchange can give. \throws InputError, MemoryError,
+/// Cancelled.
+RayFormFactors find_ray_form_factors(const Scene& scene, const Request& request, const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,140 @@
+#include "archive/ray_row_files.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/simulate.h"
+
+#include "archive/npy.h"
+#include "support/test_room.h"
+#include "unit/output/temporary_folder.h"
+
+#include <cmath>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace patchlight::ray_row_files_test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+Request by_rays() {
+  Request request;
+  request.mesh.max_edge = 0.4;
+  request.assembly.storage = Storage::rays;
+  request.solver.solver = Solver::gmres;
+  return request;
+}
+
+// A folder of the rows of the room.
+class RayRowFiles : public testing::Test {
+ protected:
+  RayRowFiles() { write_ray_rows(place_, scene_, found_, "a command"); }
+
+  RayExchange read() const { return read_ray_rows(place_, read_form_factor_info(place_), found_.mesh); }
+
+  static Simulation solved(const Scene& scene, const RayExchangeOf& exchange) {
+    Steps with;
+    with.ray_exchange = exchange;
+    return simulate(scene, by_rays(), {}, with);
+  }
+
+  // With the stored rows.
+  Simulation relit(const Scene& scene) const {
+    const FormFactorInfo info = read_form_factor_info(place_);
+    return solved(scene, [&](const PatchMesh& mesh) { return read_ray_rows(place_, info, mesh); });
+  }
+
+  template <class Number>
+  void overwrite(const char* name, std::size_t count, std::size_t place, Number value) {
+    LargeArray<Number> values = read_npy_numbers<Number>(place_ / name, count);
+    values.at(place) = value;
+    write_npy_numbers(place_ / name, std::span<const Number>(values));
+  }
+
+  Scene scene_ = test_room(0.6);
+  RayFormFactors found_ = find_ray_form_factors(scene_, by_rays());
+  TemporaryFolder folder_;
+  fs::path place_ = folder_.path() / "room.ff";
+};
+
+TEST_F(RayRowFiles, GiveBackEveryBit) {
+  const Simulation at_once = solved(scene_, [&](const PatchMesh&) { return found_.exchange; });
+  const Simulation from_folder = relit(scene_);
+  EXPECT_TRUE((from_folder.solution.radiosity == at_once.solution.radiosity).all());
+  EXPECT_TRUE((from_folder.ray_standard_error == at_once.ray_standard_error).all());
+  // No ray is traced, so that nothing is known of the size of the patches.
+  EXPECT_EQ(from_folder.transport.counts.shadow_rays, 0);
+  EXPECT_FALSE(from_folder.error_bars);
+}
+
+// B is linear in E: a lamp of twice the exitance gives twice the light, to the bit as 2 is a power of two.
+TEST_F(RayRowFiles, AreOfAnyLight) {
+  Scene brighter = scene_;
+  for (Material& material : brighter.materials) material.exitance = material.exitance * 2;
+  const Simulation once = relit(scene_);
+  EXPECT_TRUE((relit(brighter).solution.radiosity == 2 * once.solution.radiosity).all());
+}
+
+// Other reflectances, against all pairs on the same mesh. The bars are those of the rays alone.
+TEST_F(RayRowFiles, AreOfAnyMaterial) {
+  Scene darker = scene_;
+  for (Material& material : darker.materials) material.reflectance = material.reflectance * 0.5;
+  const Simulation relit_room = relit(darker);
+  Request pairs;
+  pairs.mesh.max_edge = 0.4;
+  pairs.assembly.samples = 16;
+  const Simulation exact = simulate(darker, pairs);
+  ASSERT_EQ(exact.mesh.size(), relit_room.mesh.size());
+  const auto norm = [&](const Field& x) {
+    return std::sqrt((x.square().colwise() * exact.problem.area.array()).sum());
+  };
+  const Field bars = relit_room.problem.scattering.reflectance * relit_room.ray_standard_error;
+  const double ratio = norm(relit_room.solution.radiosity - exact.solution.radiosity) / norm(bars);
+  EXPECT_LT(ratio, 1.5);
+  EXPECT_GT(ratio, 0.3);
+}
+
+TEST_F(RayRowFiles, ReplaceAnEarlierFolderAndNothingElse) {
+  EXPECT_NO_THROW(write_ray_rows(place_, scene_, found_, "again"));
+  EXPECT_NO_THROW(check_form_factors_writable(place_));
+  write_npy_numbers<double>(place_ / "mine.npy", std::vector<double>{1, 2});
+  EXPECT_THROW(write_ray_rows(place_, scene_, found_, "again"), OutputError);
+}
+
+TEST_F(RayRowFiles, OfAnotherMeshAreRefused) {
+  PatchMesh other = found_.mesh;
+  other.vertices[0].x() += 0.01;
+  EXPECT_THROW(read_ray_rows(place_, read_form_factor_info(place_), other), InputError);
+}
+
+TEST_F(RayRowFiles, ThatCannotBeAreRefused) {
+  EXPECT_NO_THROW(read());
+  const std::size_t patches = found_.mesh.size();
+  const std::size_t hits = found_.exchange.rows.halves[0].hits.size();
+  const std::size_t entries = found_.exchange.rows.halves[0].entries.size();
+  ASSERT_GT(entries, 0);
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto expect_refused = [&](const auto& damage) {
+    damage();
+    EXPECT_THROW(read(), InputError);
+    write_ray_rows(place_, scene_, found_, "a command");
+  };
+  expect_refused([&] { overwrite<std::int32_t>("hits_0.npy", hits, 5, static_cast<std::int32_t>(patches)); });
+  expect_refused([&] { overwrite<std::int32_t>("hits_0.npy", hits, 5, -1); });
+  expect_refused([&] { overwrite<std::int64_t>("hit_begin_0.npy", patches + 1, 1, -1); });
+  expect_refused([&] { overwrite<std::int64_t>("hit_begin_0.npy", patches + 1, patches, 1'000'000'000'000'000); });
+  expect_refused([&] { overwrite<double>("hit_weight_0.npy", patches, 3, 0); });
+  expect_refused([&] { overwrite<double>("hit_weight_0.npy", patches, 3, infinite); });
+  expect_refused([&] { overwrite<float>("entries_0.npy", entries, 0, 1e30F); });
+  expect_refused([&] { overwrite<float>("entries_0.npy", entries, 0, -1); });
+  expect_refused([&] { overwrite<std::int64_t>("lamps.npy", 2 * found_.exchange.lamps.size(), 0, -7); });
+  expect_refused([&] { overwrite<float>("lamp_factors_1.npy", patches * found_.exchange.lamps.size(), 0, 1e30F); });
+  expect_refused([&] { overwrite<float>("hit_distance.npy", patches, 0, -1); });
+  expect_refused([&] { fs::remove(place_ / "entries_1.npy"); });
+}
+
+}  // namespace
+}  // namespace patchlight::ray_row_files_test
