@@ -227,8 +227,9 @@ class RelightTest(ToolTest):
         self.assertFalse(once["transport"]["shadow_rays"])
         for a, b in zip(once["energy_balance"]["absorbed_W"], twice["energy_balance"]["absorbed_W"]):
             self.assertAlmostEqual(b / a, 2, delta=1e-9)
-        refused = self.run_tool("solve", "room.obj", "--form-factors", "rays.ff", "--error-bars")
-        self.assertEqual(refused.returncode, INPUT, refused.stderr)
+        refused = self.run_tool("solve", "room.obj", "--form-factors", "rays.ff", "--error-bars", "-o", "x.vtp")
+        self.assertEqual(refused.returncode, USAGE, refused.stderr)
+        self.assertIn("--error-bars", refused.stderr)
 
 
 if __name__ == "__main__":
