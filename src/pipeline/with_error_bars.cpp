@@ -26,7 +26,7 @@ namespace {
 // many patches, for the sake of time.
 constexpr int rays_from_quarters = 16;
 constexpr int few_rays_from_quarters = 4;
-constexpr PatchIndex many_patches = 100'000;
+constexpr PatchIndex many_patches = 20'000;
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
