@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Checks and solves the real models that docs/models.md describes, and makes its pictures.
 # usage: scripts/real_models.sh MODELS OUT [NAME...]    MODELS: folder of the models; names: veach-ajar radiator duplex
-# kitchen openroom duplex-daylight ies. PATCHLIGHT_TOOL is the tool, build/src/patchlight if not set.
+# kitchen furniture openroom duplex-daylight ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
+# tool, build/src/patchlight if not set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -9,7 +10,7 @@ models=${1:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 out=${2:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 shift 2
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen openroom duplex-daylight ies)
+[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom duplex-daylight ies)
 tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 if [ ! -d "$models" ]; then
   echo "real models: $models is not there; left out"
@@ -31,13 +32,49 @@ sys.exit(abs(error) > 0.01)
 END
 }
 
+# A row of the table: patches, storage, processor seconds, largest memory, stated error.
+cost_row() {
+  python3 - "$1" "$2" <<'END'
+import json, sys
+name, report = sys.argv[1], json.load(open(sys.argv[2]))
+seconds = sum(cost["cpu_seconds"] for cost in report["costs"])
+error = report["relative_error"]
+total = f"{100 * error['total']:.2g} % (mesh {100 * error['mesh']:.2g}, form factors {100 * error['form_factor']:.2g})" if error else "not asked for"
+print(f"| {name} | {report['input']['polygons']} | {report['mesh']['patches']} | {report['plan']['storage']} | {seconds:.0f} | "
+      f"{report['memory_peak_bytes'] / 1e9:.2f} | {total} |")
+END
+}
+
+# A room as a model of its own, and pieces of furniture in it.
+furnished_room() {
+  printf '%s\n' 'newmtl wall' 'Kd 0.75 0.73 0.68' 'newmtl floor' 'Kd 0.45 0.32 0.22' 'newmtl lamp' 'Kd 0.5 0.5 0.5' \
+    'Ke 12 11 10' >"$out/furniture_room.mtl"
+  printf '%s\n' 'mtllib furniture_room.mtl' 'v 0 0 0' 'v 5 0 0' 'v 5 0 4' 'v 0 0 4' 'v 0 2.6 0' 'v 5 2.6 0' 'v 5 2.6 4' \
+    'v 0 2.6 4' 'v 2 2.59 1.5' 'v 3 2.59 1.5' 'v 3 2.59 2.5' 'v 2 2.59 2.5' 'usemtl floor' 'f 1 4 3 2' 'usemtl wall' \
+    'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' 'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/furniture_room.obj"
+  printf 'up = "y"\n\n[[model]]\nfile = "furniture_room.obj"\n'
+  # Name, place of its origin, degrees about the vertical.
+  while read -r piece x y z turn; do
+    printf '\n[[model]]\nfile = "%s"\nunit = "cm"\nrotate = {axis = "y", degrees = %s}\ntranslate = [%s, %s, %s]\n' \
+      "$models/furniture-cc0/blendswap-cc-0/$piece/$piece.obj" "$turn" "$x" "$y" "$z"
+  done <<'END'
+L_shaped_sofa 1.3 0.0 0.9 0
+televisionCabinet 4.6 0.09 2.0 -90
+highCabinet 3.6 0.0 0.35 0
+oakChair 2.8 0.02 2.9 150
+oakChair 1.6 0.02 3.1 200
+radiator 0.15 0.0 2.6 90
+END
+}
+
+printf '| model | polygons | patches | storage | CPU s | GB | stated error |\n|---|---|---|---|---|---|---|\n' >"$out/costs.md"
 for name in "${names[@]}"; do
   echo "real models: $name"
   case $name in
     veach-ajar)
       python3 scripts/mitsuba_to_obj.py "$models/veach-ajar/scene.xml" "$out/veach-ajar.obj" 2>/dev/null
       files=("$out/veach-ajar.obj")
-      options=(--patches 20000 --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
+      options=(--accuracy 2% --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
       ;;
     radiator)
       # A room of 3 x 2.5 x 2.6 m around the radiator, which is modelled in centimetres, and a lamp under its ceiling.
@@ -47,16 +84,40 @@ for name in "${names[@]}"; do
         'v 30 249 160' 'v -30 249 160' 'usemtl wall' 'f 1 4 3 2' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' \
         'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
       files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
-      options=(--unit cm --patches 15000 --camera 60,140,240 -10,40,0 55)
+      options=(--unit cm --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
       files=("$models/duplex-ifc/Duplex_A.ifc")
-      options=(--set Sash.radiance=100 --patches 25000 --tolerance 1e-3 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
+      options=(--set Sash.radiance=100 --accuracy 2% --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
       ;;
     kitchen)
       python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
-      files=("$out/kitchen.obj")
-      options=()
+      # Nothing in it emits: three spheres in the middle of the room.
+      cat >"$out/kitchen.toml" <<'END'
+[[model]]
+file = "kitchen.obj"
+
+[[luminaire]]
+name = "bulbs"
+kind = "sphere"
+positions = [[0.3, 2.4, 0], [0.3, 2.4, 2], [0.3, 2.4, 4]]
+lumens = 1500
+radius = 0.06
+
+[[camera]]
+name = "from the table"
+eye = [1.211, 1.805, 3.852]
+target = [0.773, 1.763, 2.954]
+field_of_view = 60
+END
+      files=("$out/kitchen.toml")
+      options=(--patches 700000)
+      ;;
+    furniture)
+      # Six pieces, modelled in centimetres, in a room of 5 x 4 x 2.6 m with a lamp under its ceiling.
+      furnished_room >"$out/furniture.toml"
+      files=("$out/furniture.toml")
+      options=(--accuracy 2% --camera 4.7,1.9,3.7 1.2,0.6,0.6 75)
       ;;
     openroom)
       # The materials that its files name are those of their origin: glass_60 lets 60 % through.
@@ -133,8 +194,7 @@ target = [1.3, -16.3, 0.6]
 field_of_view = 75
 END
       files=("$out/duplex-daylight.toml")
-      options=(--patches 8000 --on-demand --solver progressive --max-rows 2%
-        --points-output "$out/duplex-daylight.csv")
+      options=(--patches 20000 --points-output "$out/duplex-daylight.csv")
       ;;
     ies)
       cat >"$out/ies.toml" <<END
@@ -159,9 +219,10 @@ END
   # A model without a lamp is reported, and ends with exit code 2.
   "$tool" check "${files[@]}" $([ "$name" = radiator ] && echo --unit cm) >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
   [ ${#options[@]} -gt 0 ] || continue
-  # A first picture (--max-rows) ends with exit code 3.
-  "$tool" solve "${files[@]}" --storage tiles "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
-    --verbose >"$out/$name.solve.txt" 2>&1 || { [ $? -eq 3 ] && [ "$name" = duplex-daylight ]; }
+  # An accuracy that was not reached ends with exit code 3.
+  "$tool" solve "${files[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+    --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
+  cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in
     openroom) python3 scripts/sensor_map.py "$out/openroom.csv" "$out/openroom.svg" ;;
     duplex-daylight)

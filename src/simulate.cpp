@@ -68,8 +68,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
       clock.finish(Stage::closure);
 
       // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
-      LitProblem problem =
-          transport.light ? transport.light->lit : lit_problem(run, meshed.plan, meshed.mesh.patches, transport.area);
+      LitProblem problem = transport.light ? transport.light->lit : lit_problem(run, meshed, transport);
       if (has_point_or_daylight(lit)) clock.finish(Stage::direct_light);
 
       // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.

@@ -72,6 +72,9 @@ bool is_earlier_form_factors(const std::filesystem::path& folder);
 /// \throws InputError, which says how to mend it, when the form factors are those of other patches.
 void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);
 
+/// Writes lost_share.npy.
+void write_shares(const std::filesystem::path& folder, const LostShare& lost);
+
 /// What is stored of the patches.
 struct StoredShares {
   Eigen::VectorXd area;  ///< exposed, m^2

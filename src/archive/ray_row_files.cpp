@@ -89,8 +89,8 @@ Json files_of_rows() {
   part[file_name::hit_distance] = "harmonic mean of the lengths of each patch's rays; unit m";
   part[file_name::area] = "exposed area A_i of each patch; unit m^2";
   part[file_name::lost_share] =
-      "per patch the share of its hemisphere that is open, that shows sides without patches, and the covered share of "
-      "its area; unit 1";
+      "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
+      "area, and that over which other polygons lie; unit 1";
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
   part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
   return part;
@@ -211,9 +211,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     write_lamps(in, found.exchange);
     write_as<float>(in / file_name::hit_distance, rows.distance);
     write_npy(in / file_name::area, rows.area);
-    Eigen::MatrixXd lost(rows.area.size(), 3);
-    lost << rows.lost.escaped, rows.lost.at_backs, rows.lost.covered;
-    write_npy(in / file_name::lost_share, lost);
+    write_shares(in, rows.lost);
     write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, expected_row_sum(rows.lost), {}});
     write_stored_scene(in / file_name::scene, scene, found.plan.sides);
     write_bytes(in / file_name::info, info_of_rows(scene, found, command_line));

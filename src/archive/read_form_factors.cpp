@@ -233,9 +233,9 @@ StoredShares read_shares(const std::filesystem::path& folder, const FormFactorIn
   const std::size_t size = info.patches;
   Eigen::VectorXd area = read_npy(folder / file_name::area, size, 1);
   require_positive(folder / file_name::area, area);
-  const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 3);
+  const Eigen::MatrixXd lost = read_npy(folder / file_name::lost_share, size, 4);
   require_shares(folder / file_name::lost_share, lost);
-  return {std::move(area), {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays}};
+  return {std::move(area), {lost.col(0), lost.col(1), lost.col(2), info.lost_share_rays, {}, {}, lost.col(3)}};
 }
 
 bool is_closed(const FormFactorInfo& info) { return !info.closure.empty() && !info.closure.starts_with("none"); }

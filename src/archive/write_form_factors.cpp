@@ -114,8 +114,8 @@ Json files_part(const FormFactorResult& result) {
   }
   part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
   part[file_name::lost_share] =
-      "per patch the share of its hemisphere that is open, that shows sides without patches, and the covered share of "
-      "its area; unit 1";
+      "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
+      "area, and that over which other polygons lie; unit 1";
   part[file_name::raw_row_sum] = "sum_j F_ij before closure; unit 1";
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
   part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
@@ -222,9 +222,7 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     }
     if (keeps_entry_errors(exchange)) write_npy(in / file_name::entry_errors, exchange.entry_errors.codes());
     write_npy(in / file_name::area, exchange.area);
-    Eigen::MatrixXd lost(exchange.area.size(), 3);
-    lost << exchange.lost.escaped, exchange.lost.at_backs, exchange.lost.covered;
-    write_npy(in / file_name::lost_share, lost);
+    write_shares(in, exchange.lost);
     write_npy(in / file_name::raw_row_sum, exchange.raw_row_sum);
     write_mesh(in / file_name::mesh, result.scene,
                {result.form_factors.mesh, exchange.area, row_sums(exchange.exchange_areas).cwiseQuotient(exchange.area),
@@ -235,6 +233,13 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     write_stored_scene(in / file_name::scene, result.scene, result.form_factors.plan.sides);
     write_bytes(in / file_name::info, info_json(result));
   });
+}
+
+void write_shares(const std::filesystem::path& folder, const LostShare& lost) {
+  Eigen::MatrixXd shares(lost.escaped.size(), 4);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(lost.escaped.size());
+  shares << lost.escaped, lost.at_backs, lost.covered, lost.overlaid.size() > 0 ? lost.overlaid : none;
+  write_npy(folder / file_name::lost_share, shares);
 }
 
 void check_form_factors_writable(const std::filesystem::path& folder) {

@@ -34,6 +34,14 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   return lit;
 }
 
+LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost) {
+  if (lit.problem.direct_irradiance.size() == 0) return lit;
+  const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, lit.problem.area);
+  lit.problem.direct_irradiance.colwise() *= factor;
+  lit.direct_standard_error.colwise() *= factor;
+  return lit;
+}
+
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed) {
   const LightingOptions few{.lamp_samples = 8, .sun_samples = 8, .sky_samples = 64, .seed = seed};
   return direct_irradiance_as_planned(run, plan, mesh, few).irradiance;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/solve/problem.h"
+#include "patchlight/transport/lost_share.h"
 
 #include "pipeline/run.h"
 
@@ -17,6 +18,10 @@ struct LitProblem {
 /// `exposed_area` as problem_of() takes it. Where one band stands for all, direct light is found once. \throws
 /// Cancelled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
+
+/// The same with means over what is exposed of each patch, RadiosityProblem::area, of light that lit_problem() has
+/// found as means over all but what other polygons lie over.
+LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);
 
 /// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with 8 rays to each luminaire,
 /// 8 to the sun and 64 to the sky; `seed` chooses them. \throws Cancelled.

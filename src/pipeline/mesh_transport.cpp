@@ -63,6 +63,11 @@ ClosedExchangeAreas closed(Exchange exchange, const Plan& plan, const Observer& 
 
 }  // namespace
 
+LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport) {
+  const PatchMesh& mesh = meshed.mesh.patches;
+  return over_exposed_part(lit_problem(run, meshed.plan, mesh, transport.area), mesh, transport.facts.lost);
+}
+
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known) {
   RawTransport found;
   if (plan.assembly.storage == Storage::rays) {

@@ -31,6 +31,9 @@ struct MeshTransport {
   std::optional<RayLight> light;                  ///< with them, the light that goes with them
 };
 
+/// lit_problem() of a mesh with the exposed parts of its patches. \throws Cancelled.
+LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport);
+
 /// All pairs, with visibility from shadow rays, unless Steps::exchange knows them; and the share of each patch's
 /// hemisphere from which no patch is seen. With rows on demand (AssemblyOptions::storage) the lost shares alone: the
 /// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars what is known of the

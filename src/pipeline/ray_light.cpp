@@ -1,5 +1,6 @@
 #include "pipeline/ray_light.h"
 
+#include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/vectors.h"
 #include "mesh/means_around.h"
@@ -115,6 +116,14 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   return trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
 }
 
+// The share of what each patch holds back that is exposed.
+Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
+  const Occluder& occluder = run.tracing->between_patches();
+  Eigen::ArrayXd exposed = exposed_area.array();
+  for (PatchIndex i = 0; i < mesh.size(); ++i) exposed[i] /= mesh.area[i] * occluder.held_share(mesh.polygon[i]);
+  return exposed;
+}
+
 struct ExchangeAndLight {
   RayExchange exchange;
   RayLight light;  // means over whole patches
@@ -141,13 +150,20 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
   auto [exchange, light] = exchange_and_light(run, plan, mesh);
   light.distance = std::move(exchange.rows.distance);
 
-  // 2. Means over the exposed part of each patch, of what it holds back.
-  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  // 2. Means over the exposed part of each patch, which is known but for its own error.
+  const LostShare& lost = exchange.rows.lost;
   light.lit.problem.area = exchange.rows.area;
-  Eigen::ArrayXd exposed = exchange.rows.area.array() / area.array();
-  const Occluder& occluder = run.tracing->between_patches();
-  for (PatchIndex i = 0; i < mesh.size(); ++i) exposed[i] /= occluder.held_share(mesh.polygon[i]);
+  light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
+  const Eigen::ArrayXd exposed = exposed_shares(run, mesh, exchange.rows.area);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
+  const Eigen::ArrayXd relative = exposure_errors(lost);
+  const Field by_exposure = (0.5 * (light.by_lamps[0] + light.by_lamps[1])).colwise() * relative;
+  light.lamp_standard_error = (light.lamp_standard_error.square() + by_exposure.square()).sqrt();
+  Field& of_direct = light.lit.direct_standard_error;
+  if (of_direct.size() > 0) {
+    const Field off = light.lit.problem.direct_irradiance.colwise() * relative;
+    of_direct = (of_direct.square() + off.square()).sqrt();
+  }
   return {std::move(exchange.rows), std::move(light)};
 }
 

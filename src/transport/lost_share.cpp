@@ -29,10 +29,12 @@ struct Shares {
   double at_backs = 0;
   double covered = 0;
   double dark = 0;
+  double overlaid = 0;
 };
 
 struct HemisphereSampler {
   const PatchMesh& mesh;
+  const Occluder& occluder;
   Sights sights;
 
   std::vector<Seen> look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
@@ -90,6 +92,7 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
   int escaped = 0;
   int at_backs = 0;
   int dark = 0;
+  int overlaid = 0;
   for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
     const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == rays_per_point) {
@@ -97,6 +100,7 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
       if (unseen(look_together(patch, grazing_rays(mesh, patch, {begin, begin + rays_per_point}), seed)) ==
           rays_per_point) {
         ++covered;
+        overlaid += occluder.is_covered(mesh.polygon[patch], mesh.side[patch], begin->origin) ? 1 : 0;
         continue;
       }
     }
@@ -106,14 +110,15 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
     dark += 2 * count(group, Sight::back) > rays_per_point ? 1 : 0;
   }
   const double of_rays = std::max(1, exposed * rays_per_point);
-  return {escaped / of_rays, at_backs / of_rays, static_cast<double>(covered) / (covered + exposed),
-          static_cast<double>(dark) / std::max(1, exposed)};
+  const double points = covered + exposed;
+  return {escaped / of_rays, at_backs / of_rays, covered / points, static_cast<double>(dark) / std::max(1, exposed),
+          overlaid / points};
 }
 
 Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
   const std::vector<Seen> seen = sights.of_rays(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
-  if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0};
+  if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed), seed);
 }
@@ -124,6 +129,13 @@ Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
   Eigen::VectorXd clear(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i]);
   return clear.isZero(0) ? Eigen::VectorXd() : clear;
+}
+
+Eigen::ArrayXd over_exposed_part(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& exposed_area) {
+  Eigen::ArrayXd open = Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), mesh.size());
+  if (lost.clear.size() > 0) open *= 1 - lost.clear.array();
+  if (lost.overlaid.size() > 0) open *= 1 - lost.overlaid.array();
+  return (lost.covered.array() > 0).select(open / exposed_area.array(), 1.0);
 }
 
 Eigen::VectorXd expected_row_sum(const LostShare& lost) { return 1 - lost.escaped.array() - lost.at_backs.array(); }
@@ -140,21 +152,22 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const HemisphereSampler sampler{mesh, Sights(mesh, occluder)};
+  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder)};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
-  LostShare lost{zero, zero, zero, before.rays_per_patch, zero};
+  LostShare lost{zero, zero, zero, before.rays_per_patch, zero, {}, zero};
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
     const PatchIndex b = known.place[i];
-    const Shares shares = b == no_patch
-                              ? sampler.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
-                              : Shares{before.escaped[b], before.at_backs[b], before.covered[b], before.dark[b]};
+    const Shares shares = b == no_patch ? sampler.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
+                                        : Shares{before.escaped[b], before.at_backs[b], before.covered[b],
+                                                 before.dark[b], before.overlaid[b]};
     lost.escaped[i] = shares.escaped;
     lost.at_backs[i] = shares.at_backs;
     lost.covered[i] = shares.covered;
     lost.dark[i] = shares.dark;
+    lost.overlaid[i] = shares.overlaid;
   });
   lost.clear = clear_shares(mesh, occluder);
   return lost;

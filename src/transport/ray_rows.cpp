@@ -41,7 +41,7 @@ RawRows room_for(const std::vector<std::uint32_t>& counts) {
     half.entry_count.resize(size);
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size));
-  raw.lost = {zero, zero, zero, 0, zero};
+  raw.lost = {zero, zero, zero, 0, zero, {}, zero};
   raw.sees_backs.resize(size);
   raw.distance.resize(size);
   raw.tasks.resize((size + patches_at_once - 1) / patches_at_once);

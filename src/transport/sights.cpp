@@ -53,7 +53,8 @@ std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::
     second_tries.push_back(moved);
     tried_again.push_back(k);
   }
-  const auto second_hits = occluder_.first_held_hits(second_tries, hash({seed, 1}));
+  // What a clear polygon has let through once it lets through again: a second draw would hold back twice.
+  const auto second_hits = occluder_.first_held_hits(second_tries, seed, tried_again);
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (!second_hits[k]) continue;
     const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh_.normal[patch]);

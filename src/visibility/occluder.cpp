@@ -261,12 +261,14 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
 }
 
 // Each time that a ray meets a clear polygon it goes on from there with the probability of its transmittance.
-std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed) const {
+std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
+                                                          std::span<const std::size_t> keys) const {
+  assert(keys.empty() || keys.size() == rays.size());
   std::vector<std::optional<Hit>> hits = first_hits(rays);
   if (tracer_->transmittance.empty()) return hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     for (std::uint64_t crossing = 0; hits[k] && crossing < Crossed::most; ++crossing) {
-      if (hash({seed, k, crossing}) * 0x1p-32 >= transmittance(hits[k]->polygon)) break;
+      if (hash({seed, keys.empty() ? k : keys[k], crossing}) * 0x1p-32 >= transmittance(hits[k]->polygon)) break;
       const double before = hits[k]->distance;
       const Ray onward{hits[k]->point, rays[k].direction, hits[k]->polygon};
       hits[k] = first_hits({&onward, 1}).front();

@@ -117,8 +117,10 @@ class Occluder {
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
   /// The same, but a ray goes through a clear polygon with the probability of its transmittance, drawn for each: so in
-  /// the mean hits count as the polygons hold back light.
-  std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed) const;
+  /// the mean hits count as the polygons hold back light. Rays with the same key and seed go through alike; without
+  /// `keys` each has its place as its key.
+  std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
+                                                  std::span<const std::size_t> keys = {}) const;
 
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;

@@ -62,7 +62,7 @@ class FormFactorsTest(ToolTest):
             self.assertTrue(all(0 <= column < size for column in (*hits, *columns)))
             for i in range(size):
                 total = (begin[i + 1] - begin[i]) * weight[i] + sum(entries[entry_begin[i] : entry_begin[i + 1]])
-                self.assertAlmostEqual(total, 1 - lost[3 * i] - lost[3 * i + 1], delta=1e-6)
+                self.assertAlmostEqual(total, 1 - lost[4 * i] - lost[4 * i + 1], delta=1e-6)
 
     def test_rows_of_rays_are_no_matrix(self):
         for more in (["--matrix", "npy"], ["--by", "material"]):

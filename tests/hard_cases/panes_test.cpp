@@ -84,6 +84,42 @@ Request fronts(PatchIndex patches) {
   return request;
 }
 
+// A closed room of 4 x 3 x 2.5 m with a pane of 1.5 m^2 to the open, the last polygon.
+Scene room_with_window(double transmittance) {
+  Scene scene = empty_scene({grey(0.6, 0.4), glass(transmittance, 0)});
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 4, 5}) scene = with_quad(std::move(scene), faces[k]);
+  scene = with_wall_around_opening(std::move(scene), 4, 2.5, true);
+  return with_quad(std::move(scene), across_x(4, 1, 2, 0.5, 2, true), 1);
+}
+
+// Transmittance; storage.
+class Window : public testing::TestWithParam<std::tuple<double, Storage>> {};
+
+// The pane sees nothing but the room: sum_i A_i F_i,pane = A_pane, of which it lets tau through. Each of n rays of N
+// patches escapes or does not: the variance of the sum is tau A_pane A / (N n).
+TEST_P(Window, LetsOutItsShareOfTheLight) {
+  const auto [tau, storage] = GetParam();
+  const Scene scene = room_with_window(tau);
+  Request request = fronts(400);
+  request.assembly.storage = storage;
+  if (storage == Storage::rays) request.solver.solver = Solver::gmres;
+  const Simulation simulation = simulate(scene, request);
+  const PatchRange pane = simulation.mesh.patches_on(static_cast<PolygonIndex>(scene.polygons.size() - 1), Side::front);
+  const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
+  const Eigen::VectorXd escaping = area.cwiseProduct(simulation.transport.lost.escaped);
+  const double of_pane = escaping.segment(pane.begin, pane.end - pane.begin).sum();
+  const double least_rays = 32;  // of a patch
+  const double expected = tau * 1.5;
+  const double standard_error = std::sqrt(expected * area.sum() / (least_rays * simulation.mesh.size()));
+  EXPECT_NEAR(escaping.sum() - of_pane, expected, 4 * standard_error);
+  EXPECT_LT(4 * standard_error, 0.6 * expected) << "nothing would be seen";
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, Window,
+                         testing::Combine(testing::Values(0.3, 0.5, 0.8),
+                                          testing::Values(Storage::tiles, Storage::rays)));
+
 // Transmittance and reflectance of the pane; placing.
 class FurnaceWithAPane : public testing::TestWithParam<std::tuple<std::pair<double, double>, Placing>> {};
 

@@ -1,10 +1,12 @@
 // Solids that only the face they stand on closes.
 #include "patchlight/simulate.h"
 
+#include "accuracy/errors.h"
 #include "support/scenes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <tuple>
 #include <utility>
 
 namespace patchlight::standing_test {
@@ -50,6 +52,50 @@ TEST(StandingBlock, WithoutABottomIsDarkInside) {
   EXPECT_GT(compared, 100U);
   EXPECT_LT(largest, 4);
 }
+
+// A floor of 4 x 4 m and a block on it that lies over parts of four of its patches of 1 m, black, the sun overhead.
+Scene block_in_the_sun(bool bottom, double size, bool rug) {
+  Scene scene = with_quad(empty_scene({grey(0)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  for (const Quad& face : box_faces(Point(1.25, 1.25, 0), Point(2.75, 2.75, 1), false)) {
+    const bool is_bottom = face[0].z() + face[1].z() + face[2].z() == 0;
+    if (bottom || !is_bottom) scene = with_quad(std::move(scene), face);
+  }
+  if (rug)
+    scene =
+        with_quad(std::move(scene), {Point(3.2, 3.1, 0), Point(3.9, 3.1, 0), Point(3.9, 3.8, 0), Point(3.2, 3.8, 0)});
+  scene = moved(std::move(scene), Eigen::Affine3d(Eigen::Scaling(size)));
+  scene.up = Vector::UnitZ();
+  scene.sun = Sun{Vector::UnitZ(), Spectrum::Constant(1, 100)};
+  return scene;
+}
+
+// With and without a bottom; metres and millimetres; storage; with and without a rug on the same floor.
+class BlockInTheSun : public testing::TestWithParam<std::tuple<bool, double, Storage, bool>> {};
+
+// What of a patch is not under the block is lit as ever: 100 W/m^2, within four times what the share that is exposed
+// may be off. All light arrives: 100 W for each m^2 of the floor, whichever face it falls on.
+TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
+  const auto [bottom, size, storage, rug] = GetParam();
+  Request request;
+  request.mesh.max_edge = 1.001 * size;
+  request.mesh.sides = Sides::front;
+  request.assembly.storage = storage;
+  if (storage == Storage::rays) request.solver.solver = Solver::gmres;
+  const Simulation lit = simulate(block_in_the_sun(bottom, size, rug), request);
+  EXPECT_NEAR(lit.balance.arriving[0], 1600 * size * size, 0.001 * 1600 * size * size);
+  const Eigen::ArrayXd error = exposure_errors(lit.transport.lost);
+  int partly_covered = 0;
+  for (PatchIndex i = 0; i < lit.mesh.size(); ++i) {
+    if (lit.mesh.polygon[i] != 0 || lit.transport.lost.covered[i] > 0.99) continue;
+    EXPECT_NEAR(lit.solution.irradiance(i, 0), 100, 1e-6 + 400 * error[i]) << "patch " << i;
+    partly_covered += lit.transport.lost.covered[i] > 0.1 ? 1 : 0;
+  }
+  EXPECT_GE(partly_covered, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
+                         testing::Combine(testing::Bool(), testing::Values(1.0, 1e-3),
+                                          testing::Values(Storage::tiles, Storage::rays), testing::Bool()));
 
 }  // namespace
 }  // namespace patchlight::standing_test

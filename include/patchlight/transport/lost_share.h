@@ -22,12 +22,19 @@ struct LostShare {
                               ///< patch that reaches into a solid it is the part inside; empty when it was not measured
   Eigen::VectorXd clear = {};  ///< share of what arrives at the patch that goes straight through; empty: none of any
 
+  Eigen::VectorXd overlaid = {};  ///< share of the area, part of `covered`, over which another polygon lies in the
+                                  ///< patch's plane; empty: none of any
+
   /// True when no ray of any patch was lost.
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }
 };
 
 /// LostShare::clear.
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder);
+
+/// By how much a mean over all of a patch but what is overlaid becomes one over its exposed part, when nothing arrives
+/// at the rest: under what stands on the patch.
+Eigen::ArrayXd over_exposed_part(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& exposed_area);
 
 /// What each row of form factors should sum up to: 1 - escaped - at_backs.
 Eigen::VectorXd expected_row_sum(const LostShare& lost);
