@@ -23,6 +23,7 @@ inline constexpr const char* by_object = "by_object.csv";
 inline constexpr std::array<const char*, 6> of_half = {"hit_begin",   "hits",          "hit_weight",
                                                        "entry_begin", "entry_columns", "entries"};
 inline constexpr const char* hit_distance = "hit_distance.npy";
+inline constexpr const char* directed = "directed.npy";
 inline constexpr const char* lamps = "lamps.npy";
 inline constexpr std::array<const char*, 2> lamp_factors = {"lamp_factors_0.npy", "lamp_factors_1.npy"};
 inline constexpr const char* lamp_standard_error = "lamp_standard_error.npy";

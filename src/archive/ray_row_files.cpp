@@ -87,6 +87,7 @@ Json files_of_rows() {
     part[name] = "form factors to these lamps as wholes, row by row, a column for each; unit 1";
   part[file_name::lamp_standard_error] = "standard error of the mean of both";
   part[file_name::hit_distance] = "harmonic mean of the lengths of each patch's rays; unit m";
+  part[file_name::directed] = "per patch 1 when it was bright, so that rays were sent towards it on purpose";
   part[file_name::area] = "exposed area A_i of each patch; unit m^2";
   part[file_name::lost_share] =
       "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
@@ -210,6 +211,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     for (std::size_t half = 0; half < 2; ++half) write_half(in, half, rows.halves.at(half));
     write_lamps(in, found.exchange);
     write_as<float>(in / file_name::hit_distance, rows.distance);
+    write_npy(in / file_name::directed, std::span<const std::uint8_t>(rows.directed));
     write_npy(in / file_name::area, rows.area);
     write_shares(in, rows.lost);
     write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, expected_row_sum(rows.lost), {}});
@@ -236,6 +238,8 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
   const auto is_length = [](float metres) { return std::isfinite(metres) && metres >= 0; };
   if (!std::all_of(rows.distance.begin(), rows.distance.end(), is_length))
     refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "metres from 0 on");
+  rows.directed = read_npy_bytes(folder / file_name::directed, patches);
+  rows.rays = rows.halves[0].hits.size() + rows.halves[1].hits.size();
   exchange.lamps = read_lamps(folder / file_name::lamps, mesh);
   LampFactors& factors = exchange.lamp_factors;
   for (std::size_t half = 0; half < 2; ++half)

@@ -178,7 +178,7 @@ bool is_of_half(const std::string& name) {
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_form_factors(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 18> names = {file_name::dense,
+  static constexpr std::array<std::string_view, 19> names = {file_name::dense,
                                                              file_name::sparse,
                                                              file_name::dense_error,
                                                              file_name::sparse_error,
@@ -192,6 +192,7 @@ bool is_earlier_form_factors(const std::filesystem::path& folder) {
                                                              file_name::by_material,
                                                              file_name::by_object,
                                                              file_name::hit_distance,
+                                                             file_name::directed,
                                                              file_name::lamps,
                                                              file_name::lamp_factors[0],
                                                              file_name::lamp_factors[1],

@@ -1,5 +1,7 @@
 #include "pipeline/ray_light.h"
 
+#include "patchlight/base/error.h"
+
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/vectors.h"
@@ -11,6 +13,7 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace patchlight {
@@ -21,6 +24,7 @@ constexpr double bright = 4;
 
 // Pieces of lamps that every patch is sampled with.
 constexpr std::size_t most_pieces = 16;
+constexpr std::size_t most_new_pieces = 64;
 
 Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
 
@@ -29,8 +33,8 @@ struct Lamp {
   double flux = 0;
 };
 
-// The strongest lamps, as many as most_pieces allow.
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
+// The sides that emit much, the strongest first.
+std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
   const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
   const double mean = scalar_product(exitance, problem.area) / total(problem.area);
   std::vector<Lamp> lamps;
@@ -43,9 +47,14 @@ std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, con
     }
   }
   std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
+  return lamps;
+}
+
+// The strongest of them, as many as most_pieces allow.
+std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
   std::vector<LampSide> apart;
   std::size_t pieces = 0;
-  for (const Lamp& lamp : lamps) {
+  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
     pieces += piece_count(scene, lamp.side);
     if (pieces > most_pieces) break;
     apart.push_back(lamp.side);
@@ -91,9 +100,55 @@ RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh
   return found;
 }
 
+// What is bright and neither apart nor was bright when the rows were traced: their rays would miss most of it.
+std::vector<LampSide> new_lamps(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                const RayExchange& known) {
+  std::vector<LampSide> lamps;
+  std::size_t pieces = 0;
+  for (const Lamp& lamp : bright_sides(run.scene, mesh, problem)) {
+    const PatchRange patches = mesh.patches_on(lamp.side.polygon, lamp.side.side);
+    const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
+    const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
+    if (is_apart || known.rows.directed[patches.begin] != 0) continue;
+    lamps.push_back(lamp.side);
+    pieces += piece_count(run.scene, lamp.side);
+  }
+  if (pieces > most_new_pieces)
+    throw InputError("given.ray_rows", "found rows of rays that were traced when " + std::to_string(lamps.size()) +
+                                           " of the lamps were dark: too many to be found anew. Make the form factors "
+                                           "anew, with these lamps lit");
+  return lamps;
+}
+
+// Another lamp, whose factors are columns of their own.
+LampValues joined(const LampValues& some, const LampValues& more) {
+  LampValues all(more.rows(), some.cols() + more.cols());
+  all << some, more;
+  return all;
+}
+
+// With the lamps that are new.
+RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
+                       const RadiosityProblem& problem) {
+  const std::vector<LampSide> lamps = new_lamps(run, mesh, problem, known);
+  if (lamps.empty()) return known;
+  const LampFactors more = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
+                                        {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+  LampFactors& factors = known.lamp_factors;
+  for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
+  factors.standard_error = joined(factors.standard_error, more.standard_error);
+  for (const LampSide& lamp : lamps) known.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
+  return known;
+}
+
 // The light of the lamps apart, as means over whole patches.
 RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
-  RayLight light{.lit = std::move(lit), .is_apart = {}, .by_lamps = {}, .lamp_standard_error = {}, .distance = {}};
+  RayLight light{.lit = std::move(lit),
+                 .is_apart = {},
+                 .by_lamps = {},
+                 .lamp_standard_error = {},
+                 .distance = {},
+                 .is_missed = {}};
   const RadiosityProblem& problem = light.lit.problem;
   light.is_apart.assign(patches, 0);
   Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
@@ -108,11 +163,16 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
   return light;
 }
 
-// Rows, with rays towards what the light makes bright.
-TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
+// What the light makes bright.
+BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
   const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
+  return {mesh, summed_over_bands(expected), bright, run.tracing->between_patches()};
+}
+
+// Rows, with rays towards that.
+TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
   const Occluder& occluder = run.tracing->between_patches();
-  const BrightPatches bright_patches(mesh, summed_over_bands(expected), bright, occluder);
+  const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
   return trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
 }
 
@@ -133,9 +193,17 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit = lit_problem(run, plan, mesh, area);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
-  RayExchange exchange = is_known ? run.with.ray_exchange(mesh) : traced_lamps(run, plan, mesh, lit.problem);
+  RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
+                                  : traced_lamps(run, plan, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
-  if (!is_known) exchange.rows = traced_rows(run, plan, mesh, light);
+  if (!is_known) {
+    exchange.rows = traced_rows(run, plan, mesh, light);
+    return {std::move(exchange), std::move(light)};
+  }
+  const BrightPatches now = bright_patches_of(run, mesh, light);
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);
+  light.rays_per_patch = static_cast<double>(exchange.rows.rays) / mesh.size();
   return {std::move(exchange), std::move(light)};
 }
 
@@ -216,6 +284,16 @@ Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProb
   return quotient(area_sum(variance.colwise() * area.array(), area), reflected.square());
 }
 
+// The variance of the irradiance by bright patches that no ray was sent towards, of n rays over the hemisphere: its
+// mean over all patches is sum_j A_j s_j B_j^2 / (n A), which rays that all miss them do not tell. One value per band.
+Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, const Eigen::VectorXd& row_sum) {
+  const Eigen::VectorXd& area = light.lit.problem.area;
+  Field squares = sources.square();
+  for (Eigen::Index i = 0; i < squares.rows(); ++i)
+    if (light.is_missed[static_cast<std::size_t>(i)] == 0) squares.row(i) = 0;
+  return area_sum(squares, area.cwiseProduct(row_sum)) / (light.rays_per_patch * total(area));
+}
+
 // The last gather by each half of the rays.
 std::array<Field, 2> gathered(const RayTransport& transport, const Field& sources, const ConservedFlux* flux,
                               const Eigen::VectorXd& area) {
@@ -251,6 +329,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
   // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
   variance = variance.max(mean_around(mesh, all.area, variance)).eval();
+  if (!light.is_missed.empty()) variance.rowwise() += variance_of_missed(light, sources, row_sum).transpose();
   SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), light.lamp_standard_error.square()};
   if (light.lit.direct_standard_error.size() > 0) {
     variance += light.lit.direct_standard_error.square();

@@ -17,6 +17,9 @@ struct RayLight {
   std::array<Field, 2> by_lamps;       ///< irradiance straight from them, by both halves of the samples, W/m^2
   Field lamp_standard_error;           ///< of its mean, W/m^2
   std::vector<float> distance;         ///< as TracedRows has it
+  std::vector<std::uint8_t>
+      is_missed;              ///< per patch: bright, but rows that are known have sent no ray there on purpose
+  double rays_per_patch = 0;  ///< mean number over the hemisphere
 };
 
 struct RayTransportAndLight {
@@ -26,8 +29,8 @@ struct RayTransportAndLight {
 
 /// Lamps are apart where they emit more than four times the mean over all patches, the strongest first, up to sixteen
 /// triangles and convex quadrilaterals: what all surfaces emit alike, and the light of many lamps, stays in the rows,
-/// which send rays towards bright patches on purpose. By Steps::ray_exchange where it is given; what emits and is no
-/// lamp of that stays in the rows. \throws Cancelled.
+/// which send rays towards bright patches on purpose. By Steps::ray_exchange where it is given; lamps that it does
+/// not know are found apart as well, by shadow rays. \throws Cancelled; InputError when these are too many.
 RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
 
 /// Rows and lamps alone, as ray_light() traces them, to be used again. \throws Cancelled.

@@ -144,6 +144,7 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
   rows.area = exposed_area(mesh, rows.lost, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.size())));
   rows.distance = std::move(raw.distance);
   rows.rays = 2 * raw.room.back();
+  for (PatchIndex i = 0; i < mesh.size(); ++i) rows.directed.push_back(bright.density(i) > 0 ? 1 : 0);
   for (const RowEntries& task : raw.tasks) rows.shadow_rays += task.shadow_rays;
   const Eigen::VectorXd wanted = expected_row_sum(rows.lost);
   for (std::size_t half = 0; half < 2; ++half) {

@@ -46,7 +46,9 @@ struct TracedRows {
   LostShare lost;
   Eigen::VectorXd area;         ///< m^2, the exposed part of each patch
   std::vector<float> distance;  ///< per patch: harmonic mean of the lengths of its rays, metres
-  std::uint64_t rays = 0;       ///< over hemispheres
+  std::vector<std::uint8_t>
+      directed;            ///< per patch: 1 when it was bright, so that rays were sent towards it on purpose
+  std::uint64_t rays = 0;  ///< over hemispheres
   std::uint64_t shadow_rays = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "patchlight/simulate.h"
 
 #include "archive/npy.h"
+#include "support/scenes.h"
 #include "support/test_room.h"
 #include "unit/output/temporary_folder.h"
 
@@ -12,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace patchlight::ray_row_files_test {
@@ -96,6 +99,47 @@ TEST_F(RayRowFiles, AreOfAnyMaterial) {
   EXPECT_LT(ratio, 1.5);
   EXPECT_GT(ratio, 0.3);
 }
+
+// The room with another lamp, of 5 mm or 20 cm, which emits as many watts as asked, or with that alone.
+Scene with_another_lamp(double size, double watts, bool alone) {
+  Scene scene = test_room(0.6);
+  if (alone)
+    for (Material& material : scene.materials) material.exitance = Spectrum::Zero(material.exitance.size());
+  scene.materials.push_back(grey(0.6, watts / (size * size)));
+  scene.materials.back().name = "other lamp";
+  const Point p(1, 0.8, 2.3);
+  const auto material = static_cast<MaterialIndex>(scene.materials.size() - 1);
+  return with_quad(std::move(scene),
+                   {p, Point(p + Vector(0, size, 0)), Point(p + Vector(size, size, 0)), Point(p + Vector(size, 0, 0))},
+                   material);
+}
+
+// Light of a lamp that was dark when the rows were traced, against all pairs: the error is what is stated, and not as
+// without that lamp. Size; alone.
+class NewLamp : public testing::TestWithParam<std::tuple<double, bool>> {};
+
+TEST_P(NewLamp, IsFoundOrInTheBars) {
+  const auto [size, alone] = GetParam();
+  const RayFormFactors dark = find_ray_form_factors(with_another_lamp(size, 0, false), by_rays());
+  const Scene lit = with_another_lamp(size, 4, alone);
+  Steps with;
+  with.ray_exchange = [&](const PatchMesh&) { return dark.exchange; };
+  const Simulation relit = simulate(lit, by_rays(), {}, with);
+  Request pairs;
+  pairs.mesh.max_edge = 0.4;
+  pairs.assembly.samples = 16;
+  const Simulation exact = simulate(lit, pairs);
+  ASSERT_EQ(exact.mesh.size(), relit.mesh.size());
+  const auto norm = [&](const Field& x) {
+    return std::sqrt((x.square().colwise() * exact.problem.area.array()).sum());
+  };
+  const Field bars = relit.problem.scattering.reflectance * relit.ray_standard_error;
+  const double light = norm(exact.solution.radiosity - exact.problem.exitance);
+  EXPECT_LT(norm(relit.solution.radiosity - exact.solution.radiosity), 1.5 * norm(bars));
+  EXPECT_LT(norm(bars), 0.2 * light);
+}
+
+INSTANTIATE_TEST_SUITE_P(RayRows, NewLamp, testing::Combine(testing::Values(0.005, 0.2), testing::Bool()));
 
 TEST_F(RayRowFiles, ReplaceAnEarlierFolderAndNothingElse) {
   EXPECT_NO_THROW(write_ray_rows(place_, scene_, found_, "again"));
