@@ -75,7 +75,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
       Simulation simulation = solved(run, meshed, transport, std::move(problem));
       clock.finish(Stage::solve);
       search.keep(simulation);
-      if (simulation.solution.stopped) throw Cancelled();
+      if (simulation.solution.stopped && !simulation.solution.converged) throw Cancelled();
 
       // 8. How far that may be off.
       SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));

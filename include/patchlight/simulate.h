@@ -105,9 +105,10 @@ struct Steps {
   SolveWith solve = {};             ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
-  /// When the observer stops the run, simulate() returns the last mesh that was solved, or, as long as there is none,
-  /// the last iterate of its solver, as Simulation::unfinished. Else, and where there is neither, it throws Cancelled.
-  bool keeps_unfinished = false;
+  /// Where this is given, a run that the observer stops returns the last mesh that was solved, or, as long as there is
+  /// none, the last iterate of its solver, as Simulation::unfinished; where there is neither it throws Cancelled, as
+  /// without this. Called as soon as there is something to return, and again with what is better.
+  std::function<void()> keeps_unfinished = {};
 };
 
 /// From a scene to converged radiosities: the whole program.

@@ -157,13 +157,28 @@ RayRows read_half(const std::filesystem::path& folder, std::size_t half, std::si
   return rows;
 }
 
-// Each row as long as it has any entries sums up to what its patch sees.
+double row_sum(const RayRows& rows, std::size_t i) {
+  double sum = static_cast<double>(rows.first_hit[i + 1] - rows.first_hit[i]) * rows.hit_weight[i];
+  for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
+    sum += static_cast<double>(rows.entries[k].form_factor);
+  return sum;
+}
+
+// Of the mean of both halves.
+Eigen::VectorXd row_sums_of(const TracedRows& rows) {
+  Eigen::VectorXd sums(rows.area.size());
+  for (Eigen::Index i = 0; i < sums.size(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    sums[i] = 0.5 * (row_sum(rows.halves[0], row) + row_sum(rows.halves[1], row));
+  }
+  return sums;
+}
+
+// Every row that has entries sums up to what its patch sees.
 void require_sums(const std::filesystem::path& file, const RayRows& rows, const Eigen::VectorXd& wanted) {
   for (std::size_t i = 0; i < rows.hit_weight.size(); ++i) {
     const std::uint64_t hits = rows.first_hit[i + 1] - rows.first_hit[i];
-    double sum = static_cast<double>(hits) * rows.hit_weight[i];
-    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-      sum += static_cast<double>(rows.entries[k].form_factor);
+    const double sum = row_sum(rows, i);
     const bool is_empty = hits == 0 && rows.first_entry[i] == rows.first_entry[i + 1];
     const double expected = wanted[static_cast<Eigen::Index>(i)];
     const bool is_weighed = rows.hit_weight[i] >= -row_sum_tolerance;
@@ -186,6 +201,11 @@ LampValues read_lamp_values(const std::filesystem::path& file, std::size_t patch
                                       static_cast<Eigen::Index>(lamps));
 }
 
+bool is_side(const PatchMesh& mesh, const PatchRange& patches) {
+  const PatchRange side = mesh.patches_on(mesh.polygon[patches.begin], mesh.side[patches.begin]);
+  return side.begin == patches.begin && side.end == patches.end;
+}
+
 std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const PatchMesh& mesh) {
   constexpr std::size_t most = 1000;
   const std::size_t count = npy_count(file);
@@ -195,8 +215,8 @@ std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const Patc
   for (std::size_t k = 0; k < count; k += 2) {
     const std::int64_t begin = stored[k], end = stored[k + 1];
     const bool is_range = begin >= 0 && begin < end && end <= static_cast<std::int64_t>(mesh.size());
-    if (!is_range)
-      refuse(file, "patches " + std::to_string(begin) + " to " + std::to_string(end), "some of the patches");
+    if (!is_range || !is_side(mesh, {static_cast<PatchIndex>(begin), static_cast<PatchIndex>(end)}))
+      refuse(file, "patches " + std::to_string(begin) + " to " + std::to_string(end), "all patches of a side");
     lamps.push_back({static_cast<PatchIndex>(begin), static_cast<PatchIndex>(end)});
   }
   return lamps;
@@ -205,16 +225,25 @@ std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const Patc
 }  // namespace
 
 void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, const RayFormFactors& found,
-                    const std::string& command_line) {
+                    const std::string& command_line, const Observer& observer) {
+  const auto tell = [&](double fraction) {
+    if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
+  };
   const TracedRows& rows = found.exchange.rows;
   write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
-    for (std::size_t half = 0; half < 2; ++half) write_half(in, half, rows.halves.at(half));
+    for (std::size_t half = 0; half < 2; ++half) {
+      tell(0.4 * static_cast<double>(half));
+      write_half(in, half, rows.halves.at(half));
+    }
+    tell(0.8);
     write_lamps(in, found.exchange);
     write_as<float>(in / file_name::hit_distance, rows.distance);
     write_npy(in / file_name::directed, std::span<const std::uint8_t>(rows.directed));
     write_npy(in / file_name::area, rows.area);
     write_shares(in, rows.lost);
-    write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, expected_row_sum(rows.lost), {}});
+    tell(0.9);
+    write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, row_sums_of(rows), {}});
+    tell(1);
     write_stored_scene(in / file_name::scene, scene, found.plan.sides);
     write_bytes(in / file_name::info, info_of_rows(scene, found, command_line));
   });

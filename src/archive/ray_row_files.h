@@ -10,9 +10,9 @@ namespace patchlight {
 
 /// Writes a folder of rows of rays, whole or not at all: for both halves of the rays sparse rows, the lamps that are
 /// apart with their form factors, area.npy, lost_share.npy, hit_distance.npy, mesh.vtp, scene.json, info.json.
-/// docs/output.md describes them. \throws OutputError.
+/// docs/output.md describes them. \throws OutputError, Cancelled.
 void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, const RayFormFactors& found,
-                    const std::string& command_line);
+                    const std::string& command_line, const Observer& observer = {});
 
 /// Reads the rows of this mesh. \throws InputError when they belong to another one, or are none: every row has to sum
 /// up to what its patch sees.

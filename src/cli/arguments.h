@@ -48,7 +48,8 @@ struct SolveArguments {
   std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; none: default_points_output
   std::filesystem::path default_points_output;        ///< .csv, where sensors are but no output for them is named
 
-  bool discards = false;  ///< a run that is stopped writes nothing
+  bool solver_given = false;  ///< Request::solver has what was asked for
+  bool discards = false;      ///< a run that is stopped writes nothing
   Verbosity verbosity = Verbosity::normal;
   std::string command_line;  ///< for the record
 };

@@ -100,7 +100,7 @@ Written write_pairs(const FormFactorArguments& arguments, const Scene& scene, co
 Written write_rays(const FormFactorArguments& arguments, const Scene& scene, const Observer& observer) {
   const RayFormFactors found = find_ray_form_factors(scene, arguments.request, observer);
   const WritingGuard guard;
-  write_ray_rows(arguments.output, scene, found, arguments.command_line);
+  write_ray_rows(arguments.output, scene, found, arguments.command_line, observer);
   std::ostringstream text;
   text << shown_name(scene.file) << ": " << found.mesh.size() << " patches with edges up to " << std::setprecision(3)
        << found.plan.max_edge << " m; " << found.exchange.rows.rays << " rays over hemispheres, "

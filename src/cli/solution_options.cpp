@@ -196,6 +196,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
     throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
   }
   arguments.discards = options.discards;
+  arguments.solver_given = options.solver_given;
   if (options.quiet) arguments.verbosity = Verbosity::quiet;
   if (options.verbose) arguments.verbosity = Verbosity::verbose;
   require_distinct(outputs_of(arguments));

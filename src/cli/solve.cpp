@@ -28,6 +28,8 @@
 #include "render/tone_map.h"
 #include "scene/limits.h"
 
+#include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -37,37 +39,53 @@
 namespace patchlight::cli {
 namespace {
 
+// What is looked at of a solution.
+struct Views {
+  std::vector<std::filesystem::path> points_outputs;
+  SensorView sensors;
+  std::optional<DisplayImage> picture;
+};
+
 // All that is computed before anything is written.
 struct Results {
   Scene scene;
   Simulation simulation;
-  std::vector<std::filesystem::path> points_outputs;
-  SensorView sensors;
-  DisplayImage picture;
+  Views views;
   std::vector<IterateIrradiance> iterates;
   Report report;
   Provenance provenance;
 };
 
-// The iterates of the mesh at hand, and of the one before, which is what is left when the run is stopped.
-class IteratesOfMeshes {
+// The iterates of the last solutions: that which is written need not be the last, when the run was stopped or a second
+// solution was no better.
+class Iterates {
  public:
-  explicit IteratesOfMeshes(bool wanted) : wanted_(wanted) {}
+  explicit Iterates(bool wanted) : wanted_(wanted) {}
 
   void add(const Progress& progress) {
     if (!wanted_ || progress.irradiance == nullptr) return;
-    if (progress.iteration->number == 0) before_ = std::exchange(last_, {});
-    last_.emplace_back(progress.irradiance->cast<float>());
+    if (progress.iteration->number == 0) {
+      if (solutions_.size() == most) solutions_.pop_front();
+      solutions_.emplace_back();
+    }
+    solutions_.back().emplace_back(progress.irradiance->cast<float>());
   }
 
-  std::vector<IterateIrradiance> of_mesh(PatchIndex patches) {
-    const bool is_last = !last_.empty() && last_.front().rows() == static_cast<Eigen::Index>(patches);
-    return std::move(is_last ? last_ : before_);
+  std::vector<IterateIrradiance> of_solution(const Simulation& simulation) {
+    if (!wanted_) return {};
+    const auto is_it = [&](const std::vector<IterateIrradiance>& iterates) {
+      return iterates.size() == simulation.solution.history.size() &&
+             iterates.front().rows() == static_cast<Eigen::Index>(simulation.mesh.size());
+    };
+    const auto found = std::find_if(solutions_.rbegin(), solutions_.rend(), is_it);
+    if (found == solutions_.rend()) throw Cancelled();
+    return std::move(*found);
   }
 
  private:
+  static constexpr std::size_t most = 3;
   bool wanted_;
-  std::vector<IterateIrradiance> before_, last_;
+  std::deque<std::vector<IterateIrradiance>> solutions_;
 };
 
 void check_outputs(const SolveArguments& arguments) {
@@ -101,22 +119,32 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   return input;
 }
 
-// Looks at the solution: irradiance at sensors, picture.
-Results with_views(Results results, const SolveArguments& arguments, const Observer& observer) {
-  const Scene& scene = results.scene;
-  Simulation& simulation = results.simulation;
-  if (scene.sensors.empty() && arguments.picture.empty()) return results;
+// Irradiance at sensors, and the picture; the simulation's costs get theirs.
+Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments& arguments, const Observer& observer) {
+  Views views;
   StageClock looking;
   if (!scene.sensors.empty()) {
-    results.points_outputs = points_outputs(arguments, scene);
-    results.sensors = read_sensors(scene, simulation, observer);
+    views.points_outputs = points_outputs(arguments, scene);
+    views.sensors = read_sensors(scene, simulation, observer);
     looking.finish(Stage::gather);
   }
   if (!arguments.picture.empty()) {
-    results.picture = make_picture(arguments, scene, simulation, observer);
+    views.picture = make_picture(arguments, scene, simulation, observer);
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
+  return views;
+}
+
+// Without them when the run is stopped meanwhile, so that the solution is not lost.
+Results with_views(Results results, const SolveArguments& arguments, const Observer& observer) {
+  if (!arguments.discards) keep_what_is_there();
+  try {
+    results.views = views_of(results.scene, results.simulation, arguments, observer);
+  } catch (const Cancelled&) {
+    results.simulation.unfinished = true;
+  }
+  if (!may_write_what_is_there()) throw Cancelled();
   return results;
 }
 
@@ -131,17 +159,17 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   reading.finish(Stage::read);
 
   // 2. Solve
-  IteratesOfMeshes iterates(!arguments.series.empty());
+  Iterates iterates(!arguments.series.empty());
   const auto observed = [&](const Progress& progress) {
-    if (progress.iteration != nullptr && !arguments.discards) keep_what_is_there();
     iterates.add(progress);
     return observer(progress);
   };
-  simulation = simulate(
-      results.scene, input.request, observed,
-      {.exchange = input.exchange, .ray_exchange = input.ray_exchange, .keeps_unfinished = !arguments.discards});
-  if (simulation.unfinished && !may_write_what_is_there()) throw Cancelled();
-  results.iterates = iterates.of_mesh(simulation.mesh.size());
+  Steps with{.exchange = input.exchange, .ray_exchange = input.ray_exchange};
+  if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
+  simulation = simulate(results.scene, input.request, observed, with);
+  // Who stops a run that comes to its end all the same wants what it has.
+  if (!may_write_what_is_there()) throw Cancelled();
+  results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
@@ -149,8 +177,9 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
 
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
-  results.report = report_of(results.scene, arguments.request, simulation,
-                             sensor_facts(results.scene.sensors, results.sensors.readings, results.sensors.warnings));
+  results.report =
+      report_of(results.scene, arguments.request, simulation,
+                sensor_facts(results.scene.sensors, results.views.sensors.readings, results.views.sensors.warnings));
   return results;
 }
 
@@ -173,9 +202,10 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
       write_to(file, [&](const Path& to) { write_result(to, surface, results.provenance); });
     }
   }
-  write_to(arguments.picture, [&](const Path& to) { write_png(to, results.picture); });
-  for (const Path& file : results.points_outputs) {
-    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, results.sensors.readings); });
+  const Views& views = results.views;
+  if (views.picture) write_to(arguments.picture, [&](const Path& to) { write_png(to, *views.picture); });
+  for (const Path& file : views.points_outputs) {
+    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, views.sensors.readings); });
   }
   write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {
@@ -217,7 +247,7 @@ ExitCode solve(const SolveArguments& arguments) {
 
   if (!quiet) {
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
-    for (const std::string& warning : results.sensors.warnings) print_message("warning", warning);
+    for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
                          how_to_know_errors(arguments, results.report.solution.unfinished));
     std::cout << files_line(written) << std::flush;

@@ -69,6 +69,11 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {
     request.assembly.rays = info.rays;
+    const Solver solver = request.solver.solver;
+    if (arguments.solver_given && (takes_rows(solver) || takes_reciprocity(solver)))
+      throw InputError(arguments.form_factors.string(), std::string("found rows of rays with --solver ") +
+                                                            name_of(solver) +
+                                                            "; they need gmres, bicgstab, jacobi or chebyshev");
     return by_rays(std::move(request));
   }
   request.assembly.samples = info.samples;

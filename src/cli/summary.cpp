@@ -175,7 +175,7 @@ std::string sensor_lines(const SensorFacts& sensors) {
   for (const GroupReadings& group : sensors.groups) {
     rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls), rounded(group.min),
                     rounded(group.mean), rounded(group.max), rounded(group.uniformity),
-                    rounded(group.largest_standard_error, 2)});
+                    std::isnan(group.largest_standard_error) ? "not known" : rounded(group.largest_standard_error, 2)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   return text_table(rows);
@@ -257,12 +257,17 @@ std::string explain_not_accurate(const Report& report) {
 }
 
 std::string explain_unfinished(const Report& report) {
-  const std::string begin = "UNFINISHED, as it was stopped: what is written is ";
-  const std::string end = "; --discard writes nothing of a run that is stopped";
-  if (!report.solution.converged) return begin + "the last iterate of the solver, which has not converged" + end;
-  if (report.accuracy.empty()) return begin + "the solution of the first mesh, whose errors are not known yet" + end;
-  return begin + "the last mesh that was solved, with an error of about " +
-         percent(known_error(report.accuracy.back()), 2) + " %" + end;
+  const bool wants_errors = has_error_bars(report.plan.accuracy);
+  std::string what = "the last mesh that was solved, with an error of about ";
+  if (!report.solution.converged) {
+    what = "the last iterate of the solver, which has not converged";
+  } else if (!report.accuracy.empty()) {
+    what += percent(known_error(report.accuracy.back()), 2) + " %";
+  } else {
+    what = wants_errors ? "the solution of the first mesh, whose errors are not known yet" : "the solution";
+  }
+  return "UNFINISHED, as it was stopped: what is written is " + what +
+         ", without sensors and pictures that were not ready; --discard writes nothing of a run that is stopped";
 }
 
 std::string explain_not_converged(const Report& report) {

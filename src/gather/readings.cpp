@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace patchlight {
 
@@ -44,7 +45,10 @@ GroupReadings statistics(std::span<const std::size_t> sensors, const Readings& r
     found.min = std::min(found.min, value.value);
     found.max = std::max(found.max, value.value);
     found.mean += value.value / count;
-    found.largest_standard_error = std::max(found.largest_standard_error, value.standard_error);
+    // What is not known of one is not known of all.
+    const bool is_unknown = std::isnan(value.standard_error);
+    if (is_unknown || value.standard_error > found.largest_standard_error)
+      found.largest_standard_error = value.standard_error;
     if (readings.outside_by_sky) daylight += daylight_factor(readings, k) / count;
   }
   if (found.mean > 0) found.uniformity = found.min / found.mean;

@@ -57,7 +57,10 @@ int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accur
   const bool by_rays = plan.assembly.storage == Storage::rays;
   if (!by_rays && mesh_factor(solved, step, accuracy) > far_off) return samples;
   const double patches = by_rays ? step.patches : patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
+  double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
+  // As long as the mesh errs more than it may, it is enough when rays err half as much.
+  if (by_rays && mesh_factor(solved, step, accuracy) > far_off)
+    factor = std::min(factor, 2 * solved.noise_bar / step.mesh);
   return factor > error_margin ? next_samples(plan, factor) : samples;
 }
 

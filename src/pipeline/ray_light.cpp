@@ -305,6 +305,14 @@ std::array<Field, 2> gathered(const RayTransport& transport, const Field& source
   return halves;
 }
 
+// Not of the solution that is looked for.
+Observer without_iterates(const Observer& observer) {
+  if (!observer) return {};
+  return [&observer](const Progress& progress) {
+    return observer({.stage = progress.stage, .fraction = progress.fraction});
+  };
+}
+
 }  // namespace
 
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
@@ -314,10 +322,10 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
 
   // 1. Solve for what the rows carry, without losing any of it.
   const bool reflects_twice = simulates(run.plan, Effect::interreflection);
-  auto [solution, flux] =
-      reflects_twice
-          ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer), row_sum, run.observer)
-          : ConservingSolution{reflected_once(transport, problem), {}};
+  auto [solution, flux] = reflects_twice
+                              ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer),
+                                                row_sum, without_iterates(run.observer))
+                              : ConservingSolution{reflected_once(transport, problem), {}};
 
   // 2. Gather once more, by each half, and smooth.
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;

@@ -158,7 +158,7 @@ MeshToSolve Search::first() const {
   } else {
     first.mesh = first_mesh(run_.scene, run_.plan);
   }
-  first.plan.solver.keeps_unfinished = run_.with.keeps_unfinished;
+  first.plan.solver.keeps_unfinished = static_cast<bool>(run_.with.keeps_unfinished);
   if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {
     first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy.relative_error;
     first.plan.accuracy.solver_part = part_of_solver(run_, *run_.plan.accuracy.relative_error);
@@ -179,6 +179,7 @@ void Search::keep(const Simulation& simulation) {
   if (!run_.with.keeps_unfinished || (kept_ && !simulation.error_bars)) return;
   kept_ = simulation;
   kept_->unfinished = true;
+  run_.with.keeps_unfinished();
 }
 
 SolvedMesh Search::noted(SolvedMesh solved) {

@@ -30,6 +30,14 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   return simulation;
 }
 
+// Every iterate is kept.
+Observer telling_what_is_kept(const Run& run) {
+  return [&run](const Progress& progress) {
+    if (progress.iteration != nullptr) run.with.keeps_unfinished();
+    return !run.observer || run.observer(progress);
+  };
+}
+
 }  // namespace
 
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
@@ -49,9 +57,8 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   SolverOptions options = meshed.plan.solver;
   options.largest_row_sum = keeps ? largest(facts.row_sum) : std::numeric_limits<double>::infinity();
   const SolveWith solve = solver_as_planned(run.with.solve, meshed.plan);
-  const Solve once = [&](const SolverOptions& by) {
-    return solve(*transport.rows, simulation.problem, by, run.observer);
-  };
+  const Observer observer = options.keeps_unfinished ? telling_what_is_kept(run) : run.observer;
+  const Solve once = [&](const SolverOptions& by) { return solve(*transport.rows, simulation.problem, by, observer); };
   SolvedWith found = solve_for_interest(run, simulation, options, once);
   simulation.plan.solver.relative_error = found.relative_error;
   simulation.solution = std::move(found.solution);

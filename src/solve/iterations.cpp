@@ -85,7 +85,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
 }
 
 void Iterations::tell(const Iterate& iterate) {
-  if (!observer_) return;
+  if (!observer_ || solution_.stopped) return;
   // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
   const Iteration& iteration = solution_.history.back();
   const double wanted = std::log(tolerance_of(options_));
@@ -101,13 +101,13 @@ void Iterations::tell(const Iterate& iterate) {
 
 // What stops is not asked again whether it should.
 void Iterations::stop() {
-  if (!options_.keeps_unfinished) throw Cancelled();
+  if (!options_.keeps_unfinished || solution_.history.empty()) throw Cancelled();
   solution_.stopped = true;
 }
 
 void Iterations::keep_observer() {
   constexpr double interval = 0.1;
-  if (!observer_ || wall_seconds() < next_report_) return;
+  if (!observer_ || solution_.stopped || wall_seconds() < next_report_) return;
   if (!observer_({.stage = Stage::solve, .fraction = fraction_})) stop();
   next_report_ = wall_seconds() + interval;
 }

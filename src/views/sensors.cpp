@@ -9,6 +9,7 @@
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -64,6 +65,9 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
   GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, tracing.all_faces(whole), sensors,
                                                   {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
   SensorErrors& errors = gathered.errors;
+  // Light that is still under way, by how much is not known.
+  const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
+  if (!is_known) errors.solver = Field::Constant(errors.rays.rows(), errors.rays.cols(), std::nan(""));
   if (has_point_or_daylight(scene)) {
     std::vector<SurfacePoint> points;
     for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});

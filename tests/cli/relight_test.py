@@ -230,6 +230,9 @@ class RelightTest(ToolTest):
         refused = self.run_tool("solve", "room.obj", "--form-factors", "rays.ff", "--error-bars", "-o", "x.vtp")
         self.assertEqual(refused.returncode, USAGE, refused.stderr)
         self.assertIn("--error-bars", refused.stderr)
+        refused = self.run_tool("relight", "rays.ff", "--solver", "cg", "-o", "x.vtp")
+        self.assertEqual(refused.returncode, INPUT, refused.stderr)
+        self.assertIn("rays.ff: found rows of rays with --solver cg", refused.stderr)
 
 
 if __name__ == "__main__":

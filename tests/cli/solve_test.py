@@ -116,7 +116,7 @@ class SolveTest(ToolTest):
         verbose = self.solve("--patches", 100, "-o", "out.vtp", "-v")
         self.assertNotIn("shadow rays", normal.stdout)
         self.assertIn("shadow rays", verbose.stdout)
-        self.assertNotIn("%", normal.stderr)  # no progress where stderr is not a terminal
+        self.assertNotRegex(normal.stderr, r"\r")  # no line that is rewritten where stderr is not a terminal
 
     def test_not_converged_is_written_and_explained(self):
         """With white walls of reflectance 0.99999 Jacobi needs tens of thousands of iterations: the lamp alone absorbs."""

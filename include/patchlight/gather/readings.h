@@ -59,7 +59,7 @@ struct GroupReadings {
   double mean = 0;
   double max = 0;
   double uniformity = 0;                         ///< U0 = min / mean; 0 in the dark
-  double largest_standard_error = 0;             ///< of a sensor
+  double largest_standard_error = 0;             ///< of a sensor; not a number where one is not known
   std::optional<double> mean_daylight_factor{};  ///< percent
 };
 
