@@ -2,6 +2,9 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/rounded.h"
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -60,6 +63,12 @@ Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Inde
   if (lights.weather) return daylight_of(*lights.weather, scene.up, scene.north, bands);
   Daylight daylight;
   const Vector direction = lights.sun ? direction_of(*lights.sun, scene) : scene.up;
+  if (lights.sky && lights.sky->measured && lights.sky->measured->direct_normal > 0 && direction.dot(scene.up) < 0) {
+    const double below = std::asin(std::min(1.0, -direction.dot(scene.up))) * 180 / std::numbers::pi;
+    throw InputError(lights.where, "sky.direct_normal: found " + rounded(lights.sky->measured->direct_normal) +
+                                       " W/m^2 while the sun is " + rounded(below) +
+                                       " degrees below the horizon; expected 0 then, or another time or place");
+  }
   if (lights.sky && lights.sky->measured) return measured_daylight(*lights.sky->measured, direction, scene.up, bands);
   if (lights.sun && lights.sun->normal_irradiance.size() > 0) {
     daylight.sun = Sun{direction, spread(lights.sun->normal_irradiance, bands)};

@@ -166,6 +166,8 @@ TEST_F(SceneLights, WrongLightsAreRefusedWithLineAndKey) {
       {room + "[sky]\nkind = \"perez\"\ndirect_normal = 1\ndiffuse_horizontal = 1\n[sun]\ndirection = [0,0,1]\n"
               "irradiance = 1\n",
        {"scene.toml:10: sun.irradiance"}},
+      {room + "[sky]\nkind = \"perez\"\ndirect_normal = 700\ndiffuse_horizontal = 1\n[sun]\ndirection = [0.8,0,-0.6]\n",
+       {"sky.direct_normal: found 700 W/m^2 while the sun is 36.9 degrees below the horizon"}},
       {room + "[ground]\nreflectance = 0.2\n", {"scene.toml:4: ", "[sky]"}},
       {"north = [0, 0, 1]\n" + room, {"scene.toml:1: north"}},
       {room + "[weather]\nfile = \"a.epw\"\nmonth = 13\nday = 1\nhour = 1\n",
