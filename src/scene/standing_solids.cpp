@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t most_rim_corners = 1000;
 constexpr std::size_t most_lid_triangles = 1000;
+constexpr std::size_t most_corners_in_planes = 64;
 
 // How far the unit normals of a rim and of a face under it may differ; corners decide whether they share a plane.
 constexpr double largest_tilt = 0.05;
@@ -57,6 +58,10 @@ struct FacesUnderRims {
 
   bool is_closed(const std::vector<Point>& outline, PolygonIndex shell) const;
   bool shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const;
+  bool can_close(const std::vector<Point>& outline, PolygonIndex shell) const;
+  std::optional<std::vector<Point>> closed_run(const std::vector<Point>& outline, std::size_t first,
+                                               PolygonIndex shell) const;
+  std::optional<std::vector<Triangle>> lids_over(std::vector<Point> outline, PolygonIndex shell) const;
   std::optional<std::vector<Triangle>> lids(const std::vector<RimEdge>& edges) const;
 };
 
@@ -90,6 +95,54 @@ bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex s
   return left.empty();
 }
 
+bool FacesUnderRims::can_close(const std::vector<Point>& outline, PolygonIndex shell) const {
+  return outline.size() >= 3 && !is_narrow(outline, near) && !crosses_itself(outline) && is_closed(outline, shell);
+}
+
+// The corners from `first` on, as many as lie in one plane, when faces fill the polygon that they are.
+std::optional<std::vector<Point>> FacesUnderRims::closed_run(const std::vector<Point>& outline, std::size_t first,
+                                                             PolygonIndex shell) const {
+  std::vector<Point> run;
+  Vector normal = Vector::Zero();
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point& corner = outline[(first + k) % outline.size()];
+    const bool has_plane = run.size() >= 3 && !is_narrow(run, near);
+    if (has_plane && normal.isZero(0)) normal = plane_normal(run);
+    if (has_plane && std::abs(normal.dot(corner - run.front())) > near) break;
+    run.push_back(corner);
+  }
+  if (!can_close(run, shell)) return std::nullopt;
+  return run;
+}
+
+// Of an outline that lies in several planes, as that of a wall with a door, which ends at floor, ceiling and walls,
+// runs of corners that faces fill are cut off one after the other.
+std::optional<std::vector<Triangle>> FacesUnderRims::lids_over(std::vector<Point> outline, PolygonIndex shell) const {
+  std::vector<Triangle> lids;
+  const auto add = [&](const std::vector<Point>& lid) {
+    const std::vector<Triangle> triangles = triangles_of(lid);
+    lids.insert(lids.end(), triangles.begin(), triangles.end());
+  };
+  while (!can_close(outline, shell)) {
+    if (outline.size() > most_corners_in_planes) return std::nullopt;
+    std::vector<Point> longest;
+    std::size_t begin = 0;
+    for (std::size_t first = 0; first < outline.size(); ++first) {
+      std::optional<std::vector<Point>> run = closed_run(outline, first, shell);
+      if (!run || run->size() <= longest.size() || run->size() >= outline.size()) continue;
+      longest = std::move(*run);
+      begin = first;
+    }
+    if (longest.empty()) return std::nullopt;
+    add(longest);
+    // Its first and its last corner stay.
+    std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(begin), outline.end());
+    outline.erase(outline.begin() + 1, outline.begin() + static_cast<std::ptrdiff_t>(longest.size()) - 1);
+  }
+  add(outline);
+  return lids;
+}
+
 // Triangles over all rims of a shell; nothing when one of them stays open.
 std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimEdge>& edges) const {
   if (edges.size() > most_rim_corners) return std::nullopt;
@@ -97,10 +150,9 @@ std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimE
   if (!outlines) return std::nullopt;
   std::vector<Triangle> lids;
   for (const std::vector<Point>& outline : *outlines) {
-    if (outline.size() < 3 || is_narrow(outline, near) || crosses_itself(outline)) return std::nullopt;
-    if (!is_closed(outline, shells.shell[edges.front().polygon])) return std::nullopt;
-    const std::vector<Triangle> triangles = triangles_of(outline);
-    lids.insert(lids.end(), triangles.begin(), triangles.end());
+    const auto over = lids_over(outline, shells.shell[edges.front().polygon]);
+    if (!over) return std::nullopt;
+    lids.insert(lids.end(), over->begin(), over->end());
   }
   return lids;
 }

@@ -250,6 +250,33 @@ TEST(KeptSides, AFaceClosesWhatStandsOnIt) {
   expect_all(automatic(on_wall), 1, 6, front_only);
 }
 
+// A room of 4 m with a lamp and a wall across it, 0.2 m thick, as two faces with a doorway each and the three faces of
+// its reveal: it ends at the floor on both sides of the door, at the ceiling and at two walls. `gap` m over the floor.
+Scene room_with_doorway(double gap) {
+  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward), {1, 0, 1.5});
+  const double low = -2 + gap;
+  const std::vector<Point> outline = {{0, -2, low},  {0, -0.5, low}, {0, -0.5, 0.2}, {0, 0.5, 0.2},
+                                      {0, 0.5, low}, {0, 2, low},    {0, 2, 2},      {0, -2, 2}};
+  std::vector<Point> back;
+  for (const Point& corner : outline) back.insert(back.begin(), corner - Vector(0.2, 0, 0));
+  scene = with_polygon(std::move(scene), outline);
+  scene = with_polygon(std::move(scene), back);
+  for (const std::size_t k : {1, 2, 3}) {
+    const Vector through(-0.2, 0, 0);
+    scene =
+        with_polygon(std::move(scene), {outline[k + 1], outline[k], outline[k] + through, outline[k + 1] + through});
+  }
+  return scene;
+}
+
+TEST(KeptSides, FacesInSeveralPlanesCloseAWallWithADoor) {
+  const KeptSides kept = automatic(room_with_doorway(0));
+  expect_all(kept, 7, 12, front_only);
+  ASSERT_EQ(kept.dark_solids.size(), 1U);
+  EXPECT_EQ(kept.dark_solids[0].polygons, 5U);
+  expect_all(automatic(room_with_doorway(0.001)), 7, 12, both_sides);
+}
+
 TEST(KeptSides, WhatIsNotClosedByWhatItStandsOnKeepsItsInsides) {
   expect_all(automatic(with_floor(lit_tube(false, true), -0.501)), 1, 6, both_sides);
   expect_all(automatic(with_floor(lit_tube(false, false), -0.5)), 1, 5, both_sides);
