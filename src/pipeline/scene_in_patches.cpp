@@ -1,0 +1,24 @@
+#include "pipeline/scene_in_patches.h"
+
+#include "mesh/mesher.h"
+#include "plan/check_request.h"
+#include "plan/memory.h"
+
+#include <utility>
+
+namespace patchlight {
+
+SceneInPatches scene_in_patches(const Scene& scene, Request request) {
+  check(request, scene);
+  if (request.mesh.sides == Sides::automatic && !has_lamp(scene)) request.mesh.sides = Sides::front;
+  Plan plan = plan_form_factors(scene, request);
+  require_memory(scene, request, plan);
+  PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  require_memory(mesh.size(), request, plan);
+  auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides));
+  std::vector<std::string> notes;
+  for (const Problem& problem : problems_with_overlaps(scene, tracing->coverings())) notes.push_back(problem.what);
+  return {std::move(request), std::move(plan), std::move(mesh), std::move(tracing), std::move(notes)};
+}
+
+}  // namespace patchlight
