@@ -74,7 +74,7 @@ for name in "${names[@]}"; do
     veach-ajar)
       python3 scripts/mitsuba_to_obj.py "$models/veach-ajar/scene.xml" "$out/veach-ajar.obj" 2>/dev/null
       files=("$out/veach-ajar.obj")
-      options=(--accuracy 2% --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
+      options=(--patches 60000 --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
       ;;
     radiator)
       # A room of 3 x 2.5 x 2.6 m around the radiator, which is modelled in centimetres, and a lamp under its ceiling.
@@ -84,11 +84,11 @@ for name in "${names[@]}"; do
         'v 30 249 160' 'v -30 249 160' 'usemtl wall' 'f 1 4 3 2' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' \
         'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
       files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
-      options=(--unit cm --accuracy 2% --camera 60,140,240 -10,40,0 55)
+      options=(--unit cm --storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
       files=("$models/duplex-ifc/Duplex_A.ifc")
-      options=(--set Sash.radiance=100 --accuracy 2% --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
+      options=(--set Sash.radiance=100 --patches 100000 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
       ;;
     kitchen)
       python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
@@ -117,7 +117,7 @@ END
       # Six pieces, modelled in centimetres, in a room of 5 x 4 x 2.6 m with a lamp under its ceiling.
       furnished_room >"$out/furniture.toml"
       files=("$out/furniture.toml")
-      options=(--accuracy 2% --camera 4.7,1.9,3.7 1.2,0.6,0.6 75)
+      options=(--patches 200000 --camera 4.7,1.9,3.7 1.2,0.6,0.6 75)
       ;;
     openroom)
       # The materials that its files name are those of their origin: glass_60 lets 60 % through.
