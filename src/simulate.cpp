@@ -62,7 +62,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
       clock.finish(Stage::mesh);
 
       // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
-      RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::move(next->known));
+      RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::exchange(next->known, {}));
       clock.finish(Stage::form_factors);
       MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
       clock.finish(Stage::closure);

@@ -27,7 +27,7 @@ Vector across(const Vector& direction, const Vector& axis) {
 // The default: y where z is up, -z where y is.
 Vector north_of(const Scene& scene, const LightEntries& lights) {
   const Vector given = lights.north.value_or(std::abs(scene.up.y()) > 0.5 ? Vector(0, 0, -1) : Vector(0, 1, 0));
-  const Vector north = across(given, scene.up);
+  Vector north = across(given, scene.up);
   if (north.isZero()) throw InputError(lights.where, "north points up or down; expected a level direction [x, y, z]");
   return north;
 }

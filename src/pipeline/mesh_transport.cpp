@@ -68,7 +68,7 @@ LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTran
   return over_exposed_part(lit_problem(run, meshed.plan, mesh, transport.area), mesh, transport.facts.lost);
 }
 
-RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known) {
+RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   RawTransport found;
   if (plan.assembly.storage == Storage::rays) {
     found.by_rays = ray_light(run, plan, mesh);

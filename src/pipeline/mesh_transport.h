@@ -39,7 +39,7 @@ LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTran
 /// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars what is known of the
 /// mesh before is taken over; without them `known` is not looked at, and the rate of bare rays is measured. \throws
 /// Cancelled.
-RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, Known known);
+RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known);
 
 /// The same after closure: each row sums up to what its patch sees. Without AssemblyOptions::close the rows are as they
 /// were found. Rows on demand are not closed, either, whatever the plan says; their facts stay those of `raw`. The
