@@ -35,11 +35,12 @@ END
 # A row of the table: patches, storage, processor seconds, largest memory, stated error.
 cost_row() {
   python3 - "$1" "$2" <<'END'
-import json, sys
+import json, math, sys
 name, report = sys.argv[1], json.load(open(sys.argv[2]))
+# The solver's error is null where no bound on it is known.
 seconds = sum(cost["cpu_seconds"] for cost in report["costs"])
 error = report["relative_error"]
-total = f"{100 * error['total']:.2g} % (mesh {100 * error['mesh']:.2g}, form factors {100 * error['form_factor']:.2g})" if error else "not asked for"
+total = f"{100 * math.hypot(error['mesh'], error['form_factor']):.2g} % (mesh {100 * error['mesh']:.2g}, form factors {100 * error['form_factor']:.2g})" if error else "not asked for"
 print(f"| {name} | {report['input']['polygons']} | {report['mesh']['patches']} | {report['plan']['storage']} | {seconds:.0f} | "
       f"{report['memory_peak_bytes'] / 1e9:.2f} | {total} |")
 END
