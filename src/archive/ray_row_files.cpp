@@ -13,7 +13,6 @@
 #include "output/write_mesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -29,7 +29,11 @@ LostShare lost_share_of(const Run& run, const Plan& plan, const PatchMesh& mesh,
 
 // Exchange areas by computation, unless they are known or computed on demand.
 Exchange exchange_on(const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  if (run.with.exchange) return run.with.exchange(mesh);
+  if (run.with.exchange) {
+    Exchange exchange = run.with.exchange(mesh);
+    exchange.lost.clear = clear_shares(mesh, run.tracing->between_patches());  // not stored: it is of the materials
+    return exchange;
+  }
   const auto find = keeps_entries(plan.assembly.storage) ? trace_exchange : exchange_on_demand;
   return find(mesh, run.tracing->between_patches(), plan.assembly, run.observer);
 }

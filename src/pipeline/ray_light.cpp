@@ -200,6 +200,8 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
     exchange.rows = traced_rows(run, plan, mesh, light);
     return {std::move(exchange), std::move(light)};
   }
+  // Not stored, as it is of the materials.
+  exchange.rows.lost.clear = clear_shares(mesh, run.tracing->between_patches());
   const BrightPatches now = bright_patches_of(run, mesh, light);
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);
