@@ -1,4 +1,5 @@
 // Solids that only the face they stand on closes.
+#include "patchlight/form_factors.h"
 #include "patchlight/simulate.h"
 
 #include "accuracy/errors.h"
@@ -96,6 +97,22 @@ TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
 INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
                          testing::Combine(testing::Bool(), testing::Values(1.0, 1e-3),
                                           testing::Values(Storage::tiles, Storage::rays), testing::Bool()));
+
+// The same on a clear floor, which holds back half, with form factors that are known, as from a folder, where what is
+// of materials is not: 50 W for each m^2 beside the block, 100 on its top of 2.25 m^2.
+TEST(BlockOnAPane, IsLitAroundWithKnownFormFactors) {
+  Scene scene = block_in_the_sun(true, 1, false);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[0].transmittance = Spectrum::Constant(1, 0.5);
+  for (std::size_t p = 1; p < scene.polygons.size(); ++p) scene.polygons[p].material = 1;
+  Request request;
+  request.mesh.max_edge = 1.001;
+  request.mesh.sides = Sides::front;
+  Exchange known = find_form_factors(scene, request).exchange;
+  known.lost.clear = {};
+  const Simulation lit = simulate(scene, request, {}, {.exchange = [&](const PatchMesh&) { return known; }});
+  EXPECT_NEAR(lit.balance.arriving[0], 50 * (16 - 2.25) + 225, 0.001 * 912.5);
+}
 
 }  // namespace
 }  // namespace patchlight::standing_test
