@@ -34,7 +34,7 @@ FinerReference finer_reference(const Scene& scene) {
   Request request;
   request.mesh.sides = Sides::front;
   request.mesh.patches = 5000;
-  request.assembly.samples = 64;
+  request.assembly.samples = 16;
   request.assembly.seed = 77;
   return reference_of(simulate(scene, request));
 }
