@@ -130,6 +130,31 @@ TEST(DrawnPane, OfTheWallsSizeTakesItsPlace) {
   }
 }
 
+// The wall in two triangles, as a format of triangles has it, each of less area than the pane over both.
+TEST(DrawnPane, OpensAWallOfTrianglesSmallerThanItself) {
+  const Pane pane{0.3, 2.7, 0.3, 2.2};
+  Scene scene = with_panes_drawn({pane});
+  Polygon second = scene.polygons[3];
+  const std::vector<std::uint32_t> wall = second.corners;
+  scene.polygons[3].corners = {wall[0], wall[1], wall[2]};
+  second.corners = {wall[2], wall[3], wall[0]};
+  scene.polygons.push_back(std::move(second));
+  const double expected = floor_irradiance(with_wall_cut({pane}), Sides::front, Eigen::Affine3d::Identity(), 1);
+  ASSERT_GT(expected, 1);
+  for (const Sides sides : {Sides::automatic, Sides::front}) {
+    EXPECT_NEAR(floor_irradiance(scene, sides, Eigen::Affine3d::Identity(), 1) / expected, 1, 0.02);
+    const Eigen::Affine3d placing = turned_a_little * Eigen::Scaling(0.001);
+    EXPECT_NEAR(floor_irradiance(scene, sides, placing, 0.001) / expected, 1, 0.02);
+  }
+}
+
+// A bar that reaches beyond the pane stays.
+TEST(DrawnPane, DoesNotOpenABarAcrossIt) {
+  const Scene with_pane = with_panes_drawn({{0.5, 2.5, 0.5, 2}});
+  const Scene scene = repair(with_quad(with_pane, quad_of({0.4, 2.6, 1.2, 1.25}), 0));
+  EXPECT_EQ(scene.polygons.back().corners.size(), 4U);
+}
+
 // A small opaque sticker on a large pane stays.
 TEST(DrawnPane, DoesNotOpenWhatLiesOverIt) {
   Scene scene = with_panes_drawn({{0.5, 2.5, 0.5, 2}});
