@@ -167,7 +167,6 @@ std::string details(const Report& report) {
 }
 
 std::string sensor_lines(const SensorFacts& sensors) {
-  if (sensors.groups.empty()) return {};
   const std::string in_unit = ", " + sensors.unit;
   std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit, "max" + in_unit,
                                 "U0", "largest standard error" + in_unit}};
@@ -221,7 +220,12 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
   text << energy(report) << '\n';
   text << seconds(report.costs) << '\n';
-  return text.str() + sensor_lines(report.sensors);
+  if (report.sensors.groups.empty()) return text.str();
+  text << sensor_lines(report.sensors);
+  if (report.accuracy.empty())
+    text << "of the standard errors of sensors what the size of the patches errs is a guess" << how_to_know_errors
+         << '\n';
+  return text.str();
 }
 
 std::string files_line(const std::vector<std::filesystem::path>& files) {

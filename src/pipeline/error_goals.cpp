@@ -33,10 +33,6 @@ double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double 
   return allowed(accuracy, share_of_form_factors, std::hypot(step.mesh, step.solver, beside));
 }
 
-// All pairs of up to 4,000 patches, with their error bars, take as long as rows of some 256 rays per patch in the
-// Cornell box, where pairs are cheap; those of more patches as long as the more rays.
-double rays_worth_pairs(double patches) { return 256 * std::max(1.0, patches / 4000); }
-
 }  // namespace
 
 int most_samples(const Plan& plan) { return plan.assembly.storage == Storage::rays ? 4096 : 256; }
@@ -66,13 +62,6 @@ int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accur
   if (by_rays && mesh_factor(solved, step, accuracy) > far_off)
     factor = std::min(factor, 2 * solved.noise_bar / step.mesh);
   return factor > error_margin ? next_samples(plan, factor) : samples;
-}
-
-// Over neighbours smoothed, noise falls as the fourth root of the number of patches.
-bool pairs_take_less(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  const double factor = noise_factor(solved, step, accuracy);
-  return step.samples * factor * factor * std::sqrt(step.patches / patches) > rays_worth_pairs(patches);
 }
 
 }  // namespace patchlight

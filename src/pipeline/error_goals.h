@@ -25,8 +25,4 @@ double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double a
 /// shadow rays does; rays of patches are not waited for, as what they err is in the mesh's error, too.
 int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy, const Plan& plan);
 
-/// True where rows of rays for the accuracy would take more time than all pairs of the patches that the mesh will need,
-/// by what both took in docs/theory.md section 12.
-bool pairs_take_less(const SolvedMesh& solved, const AccuracyStep& step, double accuracy);
-
 }  // namespace patchlight

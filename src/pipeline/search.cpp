@@ -158,8 +158,6 @@ MeshToSolve Search::first() const {
   } else {
     first.mesh = first_mesh(run_.scene, run_.plan);
   }
-  const bool reflects = simulates(run_.plan, Effect::interreflection);
-  if (begins_with_rays(run_.request, given_by(run_.with), reflects)) first.plan = by_rays(std::move(first.plan));
   first.plan.solver.keeps_unfinished = static_cast<bool>(run_.with.keeps_unfinished);
   if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {
     first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy.relative_error;
@@ -218,11 +216,8 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   const std::size_t most = cuts_up_to(std::min(fitting, patches_in_time(plan, more)), step);
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
-  // The noise of another storage is another one.
-  const bool same_storage = plan.assembly.storage == solved.simulation.plan.assembly.storage;
-  const double noise = same_storage ? noise_factor(solved, step, accuracy) : 1;
   const std::vector<std::uint8_t> noisy =
-      parents_to_cut(noise_to_cut(solved), {noise, noise_left, 0, most - count(cut)});
+      parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
   if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples(plan)))
     return {either(std::move(cut), noisy), samples};
@@ -241,28 +236,10 @@ Plan Search::gone_by_rays(const Plan& plan) {
   return by_rays(plan);
 }
 
-// Those of the plan: pairs were not left before for want of memory.
-bool Search::may_go_by_pairs(const SolvedMesh& solved, double accuracy) const {
-  if (run_.plan.assembly.storage != Storage::tiles || !notes_.empty()) return false;
-  const AccuracyStep& step = steps_.back();
-  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  return patches <= patches_that_fit(run_.plan) && pairs_take_less(solved, step, accuracy);
-}
-
-Plan Search::gone_by_pairs(Plan plan) const {
-  plan.assembly = run_.plan.assembly;
-  plan.solver.solver = run_.plan.solver.solver;
-  plan.decisions = run_.plan.decisions;
-  return plan;
-}
-
-// By pairs where these take less. Where the accuracy is out of reach with all of them, the next mesh goes by rays,
-// unless pairs were asked for.
+// Where the accuracy is out of reach with all pairs, the next mesh goes by rays, unless pairs were asked for.
 Plan Search::stored_for(const SolvedMesh& solved, double accuracy) {
   const Plan& plan = solved.simulation.plan;
-  if (run_.plan.accuracy.seconds) return plan;
-  if (plan.assembly.storage == Storage::rays && may_go_by_pairs(solved, accuracy)) return gone_by_pairs(plan);
-  if (steps_.back().total <= accuracy) return plan;
+  if (run_.plan.accuracy.seconds || steps_.back().total <= accuracy) return plan;
   const std::optional<Needed> needed = out_of_reach(plan, steps_);
   if (!needed) return plan;
   if (may_go_by_rays(plan)) return gone_by_rays(plan);
@@ -308,13 +285,11 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const bool all_anew = after.storage != before.storage || samples_of(after) != samples_of(before);
   if (!all_anew && !more.has_more_patches) return std::nullopt;
 
-  // 2. What is known of them, found in the same way. The solver's error is never asked to be larger than on the mesh
-  // before.
+  // 2. What is known of them. The solver's error is never asked to be larger than on the mesh before.
   const bool keeps_known = !all_anew && keeps_entries(after.storage);
   MeshToSolve to_solve{std::move(more.mesh.mesh),
                        with_solver_part(more.plan, part_of_solver(run_, accuracy)),
-                       {std::move(more.mesh.place), {}, {}}};
-  if (after.storage == before.storage) to_solve.known.lost = solved.simulation.transport.lost;
+                       {std::move(more.mesh.place), {}, solved.simulation.transport.lost}};
   to_solve.plan.solver.keeps_unfinished = false;
   known_ = 0;
   if (!keeps_known) return to_solve;

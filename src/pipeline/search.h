@@ -9,9 +9,8 @@
 namespace patchlight {
 
 /// The way to an accuracy: finer and finer meshes, with more samples where these are what limits, until the plan's
-/// accuracy is reached or its time is up. Where the storage is left open and no time is given, it begins with rows of
-/// rays, goes on by pairs where these take less, and by rays again where all pairs of the next mesh do not fit into the
-/// memory. A run that asks for none has one mesh.
+/// accuracy is reached or its time is up; by rows of rays where all pairs of the next mesh do not fit into the memory,
+/// unless these or a time were asked for. A run that asks for none has one mesh.
 class Search {
  public:
   /// Time counts from here on. `run` has to outlive the search.
@@ -40,8 +39,6 @@ class Search {
   AccuracyStep step_of(const SolvedMesh& solved) const;
   bool may_go_by_rays(const Plan& plan) const;
   Plan gone_by_rays(const Plan& plan);
-  bool may_go_by_pairs(const SolvedMesh& solved, double accuracy) const;
-  Plan gone_by_pairs(Plan plan) const;
   Plan stored_for(const SolvedMesh& solved, double accuracy);
   Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;

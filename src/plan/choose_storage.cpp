@@ -24,11 +24,6 @@ bool takes_pairs(const Request& request, const Given& given) {
          request.solver.max_rows.has_value();
 }
 
-bool begins_with_rays(const Request& request, const Given& given, bool is_reflected) {
-  return request.accuracy.relative_error && !request.accuracy.seconds && is_reflected &&
-         request.assembly.storage == Storage::automatic && !takes_pairs(request, given);
-}
-
 namespace {
 
 // Requests and plans have these parts in common.

@@ -16,10 +16,6 @@ inline constexpr std::size_t most_patches_in_pairs = 10000;
 /// solver that takes columns or symmetry.
 bool takes_pairs(const Request& request, const Given& given);
 
-/// True where the way to an accuracy begins with rows of rays: the storage is left open, nothing that is asked for
-/// takes_pairs(), and light is reflected. Pairs, for which the plan is made, take over where these are worth more.
-bool begins_with_rays(const Request& request, const Given& given, bool is_reflected);
-
 /// The same by rows of rays; Solver::cg, which takes a symmetric matrix, becomes gmres.
 Request by_rays(Request request);
 

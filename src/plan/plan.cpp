@@ -186,10 +186,6 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
   if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
-  if (begins_with_rays(asked, given, reflects) && request.assembly.storage == Storage::tiles)
-    size.notes.push_back(
-        "the way to the accuracy begins with rows of rays, and goes on by pairs where these take less; "
-        "assembly.storage=tiles takes pairs alone");
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
 

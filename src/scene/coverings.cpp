@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -24,8 +23,8 @@ constexpr double parallel = 0.999;
 // Areas that differ by less than this factor count as equal.
 constexpr double same_area = 1 + 1e-9;
 
-// Pieces of a wall have at least this share of the area of a pane that is drawn over several of them.
-constexpr double smallest_wall = 0.25;
+// Pieces of a wall leave no more than a hundredth of a pane free that is drawn over several of them.
+constexpr double whole_wall = 0.99;
 
 using Triangle = std::array<Point, 3>;
 
@@ -73,18 +72,14 @@ Lower lower_of(const Scene& scene, PolygonIndex polygon) {
   return lower;
 }
 
-// Admits all of up to so many square metres that may lie over it, with a margin for rounding.
-FaceQuery query_over(const Lower& lower, const Box& box, double most_area, double slack) {
+// Admits all that may lie over it, with a margin for rounding.
+FaceQuery query_over(const Lower& lower, const Box& box, double slack) {
   constexpr double rounding = 1e-13;
   const Vector margin = Vector::Constant(slack);
   const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
   const double tilt = std::sqrt(2 - 2 * parallel) + rounding;
-  return {Box(box.min() - margin, box.max() + margin),
-          most_area,
-          lower.normal,
-          tilt,
-          lower.normal.dot(lower.corners[0]),
-          slack + rounding * farthest};
+  return {Box(box.min() - margin, box.max() + margin), same_area * lower.area,     lower.normal, tilt,
+          lower.normal.dot(lower.corners[0]),          slack + rounding * farthest};
 }
 
 // The corners of the smaller one are measured over the plane of the larger one.
@@ -95,29 +90,30 @@ bool in_one_plane(const std::vector<Point>& smaller, const Lower& larger, double
          });
 }
 
-// Do they overlap by more than so much, square metres?
-bool overlap(Lower& lower, const std::vector<Point>& upper, double least) {
+// The area that both have in common, or more than `enough` of it, square metres.
+double overlap(Lower& lower, const std::vector<Point>& upper, double enough) {
   if (lower.triangles.empty()) lower.triangles = triangles_of(lower.corners);
   const std::vector<Triangle> over = triangles_of(upper);
   double area = 0;
   for (const Triangle& first : lower.triangles) {
     for (const Triangle& second : over) {
       area += overlap(first, second, lower.normal);
-      if (area > least) return true;
+      if (area > enough) return area;
     }
   }
-  return false;
+  return area;
 }
 
 bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
 }
 
-bool has_openings(const Scene& scene) {
-  PolygonIndex p = 0;
-  while (p < scene.polygons.size() && !is_opening(scene, p)) ++p;
-  return p < scene.polygons.size();
-}
+// Over which side of which polygon another lies.
+struct Covered {
+  PolygonIndex polygon = 0;
+  Side side = Side::front;
+  PolygonIndex by = 0;
+};
 
 // Finds the polygons that lie over one, side by side.
 struct Search {
@@ -125,56 +121,48 @@ struct Search {
   const KeptSides& kept;
   FaceTree tree;
   double slack;  // metres
-  bool has_openings;
 
-  std::array<std::vector<PolygonIndex>, 2> over(PolygonIndex polygon) const;
+  std::vector<Covered> of(PolygonIndex polygon) const;
   bool comes_first(PolygonIndex a, PolygonIndex b) const;
-  bool is_wall_of(PolygonIndex a, PolygonIndex b) const;
 };
 
-// Is an opaque polygon a piece of the wall that a larger clear one is drawn on, and no bar or panel on a pane? Bars are
-// small beside the pane, and panels lie within it.
-bool Search::is_wall_of(PolygonIndex a, PolygonIndex b) const {
-  if (tree.face(a).area < smallest_wall * tree.face(b).area) return false;
-  Lower larger = lower_of(scene, b);
-  return !overlap(larger, corner_points(scene, a), (1 - least_overlap) * tree.face(a).area);
-}
-
-// Does `a` lie over `b`, which overlaps it? A strict order: of two polygons exactly one lies over the other.
+// Does `a` lie over `b`? A strict order: of two polygons exactly one lies over the other.
 bool Search::comes_first(PolygonIndex a, PolygonIndex b) const {
-  const bool a_is_clear = is_opening(scene, a);
-  const bool b_is_clear = is_opening(scene, b);
-  if (a_is_clear && !b_is_clear && tree.face(a).area > same_area * tree.face(b).area) return is_wall_of(b, a);
-  if (b_is_clear && !a_is_clear && tree.face(b).area > same_area * tree.face(a).area) return !is_wall_of(a, b);
   if (tree.face(a).area > same_area * tree.face(b).area) return false;
   if (tree.face(b).area > same_area * tree.face(a).area) return true;
   return a < b;
 }
 
-std::array<std::vector<PolygonIndex>, 2> Search::over(PolygonIndex polygon) const {
-  std::array<std::vector<PolygonIndex>, 2> found;
+// What lies over a polygon; but opaque ones that cover a clear one together are the wall on which that is drawn, in
+// pieces: the clear one lies over each of these.
+std::vector<Covered> Search::of(PolygonIndex polygon) const {
+  std::vector<Covered> over;
+  std::vector<Covered> under;
+  double wall = 0;  // the area of the opaque ones on it
   Lower lower = lower_of(scene, polygon);
-  // A pane may reach beyond each piece of a wall that is drawn in several.
-  const double most_area =
-      has_openings && !is_opening(scene, polygon) ? std::numeric_limits<double>::infinity() : same_area * lower.area;
-  tree.for_each(query_over(lower, tree.face(polygon).box, most_area, slack), [&](PolygonIndex upper) {
-    if (upper == polygon) return;
-    const bool is_larger = tree.face(upper).area > same_area * lower.area;
-    if (is_larger && !is_opening(scene, upper)) return;
+  const bool is_pane = is_opening(scene, polygon);
+  tree.for_each(query_over(lower, tree.face(polygon).box, slack), [&](PolygonIndex upper) {
+    if (upper == polygon || !comes_first(upper, polygon)) return;
     const std::vector<Point> corners = corner_points(scene, upper);
+    if (!in_one_plane(corners, lower, slack)) return;
+    const bool may_be_wall = is_pane && !is_opening(scene, upper);
     const double least = least_overlap * std::min(lower.area, tree.face(upper).area);
-    const bool flat =
-        is_larger ? in_one_plane(lower.corners, lower_of(scene, upper), slack) : in_one_plane(corners, lower, slack);
-    if (!flat || !overlap(lower, corners, least) || !comes_first(upper, polygon)) return;
+    const double area = overlap(lower, corners, may_be_wall ? lower.area : least);
+    if (area <= least) return;
+    if (may_be_wall) wall += area;
     const bool same_front = lower.normal.dot(area_vector(corners)) > 0;
     for (const Side side : {Side::front, Side::back}) {
       const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
-      if (is_kept(kept, polygon, side) && is_kept(kept, upper, other_side))
-        found[static_cast<std::size_t>(side)].push_back(upper);
+      if (!is_kept(kept, polygon, side) || !is_kept(kept, upper, other_side)) continue;
+      over.push_back({polygon, side, upper});
+      if (may_be_wall) under.push_back({upper, other_side, polygon});
     }
   });
-  for (std::vector<PolygonIndex>& side : found) std::sort(side.begin(), side.end());
-  return found;
+  if (wall < whole_wall * lower.area) return over;
+  for (const Covered& covered : over) {
+    if (is_opening(scene, covered.by)) under.push_back(covered);
+  }
+  return under;
 }
 
 }  // namespace
@@ -188,14 +176,15 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   const std::size_t count = scene.polygons.size();
   std::vector<FlatFace> faces(count);
   parallel_for(count, [&](std::size_t p) { faces[p] = flat_face(corner_points(scene, static_cast<PolygonIndex>(p))); });
-  const Search search{scene, kept, FaceTree(std::move(faces)), in_plane_tolerance * extent_of(scene),
-                      has_openings(scene)};
+  const Search search{scene, kept, FaceTree(std::move(faces)), in_plane_tolerance * extent_of(scene)};
+  std::vector<std::vector<Covered>> found(count);
+  parallel_for(count, [&](std::size_t p) { found[p] = search.of(static_cast<PolygonIndex>(p)); });
   std::vector<std::vector<PolygonIndex>> over(2 * count);
-  parallel_for(count, [&](std::size_t p) {
-    auto [front, back] = search.over(static_cast<PolygonIndex>(p));
-    over[2 * p] = std::move(front);
-    over[2 * p + 1] = std::move(back);
-  });
+  for (const std::vector<Covered>& some : found) {
+    for (const Covered& covered : some)
+      over[2 * std::size_t{covered.polygon} + static_cast<std::size_t>(covered.side)].push_back(covered.by);
+  }
+  parallel_for(over.size(), [&](std::size_t side) { std::sort(over[side].begin(), over[side].end()); });
   const bool none = std::all_of(over.begin(), over.end(), [](const auto& side) { return side.empty(); });
   return none ? Coverings{} : Coverings{std::move(over)};
 }

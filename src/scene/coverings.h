@@ -22,8 +22,8 @@ struct Coverings {
 };
 
 /// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the
-/// first in the scene over the later one, so that geometry alone decides; but a clear one lies over smaller opaque ones
-/// that reach beyond it and have a quarter of its area or more: pieces of a wall on which it is drawn. Only kept sides
+/// first in the scene over the later one, so that geometry alone decides; but a clear one lies
+/// over smaller opaque ones that cover it together, the pieces of a wall on which it is drawn. Only kept sides
 /// cover or are covered. Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 

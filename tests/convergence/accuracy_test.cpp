@@ -92,22 +92,6 @@ TEST(AskedAccuracyOf, MoreRaysErrLess) {
   EXPECT_LE(of_rays(256), 0.6 * of_rays(64));
 }
 
-// Rays are cheap for 3 %; half a percent takes so many of them that pairs take less.
-TEST(AskedAccuracyOf, RaysGiveWayToPairsWhereTheseTakeLess) {
-  const Scene scene = varied_room("tiny_lamp");
-  const Simulation coarse = simulate(scene, asked(0.03));
-  EXPECT_EQ(coarse.plan.assembly.storage, Storage::rays);
-  EXPECT_LE(coarse.accuracy.back().total, 0.03);
-  const Simulation fine = simulate(scene, asked(0.01));
-  EXPECT_EQ(fine.plan.assembly.storage, Storage::tiles);
-  EXPECT_EQ(fine.plan.solver.solver, Solver::cg);
-  EXPECT_LE(fine.accuracy.back().total, 0.01);
-  // Who asks for pairs has them from the first mesh.
-  Request pairs = asked(0.03);
-  pairs.assembly.storage = Storage::tiles;
-  EXPECT_EQ(simulate(scene, pairs).plan.assembly.storage, Storage::tiles);
-}
-
 // All pairs of some 870 patches fit into the memory, and the accuracy takes more.
 TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   const Scene scene = varied_room("blocks");

@@ -148,11 +148,17 @@ TEST(DrawnPane, OpensAWallOfTrianglesSmallerThanItself) {
   }
 }
 
-// A bar that reaches beyond the pane stays.
-TEST(DrawnPane, DoesNotOpenABarAcrossIt) {
-  const Scene with_pane = with_panes_drawn({{0.5, 2.5, 0.5, 2}});
-  const Scene scene = repair(with_quad(with_pane, quad_of({0.4, 2.6, 1.2, 1.25}), 0));
-  EXPECT_EQ(scene.polygons.back().corners.size(), 4U);
+// A bar that reaches beyond the pane stays, and so does a panel of much of its area that overhangs its edge.
+TEST(DrawnPane, DoesNotOpenBarsAndPanelsThatReachBeyondIt) {
+  for (const Pane& upon : {Pane{0.4, 2.6, 1.2, 1.25}, Pane{0.4, 2.6, 1.2, 2.05}}) {
+    const Scene with_pane = with_panes_drawn({{0.5, 2.5, 0.5, 2}});
+    const Scene scene = repair(with_quad(with_pane, quad_of(upon), 0));
+    ASSERT_EQ(scene.polygons.size(), 8U);
+    const Polygon& last = scene.polygons.back();
+    EXPECT_EQ(last.material, 0U);
+    EXPECT_NEAR(area_vector(corner_points(scene, 7)).norm(), (upon.to_y - upon.from_y) * (upon.to_z - upon.from_z),
+                1e-9);
+  }
 }
 
 // A small opaque sticker on a large pane stays.

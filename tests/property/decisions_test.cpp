@@ -32,7 +32,6 @@ std::vector<LookedAt> looked_at(const Scene& scene, Request request) {
 TEST(Decisions, HoldOnEveryMeshOnTheWayToAnAccuracy) {
   Request request;
   request.mesh.sides = Sides::front;
-  request.assembly.storage = Storage::tiles;
   const Scene scene = with_point_light(lit_box(0.5), Spectrum::Constant(1, 5));
   const std::vector<LookedAt> planned = looked_at(scene, request);
   const std::vector<LookedAt> overruled =
