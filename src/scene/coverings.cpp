@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -72,14 +73,18 @@ Lower lower_of(const Scene& scene, PolygonIndex polygon) {
   return lower;
 }
 
-// Admits all that may lie over it, with a margin for rounding.
-FaceQuery query_over(const Lower& lower, const Box& box, double slack) {
+// Admits all of up to so many square metres that may lie in its plane, with a margin for rounding.
+FaceQuery query_over(const Lower& lower, const Box& box, double most_area, double slack) {
   constexpr double rounding = 1e-13;
   const Vector margin = Vector::Constant(slack);
   const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
   const double tilt = std::sqrt(2 - 2 * parallel) + rounding;
-  return {Box(box.min() - margin, box.max() + margin), same_area * lower.area,     lower.normal, tilt,
-          lower.normal.dot(lower.corners[0]),          slack + rounding * farthest};
+  return {Box(box.min() - margin, box.max() + margin),
+          most_area,
+          lower.normal,
+          tilt,
+          lower.normal.dot(lower.corners[0]),
+          slack + rounding * farthest};
 }
 
 // The corners of the smaller one are measured over the plane of the larger one.
@@ -133,23 +138,30 @@ bool Search::comes_first(PolygonIndex a, PolygonIndex b) const {
   return a < b;
 }
 
-// What lies over a polygon; but opaque ones that cover a clear one together are the wall on which that is drawn, in
-// pieces: the clear one lies over each of these.
+// What lies over a polygon; but opaque ones that cover a clear one together, or with larger ones, are the wall on which
+// that is drawn, in pieces: the clear one lies over each of these.
 std::vector<Covered> Search::of(PolygonIndex polygon) const {
   std::vector<Covered> over;
   std::vector<Covered> under;
-  double wall = 0;  // the area of the opaque ones on it
+  double pieces = 0;  // the area that smaller opaque ones take of a pane
+  double larger = 0;  // and larger ones, over which it lies
   Lower lower = lower_of(scene, polygon);
   const bool is_pane = is_opening(scene, polygon);
-  tree.for_each(query_over(lower, tree.face(polygon).box, slack), [&](PolygonIndex upper) {
-    if (upper == polygon || !comes_first(upper, polygon)) return;
+  const double most_area = is_pane ? std::numeric_limits<double>::infinity() : same_area * lower.area;
+  tree.for_each(query_over(lower, tree.face(polygon).box, most_area, slack), [&](PolygonIndex upper) {
+    if (upper == polygon) return;
     const std::vector<Point> corners = corner_points(scene, upper);
+    if (!comes_first(upper, polygon)) {
+      if (is_pane && !is_opening(scene, upper) && in_one_plane(lower.corners, lower_of(scene, upper), slack))
+        larger += overlap(lower, corners, lower.area);
+      return;
+    }
     if (!in_one_plane(corners, lower, slack)) return;
     const bool may_be_wall = is_pane && !is_opening(scene, upper);
     const double least = least_overlap * std::min(lower.area, tree.face(upper).area);
     const double area = overlap(lower, corners, may_be_wall ? lower.area : least);
     if (area <= least) return;
-    if (may_be_wall) wall += area;
+    if (may_be_wall) pieces += area;
     const bool same_front = lower.normal.dot(area_vector(corners)) > 0;
     for (const Side side : {Side::front, Side::back}) {
       const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
@@ -158,7 +170,8 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
       if (may_be_wall) under.push_back({upper, other_side, polygon});
     }
   });
-  if (wall < whole_wall * lower.area) return over;
+  const double wall = whole_wall * lower.area;
+  if (larger >= wall || larger + pieces < wall) return over;
   for (const Covered& covered : over) {
     if (is_opening(scene, covered.by)) under.push_back(covered);
   }

@@ -130,21 +130,33 @@ TEST(DrawnPane, OfTheWallsSizeTakesItsPlace) {
   }
 }
 
-// The wall in two triangles, as a format of triangles has it, each of less area than the pane over both.
-TEST(DrawnPane, OpensAWallOfTrianglesSmallerThanItself) {
+// The wall in two triangles, as a format of triangles has it, each of less area than the pane over both; and in two
+// quads, of which one has more.
+TEST(DrawnPane, OpensAWallInPiecesSmallerThanItself) {
+  const auto in_pieces = [](const Pane& pane, const std::vector<std::vector<Point>>& pieces) {
+    Scene scene = with_panes_drawn({pane});
+    scene = with_polygon(std::move(scene), pieces[1]);
+    const Scene first = with_polygon(scene, pieces[0]);
+    scene.vertices = first.vertices;
+    scene.polygons[3].corners = first.polygons.back().corners;
+    return scene;
+  };
+  const Quad wall = quad_of({0, 3, 0, 2.5});
+  const Quad low = quad_of({0, 2.2, 0, 2.5});
+  const Quad high = quad_of({2.2, 3, 0, 2.5});
+  const std::vector<std::vector<std::vector<Point>>> walls{
+      {{wall[0], wall[1], wall[2]}, {wall[2], wall[3], wall[0]}},
+      {{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}}};
   const Pane pane{0.3, 2.7, 0.3, 2.2};
-  Scene scene = with_panes_drawn({pane});
-  Polygon second = scene.polygons[3];
-  const std::vector<std::uint32_t> wall = second.corners;
-  scene.polygons[3].corners = {wall[0], wall[1], wall[2]};
-  second.corners = {wall[2], wall[3], wall[0]};
-  scene.polygons.push_back(std::move(second));
   const double expected = floor_irradiance(with_wall_cut({pane}), Sides::front, Eigen::Affine3d::Identity(), 1);
   ASSERT_GT(expected, 1);
-  for (const Sides sides : {Sides::automatic, Sides::front}) {
-    EXPECT_NEAR(floor_irradiance(scene, sides, Eigen::Affine3d::Identity(), 1) / expected, 1, 0.02);
-    const Eigen::Affine3d placing = turned_a_little * Eigen::Scaling(0.001);
-    EXPECT_NEAR(floor_irradiance(scene, sides, placing, 0.001) / expected, 1, 0.02);
+  for (const auto& pieces : walls) {
+    for (const Sides sides : {Sides::automatic, Sides::front}) {
+      const Scene scene = in_pieces(pane, pieces);
+      EXPECT_NEAR(floor_irradiance(scene, sides, Eigen::Affine3d::Identity(), 1) / expected, 1, 0.02);
+      const Eigen::Affine3d placing = turned_a_little * Eigen::Scaling(0.001);
+      EXPECT_NEAR(floor_irradiance(scene, sides, placing, 0.001) / expected, 1, 0.02);
+    }
   }
 }
 
