@@ -166,7 +166,9 @@ std::string details(const Report& report) {
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 
-std::string sensor_lines(const SensorFacts& sensors) {
+std::string sensor_lines(const Report& report, const std::string& how_to_know_errors) {
+  const SensorFacts& sensors = report.sensors;
+  if (sensors.groups.empty()) return {};
   const std::string in_unit = ", " + sensors.unit;
   std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit, "max" + in_unit,
                                 "U0", "largest standard error" + in_unit}};
@@ -177,7 +179,9 @@ std::string sensor_lines(const SensorFacts& sensors) {
                     std::isnan(group.largest_standard_error) ? "not known" : rounded(group.largest_standard_error, 2)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
-  return text_table(rows);
+  if (!report.accuracy.empty()) return text_table(rows);
+  return text_table(rows) + "standard errors of sensors hold a guess of what the size of the patches errs" +
+         how_to_know_errors + '\n';
 }
 
 // "effects: occlusion, closure; left out: colour, sun; by force: closure"
@@ -218,14 +222,8 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   else if (report.accuracy.empty())
     text << "errors from the size of the patches and from form factors: not known" << how_to_know_errors << '\n';
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
-  text << energy(report) << '\n';
-  text << seconds(report.costs) << '\n';
-  if (report.sensors.groups.empty()) return text.str();
-  text << sensor_lines(report.sensors);
-  if (report.accuracy.empty())
-    text << "of the standard errors of sensors what the size of the patches errs is a guess" << how_to_know_errors
-         << '\n';
-  return text.str();
+  text << energy(report) << '\n' << seconds(report.costs) << '\n';
+  return text.str() + sensor_lines(report, how_to_know_errors);
 }
 
 std::string files_line(const std::vector<std::filesystem::path>& files) {

@@ -21,6 +21,14 @@ class FormatsTest(ToolTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         return (self.folder / "spots.csv").read_text()
 
+    def test_standard_errors_of_sensors_say_where_they_guess(self):
+        self.write("spots.txt", "0 0 0 0 0 1\n")
+        for options, guesses in (([], True), (["--error-bars"], False)):
+            words = ["solve", "room.obj", "--patches", "100", "-o", "out.vtp", "--points", "spots.txt", *options]
+            done = self.run_tool(*words)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("hold a guess" in done.stdout, guesses, done.stdout)
+
     def test_two_files_are_one_scene(self):
         room, lamp = ROOM.split("usemtl lamp\n")
         vertices = [line for line in ROOM.splitlines() if line.startswith(("v ", "mtllib"))]
