@@ -59,6 +59,8 @@ struct SpaceErrors {
 
 class Tracing;
 struct RayExchange;
+struct RayOptions;
+struct RowBlocks;
 
 /// A solved scene.
 struct Simulation {
@@ -88,6 +90,10 @@ using ExchangeOf = std::function<Exchange(const PatchMesh& mesh)>;
 /// Rows of rays between the patches of a mesh where they are known already.
 using RayExchangeOf = std::function<RayExchange(const PatchMesh& mesh)>;
 
+/// Where rows of rays are kept while they are traced, for a run that is stopped to go on there.
+using RowBlocksOf =
+    std::function<RowBlocks(const PatchMesh& mesh, const RayOptions& options, std::span<const float> bright_densities)>;
+
 /// The mesh where it is known already.
 using MeshOf = std::function<PatchMesh()>;
 
@@ -102,6 +108,7 @@ using LookAt = std::function<void(const Simulation& simulation)>;
 struct Steps {
   ExchangeOf exchange = {};         ///< empty: form factors are computed
   RayExchangeOf ray_exchange = {};  ///< with Storage::rays, without error bars of the mesh; empty: rays are traced
+  RowBlocksOf row_blocks = {};      ///< with Storage::rays; empty: nothing is kept
   SolveWith solve = {};             ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated

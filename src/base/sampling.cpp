@@ -1,5 +1,6 @@
 #include "base/sampling.h"
 
+#include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <numbers>
@@ -91,6 +92,24 @@ Vector square_to_cosine_hemisphere(double u, double v) {
   const double radius = std::sqrt(u);
   const double angle = 2 * std::numbers::pi * v;
   return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - u)};
+}
+
+Vector cosine_direction(const Vector& normal, double u, double v) {
+  const Vector local = square_to_cosine_hemisphere(u, v);
+  const Vector across = normal.unitOrthogonal();
+  return local.x() * across + local.y() * normal.cross(across) + local.z() * normal;
+}
+
+Choice choose(std::span<const double> probabilities, double u) {
+  Choice choice;
+  double before = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    choice = {k, std::clamp((u - before) / probabilities[k], 0.0, 1.0)};
+    before += probabilities[k];
+    if (u < before) break;
+  }
+  return choice;
 }
 
 double square_to_cosine_hemisphere_pdf(const Vector& direction) {

@@ -3,7 +3,9 @@
 #include "patchlight/base/geometry.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -22,6 +24,15 @@ std::uint32_t owen_scramble(std::uint32_t coordinate, std::uint32_t seed);
 /// `seed`: coordinates in (0, 1). Any power-of-two prefix is a stratified set.
 std::vector<std::array<double, 4>> scrambled_sobol(std::uint32_t count, std::uint32_t seed);
 
+/// Which of some probabilities a number of [0, 1) falls into, and where in it.
+struct Choice {
+  std::size_t index = 0;
+  double rest = 0;  ///< in [0, 1]
+};
+
+/// Never one without probability: when rounding leaves a rest after the last, that one.
+Choice choose(std::span<const double> probabilities, double u);
+
 /// Barycentric weights (b1, b2) of a uniformly distributed point p0 + b1 (p1 - p0) + b2 (p2 - p0) of a triangle.
 Eigen::Vector2d square_to_triangle(double u, double v);
 
@@ -30,6 +41,9 @@ Point square_to_quad(const std::array<Point, 4>& corners, double u, double v);
 
 /// Direction of the hemisphere around +z with density cos(theta) / pi.
 Vector square_to_cosine_hemisphere(double u, double v);
+
+/// The same around another unit normal.
+Vector cosine_direction(const Vector& normal, double u, double v);
 
 /// Its density with respect to solid angle, 1/sr; zero below the horizon.
 double square_to_cosine_hemisphere_pdf(const Vector& direction);

@@ -43,6 +43,7 @@ struct SolveArguments {
   std::string view;              ///< or the name of a camera of the scene; if empty, its first one
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
+  std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts; empty: none
 
   std::filesystem::path points;  ///< input: where irradiance is wanted, besides the scene's sensors
   std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; none: default_points_output

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "cli/accuracy_options.h"
+#include "cli/checkpoint.h"
 #include "cli/interrupt.h"
 #include "cli/option_names.h"
 #include "cli/picture.h"
@@ -54,6 +55,7 @@ struct Results {
   std::vector<IterateIrradiance> iterates;
   Report report;
   Provenance provenance;
+  KeptBlocks kept;
 };
 
 // The iterates of the last solutions: that which is written need not be the last, when the run was stopped or a second
@@ -166,6 +168,8 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   };
   Steps with{.exchange = input.exchange, .ray_exchange = input.ray_exchange};
   if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
+  if (!arguments.checkpoint.empty())
+    with.row_blocks = row_blocks_kept_in(arguments.checkpoint, results.scene, results.kept);
   simulation = simulate(results.scene, input.request, observed, with);
   // Who stops a run that comes to its end all the same wants what it has.
   if (!may_write_what_is_there()) throw Cancelled();
@@ -244,8 +248,10 @@ ExitCode solve(const SolveArguments& arguments) {
     return compute(arguments, observer_on(line));
   }();
   const std::vector<std::filesystem::path> written = write(arguments, results);
+  if (!results.report.solution.unfinished) remove_row_blocks(arguments.checkpoint, results.kept.keys);
 
   if (!quiet) {
+    if (results.kept.taken > 0) print_message("note", taken_note(arguments.checkpoint, results.kept));
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,

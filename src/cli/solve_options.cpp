@@ -20,7 +20,33 @@ struct SolveOptions {
   Request request;  // with the edge of patches in model units
   SolutionOptions solution;
   std::string form_factors;
+  std::string checkpoint;
 };
+
+namespace {
+
+void add_checkpoint_option(CLI::App& command, SolveOptions& options) {
+  add(command, "--checkpoint", "FOLDER",
+      "with --storage rays, which it implies: rows are kept there while\nthe run lasts, so that one that is killed "
+      "goes "
+      "on where it was\nwhen it is started again; default: nothing is kept",
+      [&options](const std::string& text) {
+        if (text.empty()) throw refusal("--checkpoint", text, "the name of a folder");
+        options.checkpoint = text;
+        if (options.request.assembly.storage == Storage::automatic) options.request.assembly.storage = Storage::rays;
+      });
+}
+
+void require_checkpoint_of_rays(const SolveArguments& arguments) {
+  if (arguments.checkpoint.empty()) return;
+  if (!arguments.form_factors.empty())
+    throw UsageError("--checkpoint and --form-factors exclude each other: rows that are stored are not traced");
+  if (arguments.request.assembly.storage != Storage::rays)
+    throw UsageError("--checkpoint keeps rows of rays; found --storage " +
+                     std::string(name_of(arguments.request.assembly.storage)) + ", expected --storage rays");
+}
+
+}  // namespace
 
 std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   auto options = std::make_shared<SolveOptions>();
@@ -39,6 +65,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
         to.form_factors = text;
       });
   add_storage_options(command, to.request);
+  add_checkpoint_option(command, to);
   add_effect_options(command, to.request);
   add_solver_options(command, to.solution, to.request);
   add_sampling_options(command, to.request);
@@ -56,9 +83,11 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.read = read_options(options.model);
   arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.form_factors = options.form_factors;
+  arguments.checkpoint = options.checkpoint;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
   const bool solver_given = options.solution.solver_given || !options.solution.series.empty();
   arguments.request = with_fitting_solver(std::move(arguments.request), solver_given);
+  require_checkpoint_of_rays(arguments);
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;
 }

@@ -43,9 +43,12 @@ struct Samples {
   SamplePoints places;
 };
 
-// Something that gives light: an estimate of the mean irradiance of a receiver, with or without shadows.
+// Estimates of the mean irradiance of one receiver, with or without shadows.
+using MeanBy = std::function<Spectrum(const Samples&, bool)>;
+
+// Something that gives light.
 struct Source {
-  std::function<Spectrum(const Receiver&, const Samples&, bool)> mean;
+  std::function<MeanBy(const Receiver&)> mean_at;
   std::uint32_t samples = 0;
   bool has_extent = false;
   int effort = 1;  // times the samples where rays have to find the shadows of a light without extent, or at a point
@@ -53,6 +56,13 @@ struct Source {
   std::function<Spectrum(const Receiver&)> unshadowed = {};                // in the middle, without extent
   std::function<bool(const Receiver&)> may_be_hidden = {};                 // with extent
 };
+
+template <class Mean>
+std::function<MeanBy(const Receiver&)> at_each(Mean mean) {
+  return [mean](const Receiver& receiver) {
+    return [mean, &receiver](const Samples& samples, bool in_shadow) { return mean(receiver, samples, in_shadow); };
+  };
+}
 
 using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
 
@@ -98,8 +108,11 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
       const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
       return lighting.paths.may_be_hidden(places, middle.normal, luminaire.position, radius);
     };
-    return {
-        .mean = mean, .samples = samples, .has_extent = true, .effort = lamp_effort, .may_be_hidden = may_be_hidden};
+    return {.mean_at = at_each(mean),
+            .samples = samples,
+            .has_extent = true,
+            .effort = lamp_effort,
+            .may_be_hidden = may_be_hidden};
   }
   const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
   const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
@@ -107,7 +120,7 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
     if (!(arrival.irradiance > 0)) return Spectrum(Spectrum::Zero(lighting.bands));
     return Spectrum(arrival.irradiance * *arrival.colour);
   };
-  return {mean, samples, false, lamp_effort, left, unshadowed};
+  return {at_each(mean), samples, false, lamp_effort, left, unshadowed};
 }
 
 Source sun_of(const Lighting& lighting, std::uint32_t samples) {
@@ -125,7 +138,7 @@ Source sun_of(const Lighting& lighting, std::uint32_t samples) {
     if (!share) return std::nullopt;
     return LeftByShadows{*share, Spectrum::Zero(lighting.bands)};
   };
-  return {mean, samples, false, sun_effort, left, unshadowed};
+  return {at_each(mean), samples, false, sun_effort, left, unshadowed};
 }
 
 std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
@@ -134,12 +147,12 @@ std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& 
     sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
   if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
   if (lighting.sky) {
-    // With openings a sample takes two rays.
-    const int rays = lighting.openings.empty() ? 1 : 2;
-    const auto mean = [&lighting](const Receiver& receiver, const Samples& samples_at, bool) {
-      return sky_irradiance(lighting, receiver, samples_at.rays);
+    const auto mean_at = [&lighting](const Receiver& receiver) {
+      return [&lighting, &receiver, aim = sky_aim(lighting, receiver)](const Samples& samples, bool) {
+        return sky_irradiance(lighting, receiver, aim, samples.rays);
+      };
     };
-    sources.push_back({mean, static_cast<std::uint32_t>(options.sky_samples / rays), true});
+    sources.push_back({mean_at, static_cast<std::uint32_t>(options.sky_samples), true});
   }
   return sources;
 }
@@ -205,10 +218,11 @@ Estimate estimate_of(const Field& replicates_of) {
 Field Estimator::replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
                                bool in_shadow) const {
   const std::uint32_t sets = receiver.is_point() ? replicates_at_points : replicates;
+  const MeanBy mean = source.mean_at(receiver);
   Field found(sets, bands);
   for (std::uint32_t k = 0; k < sets; ++k) {
     const SamplePoints set = points[(key + k * step) % scrambles];
-    found.row(k) = source.mean(receiver, {shifted(set.first(each), hash({key, k})), set}, in_shadow);
+    found.row(k) = mean({shifted(set.first(each), hash({key, k})), set}, in_shadow);
   }
   return found;
 }
@@ -218,7 +232,7 @@ Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::
   const bool is_point = receiver.is_point();
   if (is_point && !source.has_extent) {
     const SamplePoints one = SamplePoints(points[0]).first(1);
-    return {source.mean(receiver, {one, one}, true), none};
+    return {source.mean_at(receiver)({one, one}, true), none};
   }
   const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;
   if (left && (left->share == 0).all()) return {none, none};

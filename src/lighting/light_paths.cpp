@@ -65,6 +65,14 @@ Passage LightPaths::through_openings(const Segment& segment) const {
   return passage;
 }
 
+std::vector<std::uint8_t> LightPaths::meets_opaque(std::span<const Segment> segments) const {
+  return opaque_->occluded(segments);
+}
+
+std::vector<std::optional<Hit>> LightPaths::first_opaque_hits(std::span<const Ray> rays) const {
+  return opaque_->first_hits(rays);
+}
+
 Point LightPaths::beyond(const Point& from, const Vector& direction) const {
   const double reach = bounds_.diagonal().norm() + (from - bounds_.center()).norm();
   return from + reach * direction;

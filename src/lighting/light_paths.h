@@ -6,6 +6,7 @@
 #include "visibility/tracing.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,12 @@ class LightPaths {
 
   /// The same with the openings on the way.
   std::vector<Passage> passages(std::span<const Segment> segments) const;
+
+  /// 1 for each segment that meets something opaque, else 0.
+  std::vector<std::uint8_t> meets_opaque(std::span<const Segment> segments) const;
+
+  /// What opaque polygons each ray meets first; clear ones let it pass.
+  std::vector<std::optional<Hit>> first_opaque_hits(std::span<const Ray> rays) const;
 
   /// A point so far from another in a unit direction that all of the scene is nearer.
   Point beyond(const Point& from, const Vector& direction) const;

@@ -3,7 +3,6 @@
 #include "base/sampling.h"
 #include "lighting/shades.h"
 #include "scene/photometric_web.h"
-#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,14 +70,6 @@ Arrival from_sphere(const SphericalLamp& lamp, const Point& centre, const Surfac
   return {at.point + (along - half_chord) * direction, 2 * lift * received, &lamp.exitance};
 }
 
-Opening opening_of(const Scene& scene, PolygonIndex polygon) {
-  const std::vector<Point> corners = corner_points(scene, polygon);
-  const Vector area = area_vector(corners);
-  Opening opening{polygon, area.normalized(), area_centroid(corners), area.norm(), {}};
-  for (const auto& [a, b, c] : triangulate(corners)) opening.triangles.push_back({corners[a], corners[b], corners[c]});
-  return opening;
-}
-
 }  // namespace
 
 Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
@@ -93,9 +84,9 @@ Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
   if (lighting.sun || !scene.luminaires.empty())
     lighting.shades = std::make_shared<const Shades>(scene, tracing.coverings());
-  if (scene.sky) lighting.sky = sky_model(*scene.sky, scene.up);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_opening(scene, p)) lighting.openings.push_back(opening_of(scene, p));
+  if (scene.sky) {
+    lighting.sky = sky_model(*scene.sky, scene.up);
+    lighting.openings = sky_openings(scene, lighting.paths);
   }
   return lighting;
 }

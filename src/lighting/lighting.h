@@ -4,22 +4,13 @@
 
 #include "lighting/light_paths.h"
 #include "lighting/sky.h"
+#include "lighting/sky_openings.h"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace patchlight {
-
-/// A clear opening, towards which rays are sent to find the sky behind it.
-struct Opening {
-  PolygonIndex polygon = no_polygon;
-  Vector normal;  ///< unit
-  Point centre;
-  double area = 0;                              ///< m^2
-  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
-};
 
 class Shades;
 
@@ -29,7 +20,7 @@ struct Lighting {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;  ///< nothing while it is below the horizon
   std::optional<SkyModel> sky;
-  std::vector<Opening> openings;
+  std::vector<Opening> openings;  ///< none without a sky
   Vector up;
   Eigen::Index bands = 0;
   LightPaths paths;

@@ -5,74 +5,66 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// The probability of each opening to be aimed at: as the solid angle that it would fill if it were turned to a place of
-// the receiver, roughly; 0 behind the receiver.
-std::vector<double> aim_probabilities(const Lighting& lighting, const SurfacePoint& at) {
-  std::vector<double> weights;
-  double sum = 0;
-  for (const Opening& opening : lighting.openings) {
-    double rise = 0;
-    for (const auto& triangle : opening.triangles) {
-      for (const Point& corner : triangle) rise = std::max(rise, at.normal.dot(corner - at.point));
-    }
-    const double square = (opening.centre - at.point).squaredNorm();
-    weights.push_back(rise > 0 && opening.polygon != at.polygon ? opening.area / (square + opening.area) : 0);
-    sum += weights.back();
+// Rays that tell whether aiming pays: over the hemisphere, and towards openings. Their places and directions are their
+// own, so that what is aimed at does not depend on what is found.
+constexpr std::uint32_t rays_ahead = 32;
+constexpr std::uint32_t seed_ahead = 2;
+
+Vector toward(const Opening& opening, const Point& from, double u, double v) {
+  return (point_of(opening, u, v) - from).normalized();
+}
+
+// The share of such rays that meet nothing opaque.
+template <class Direction>
+double free_share_ahead(const Lighting& lighting, const Receiver& receiver, const Direction& direction_at) {
+  static const auto samples = scrambled_sobol(rays_ahead, seed_ahead);
+  std::vector<Segment> rays;
+  for (const auto& [u, v, s, t] : samples) {
+    const SurfacePoint at = receiver.place(u, v);
+    rays.push_back({at.point, lighting.paths.beyond(at.point, direction_at(at, s, t)), at.polygon, no_polygon});
   }
-  for (double& weight : weights) weight = sum > 0 ? weight / sum : 0;
-  return weights;
+  const std::vector<std::uint8_t> blocked = lighting.paths.meets_opaque(rays);
+  return static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / rays_ahead;
 }
 
-// A share of [0, 1) that a number falls into, and where in it.
-struct Choice {
-  std::size_t index = 0;
-  double rest = 0;
-};
-
-// Never one without probability: when rounding leaves a rest after the last, that one.
-Choice choose(const std::vector<double>& probabilities, double u) {
-  Choice choice;
-  double before = 0;
-  for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
-    choice = {k, std::clamp((u - before) / probabilities[k], 0.0, 1.0)};
-    before += probabilities[k];
-    if (u < before) break;
-  }
-  return choice;
+// Where some of the sky is seen through holes, and not much of it without.
+bool pays_to_aim(const Lighting& lighting, const Receiver& receiver, const std::vector<double>& probabilities) {
+  const double through_holes = free_share_ahead(lighting, receiver, [&](const SurfacePoint& at, double s, double t) {
+    const Choice opening = choose(probabilities, s);
+    return toward(lighting.openings[opening.index], at.point, opening.rest, t);
+  });
+  if (through_holes == 0) return false;
+  return free_share_ahead(lighting, receiver, [](const SurfacePoint& at, double s, double t) {
+           return cosine_direction(at.normal, s, t);
+         }) <= much_sky;
 }
 
-Point point_of(const Opening& opening, double u, double v) {
-  std::vector<double> shares;
-  for (const auto& [a, b, c] : opening.triangles) shares.push_back((b - a).cross(c - a).norm() / 2 / opening.area);
-  const Choice triangle = choose(shares, u);
-  const auto& [a, b, c] = opening.triangles[triangle.index];
-  const Eigen::Vector2d weights = square_to_triangle(triangle.rest, v);
-  return a + weights[0] * (b - a) + weights[1] * (c - a);
-}
-
-Vector cosine_direction(const Vector& normal, double u, double v) {
-  const Vector local = square_to_cosine_hemisphere(u, v);
-  const Vector across = normal.unitOrthogonal();
-  return local.x() * across + local.y() * normal.cross(across) + local.z() * normal;
-}
-
-// Density of the rays towards openings, 1/sr, for a direction that crosses these.
-double aimed_density(const Lighting& lighting, const std::vector<double>& probabilities, const Vector& direction,
-                     const std::vector<Crossing>& crossings) {
+// Density of the rays towards openings, 1/sr, for one from here that crosses these clear faces and meets nothing
+// opaque.
+double aimed_density(const Lighting& lighting, const std::vector<double>& probabilities, const Point& from,
+                     const Vector& direction, const std::vector<Crossing>& crossings) {
   double density = 0;
-  for (const Crossing& crossing : crossings) {
-    const auto opening = std::find_if(lighting.openings.begin(), lighting.openings.end(),
-                                      [&](const Opening& o) { return o.polygon == crossing.polygon; });
-    const auto index = static_cast<std::size_t>(opening - lighting.openings.begin());
-    const double facing = std::abs(opening->normal.dot(direction));
-    if (facing > 0) density += probabilities[index] * crossing.distance * crossing.distance / (facing * opening->area);
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    const Opening& opening = lighting.openings[k];
+    if (!(probabilities[k] > 0)) continue;
+    std::optional<double> distance;
+    if (opening.polygon == no_polygon) {
+      distance = distance_to(opening, from, direction);
+    } else {
+      const auto crossing = std::find_if(crossings.begin(), crossings.end(),
+                                         [&](const Crossing& c) { return c.polygon == opening.polygon; });
+      if (crossing != crossings.end()) distance = crossing->distance;
+    }
+    const double facing = std::abs(opening.normal.dot(direction));
+    if (distance && facing > 0) density += probabilities[k] * *distance * *distance / (facing * opening.area);
   }
   return density;
 }
@@ -81,12 +73,13 @@ struct SkyRays {
   std::vector<Vector> directions;
   std::vector<double> cosines;  // to the receiver's normal
   std::vector<Segment> segments;
-  std::size_t places = 0;  // from which there are one ray or two
+  std::size_t places = 0;  // from each of which one ray goes over the hemisphere
+  std::size_t aimed = 0;   // from which one goes to an opening
 };
 
-SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples,
-                 const std::vector<double>& probabilities) {
-  const bool aims = std::any_of(probabilities.begin(), probabilities.end(), [](double p) { return p > 0; });
+// Rays to panes are half of all. Those to holes, which may be hidden from the receiver, are a third, and more than
+// there are without.
+SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
   SkyRays rays;
   const auto add = [&](const SurfacePoint& at, const Vector& direction) {
     const double cosine = at.normal.dot(direction);
@@ -95,31 +88,58 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
     rays.cosines.push_back(cosine);
     rays.segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
   };
-  for (const auto& [u, v, s, t] : samples) {
+  // The first half of a Sobol sequence is spread as evenly as all of it.
+  const std::size_t half = (samples.size() + 1) / 2;
+  if (aim.at_panes) samples = samples.first(half);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto& [u, v, s, t] = samples[k];
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
     ++rays.places;
     add(at, cosine_direction(at.normal, s, t));
-    if (!aims) continue;
-    const Choice aim = choose(probabilities, s);
-    add(at, (point_of(lighting.openings[aim.index], aim.rest, t) - at.point).normalized());
+    if (aim.probabilities.empty() || k >= half) continue;
+    ++rays.aimed;
+    const Choice opening = choose(aim.probabilities, s);
+    add(at, toward(lighting.openings[opening.index], at.point, opening.rest, t));
   }
   return rays;
 }
 
 }  // namespace
 
-Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, SamplePoints samples) {
-  const std::vector<double> probabilities = aim_probabilities(lighting, receiver.place(0.5, 0.5));
-  const SkyRays rays = sky_rays(lighting, receiver, samples, probabilities);
+SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver) {
+  const SurfacePoint at = receiver.place(0.5, 0.5);
+  SkyAim aim;
+  double sum = 0;
+  for (const Opening& opening : lighting.openings) {
+    double rise = 0;
+    for (const auto& triangle : opening.triangles) {
+      for (const Point& corner : triangle) rise = std::max(rise, at.normal.dot(corner - at.point));
+    }
+    const double square = (opening.centre - at.point).squaredNorm();
+    const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
+    const double weight = rise > 0 && !is_own ? opening.area / (square + opening.area) : 0;
+    aim.probabilities.push_back(weight);
+    aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
+    sum += weight;
+  }
+  if (!(sum > 0)) return {};
+  for (double& probability : aim.probabilities) probability /= sum;
+  return aim.at_panes || pays_to_aim(lighting, receiver, aim.probabilities) ? aim : SkyAim();
+}
+
+Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
+  const SkyRays rays = sky_rays(lighting, receiver, samples, aim);
   Spectrum sum = Spectrum::Zero(lighting.bands);
   if (rays.places == 0) return sum;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
+  const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
   const std::vector<Passage> passages = lighting.paths.passages(rays.segments);
   for (std::size_t k = 0; k < passages.size(); ++k) {
     if (!(passages[k].transmittance > 0).any()) continue;
-    const double density = rays.cosines[k] / std::numbers::pi +
-                           aimed_density(lighting, probabilities, rays.directions[k], passages[k].crossings);
+    const double density =
+        rays.cosines[k] / std::numbers::pi + aimed * aimed_density(lighting, aim.probabilities, rays.segments[k].from,
+                                                                   rays.directions[k], passages[k].crossings);
     sum += radiance(*lighting.sky, rays.directions[k]) * passages[k].transmittance * (rays.cosines[k] / density);
   }
   return sum / static_cast<double>(rays.places);

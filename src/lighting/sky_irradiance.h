@@ -2,12 +2,26 @@
 
 #include "lighting/receiver.h"
 
+#include <vector>
+
 namespace patchlight {
 
-/// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies. Where
-/// the scene has clear openings each sample is two rays, one distributed as the cosine over the hemisphere and one
-/// towards a point of an opening, put together by the balance heuristic (Veach and Guibas 1995, eq. 14): what gets in
-/// through a window is found by rays to the window, what gets in through a hole by the others.
-Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, SamplePoints samples);
+/// Towards which openings rays go from a receiver.
+struct SkyAim {
+  std::vector<double> probabilities;  ///< of each of Lighting::openings to be chosen; none: no rays
+  bool at_panes = false;              ///< some of these are clear faces
+};
+
+/// Each opening with a probability as the solid angle that it would fill if it were turned to the receiver's middle,
+/// roughly; none behind the receiver. Holes alone are not aimed at where a few rays see much of the sky without, or
+/// none of it through the holes, which may be hidden.
+SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver);
+
+/// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
+/// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the
+/// balance heuristic (Veach and Guibas 1995, eq. 14): with clear faces a second one for each of half of the samples,
+/// with holes alone one more for each of the first half. What gets in through a gap that is no opening is found by the
+/// first kind alone.
+Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
 
 }  // namespace patchlight

@@ -9,6 +9,7 @@
 #include "pipeline/conserved_flux.h"
 #include "solve/scattering.h"
 #include "transport/bright_patches.h"
+#include "transport/row_blocks.h"
 #include "transport/smoothing.h"
 #include "visibility/occluder.h"
 
@@ -173,7 +174,10 @@ BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const Ray
 TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
-  return trace_rows(mesh, occluder, bright_patches, rays_as_planned(plan.assembly), run.observer);
+  const RayOptions options = rays_as_planned(plan.assembly);
+  if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
+  const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
+  return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
 }
 
 // The share of what each patch holds back that is exposed.

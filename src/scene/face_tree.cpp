@@ -94,4 +94,11 @@ void FaceTree::add_nodes(std::uint32_t begin, std::uint32_t end) {
   nodes_[own].next = static_cast<std::uint32_t>(nodes_.size());
 }
 
+FaceTree tree_of_faces(const Scene& scene) {
+  std::vector<FlatFace> faces;
+  faces.reserve(scene.polygons.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) faces.push_back(flat_face(corner_points(scene, p)));
+  return FaceTree(std::move(faces));
+}
+
 }  // namespace patchlight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
 #include <cmath>
 #include <cstddef>
@@ -84,5 +85,8 @@ class FaceTree {
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };
+
+/// Of all polygons of a scene, in order.
+FaceTree tree_of_faces(const Scene& scene);
 
 }  // namespace patchlight

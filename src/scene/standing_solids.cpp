@@ -169,13 +169,6 @@ bool are_flat(const Scene& scene, const std::vector<PolygonIndex>& polygons, dou
   });
 }
 
-FaceTree tree_of(const Scene& scene) {
-  std::vector<FlatFace> faces;
-  faces.reserve(scene.polygons.size());
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) faces.push_back(flat_face(corner_points(scene, p)));
-  return FaceTree(std::move(faces));
-}
-
 }  // namespace
 
 std::vector<Solid> standing_solids(const Scene& scene, const Shells& shells) {
@@ -188,7 +181,7 @@ std::vector<Solid> standing_solids(const Scene& scene, const Shells& shells) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (shells.rimmed[p]) members[shells.shell[p]].push_back(p);
   }
-  const FacesUnderRims search{scene, shells, tree_of(scene), weld_distance(scene), extent_of(scene)};
+  const FacesUnderRims search{scene, shells, tree_of_faces(scene), weld_distance(scene), extent_of(scene)};
   std::vector<Solid> solids;
   for (const auto& [shell, edges] : rims) {
     if (are_flat(scene, members[shell], search.near)) continue;

@@ -23,6 +23,7 @@ class BrightPatches {
   std::size_t size() const { return patches_.size(); }
   /// Probability per area of a point of the patch to be chosen, 1/m^2; 0: not a bright one.
   float density(PatchIndex patch) const { return density_[patch]; }
+  const std::vector<float>& densities() const { return density_; }
 
   /// A patch chosen by u in [0, 1), which is stretched over the patch's share of [0, 1) to be used again.
   struct Chosen {

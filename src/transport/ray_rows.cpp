@@ -1,10 +1,13 @@
 #include "transport/ray_rows.h"
 
 #include "base/parallel.h"
+#include "transport/row_blocks.h"
 #include "transport/row_tracer.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cstddef>
 #include <utility>
 
@@ -25,8 +28,8 @@ struct RawRows {
   std::vector<std::uint64_t> room;  // per patch; one more
   std::array<RawHalf, 2> halves;
   std::vector<RowEntries> tasks;
-  LostShare lost;
-  std::vector<std::uint8_t> sees_backs;  // per patch
+  std::vector<std::uint32_t> escaped;     // per patch: rays
+  std::vector<std::uint32_t> sees_backs;  // per patch: 0 or 1
   std::vector<float> distance;
 };
 
@@ -40,37 +43,155 @@ RawRows room_for(const std::vector<std::uint32_t>& counts) {
     half.hit_count.resize(size);
     half.entry_count.resize(size);
   }
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size));
-  raw.lost = {zero, zero, zero, 0, zero, {}, zero};
+  raw.escaped.resize(size);
   raw.sees_backs.resize(size);
   raw.distance.resize(size);
   raw.tasks.resize((size + patches_at_once - 1) / patches_at_once);
   return raw;
 }
 
-// All rays. Lost shares are those of the patches that see no backs.
-RawRows traced(const RowTracer& tracer, const Observer& observer) {
-  RawRows raw = room_for(tracer.counts());
-  parallel_for(raw.tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
-    RowEntries& task = raw.tasks[t];
-    const std::size_t end = std::min((t + 1) * patches_at_once, tracer.counts().size());
-    for (std::size_t i = t * patches_at_once; i < end; ++i) {
-      const std::array<std::size_t, 2> before{task.halves[0].size(), task.halves[1].size()};
-      const PatchRays told = tracer.trace(static_cast<PatchIndex>(i), task);
-      for (std::size_t half = 0; half < 2; ++half) {
-        RawHalf& rows = raw.halves[half];
-        std::copy(told.hits[half].begin(), told.hits[half].end(),
-                  rows.hits.begin() + static_cast<std::ptrdiff_t>(raw.room[i]));
-        rows.hit_count[i] = static_cast<std::uint32_t>(told.hits[half].size());
-        rows.entry_count[i] = static_cast<std::uint32_t>(task.halves[half].size() - before[half]);
-      }
-      const double rays = 2.0 * tracer.counts()[i];
-      raw.lost.escaped[static_cast<Eigen::Index>(i)] = told.escaped / rays;
-      raw.sees_backs[i] = told.unseen > 0 ? 1 : 0;
-      raw.distance[i] = static_cast<float>(told.inverse_lengths > 0 ? rays / told.inverse_lengths : 0);
+void trace_task(const RowTracer& tracer, std::size_t t, RawRows& raw) {
+  RowEntries& task = raw.tasks[t];
+  const std::size_t end = std::min((t + 1) * patches_at_once, tracer.counts().size());
+  for (std::size_t i = t * patches_at_once; i < end; ++i) {
+    const std::array<std::size_t, 2> before{task.halves[0].size(), task.halves[1].size()};
+    const PatchRays told = tracer.trace(static_cast<PatchIndex>(i), task);
+    for (std::size_t half = 0; half < 2; ++half) {
+      RawHalf& rows = raw.halves[half];
+      std::copy(told.hits[half].begin(), told.hits[half].end(),
+                rows.hits.begin() + static_cast<std::ptrdiff_t>(raw.room[i]));
+      rows.hit_count[i] = static_cast<std::uint32_t>(told.hits[half].size());
+      rows.entry_count[i] = static_cast<std::uint32_t>(task.halves[half].size() - before[half]);
     }
+    const double rays = 2.0 * tracer.counts()[i];
+    raw.escaped[i] = static_cast<std::uint32_t>(told.escaped);
+    raw.sees_backs[i] = told.unseen > 0 ? 1 : 0;
+    raw.distance[i] = static_cast<float>(told.inverse_lengths > 0 ? rays / told.inverse_lengths : 0);
+  }
+}
+
+// Tasks of one block.
+constexpr std::size_t tasks_of_a_block = RowBlocks::patches_of_a_block / patches_at_once;
+
+struct PatchSpan {
+  std::size_t begin, end;
+};
+PatchSpan patches_of(std::size_t block, std::size_t patches) {
+  constexpr std::size_t size = RowBlocks::patches_of_a_block;
+  return {block * size, std::min((block + 1) * size, patches)};
+}
+
+// Shows all numbers that are known of a block, of 32 bits each, its entries all in its first task. Returns false when
+// show() has put a number there that cannot be.
+template <class Show>
+bool show_block(RawRows& raw, std::size_t block, const Show& show) {
+  const std::size_t patches = raw.escaped.size();
+  const auto [begin, end] = patches_of(block, patches);
+  RowEntries& first = raw.tasks[block * tasks_of_a_block];
+  for (std::size_t i = begin; i < end; ++i) show(raw.escaped[i]), show(raw.sees_backs[i]), show(raw.distance[i]);
+  show(first.shadow_rays);
+  for (std::size_t half = 0; half < 2; ++half) {
+    RawHalf& rows = raw.halves[half];
+    std::size_t entries = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      show(rows.hit_count[i]), show(rows.entry_count[i]);
+      if (rows.hit_count[i] > raw.room[i + 1] - raw.room[i]) return false;
+      entries += rows.entry_count[i];
+      for (std::size_t k = raw.room[i]; k < raw.room[i] + rows.hit_count[i]; ++k) {
+        show(rows.hits[k]);
+        if (rows.hits[k] >= patches) return false;
+      }
+    }
+    if (!show.has_room_for(2 * entries)) return false;
+    first.halves[half].resize(entries);
+    for (RayEntry& entry : first.halves[half]) {
+      show(entry.patch), show(entry.form_factor);
+      if (entry.patch >= patches) return false;
+    }
+  }
+  return true;
+}
+
+struct Writer {
+  std::vector<std::int32_t>& words;
+
+  template <class Number>
+  void operator()(const Number& number) const {
+    static_assert(sizeof(Number) == sizeof(std::int32_t));
+    words.push_back(std::bit_cast<std::int32_t>(number));
+  }
+  bool has_room_for(std::size_t) const { return true; }
+};
+
+// Gives 0 after the end.
+struct Reader {
+  const std::vector<std::int32_t>& words;
+  std::size_t& at;
+
+  template <class Number>
+  void operator()(Number& number) const {
+    number = at < words.size() ? std::bit_cast<Number>(words[at]) : Number{0};
+    ++at;
+  }
+  bool has_room_for(std::size_t numbers) const { return at + numbers <= words.size(); }
+};
+
+// Moves the entries of a block into its first task.
+void gather_entries(RawRows& raw, std::size_t block) {
+  const std::size_t first = block * tasks_of_a_block;
+  RowEntries& into = raw.tasks[first];
+  for (std::size_t t = first + 1; t < std::min(first + tasks_of_a_block, raw.tasks.size()); ++t) {
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<RayEntry>& more = raw.tasks[t].halves[half];
+      into.halves[half].insert(into.halves[half].end(), more.begin(), more.end());
+      more = {};
+    }
+    into.shadow_rays += std::exchange(raw.tasks[t].shadow_rays, 0);
+  }
+}
+
+// Per block 1 when it was kept, and is there now.
+std::vector<std::uint8_t> taken_blocks(RawRows& raw, const RowBlocks* blocks) {
+  std::vector<std::uint8_t> taken((raw.tasks.size() + tasks_of_a_block - 1) / tasks_of_a_block, 0);
+  if (blocks == nullptr) return taken;
+  for (std::size_t block = 0; block < taken.size(); ++block) {
+    const auto words = blocks->read(block);
+    if (!words) continue;
+    std::size_t at = 0;
+    taken[block] = show_block(raw, block, Reader{*words, at}) && at == words->size() ? 1 : 0;
+    if (taken[block] == 0) raw.tasks[block * tasks_of_a_block] = {};
+  }
+  return taken;
+}
+
+// All rays.
+RawRows traced(const RowTracer& tracer, const RowBlocks* blocks, const Observer& observer) {
+  RawRows raw = room_for(tracer.counts());
+  const std::vector<std::uint8_t> taken = taken_blocks(raw, blocks);
+  std::vector<std::atomic<std::size_t>> done(taken.size());
+  parallel_for(raw.tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
+    const std::size_t block = t / tasks_of_a_block;
+    if (taken[block] != 0) return;
+    trace_task(tracer, t, raw);
+    if (blocks == nullptr) return;
+    const std::size_t tasks = std::min(tasks_of_a_block, raw.tasks.size() - block * tasks_of_a_block);
+    if (++done[block] < tasks) return;
+    gather_entries(raw, block);
+    std::vector<std::int32_t> words;
+    show_block(raw, block, Writer{words});
+    blocks->keep(block, words);
   });
   return raw;
+}
+
+// What the rays of each patch have found to be open; of backs nothing.
+LostShare escaped_shares(const RawRows& raw, const std::vector<std::uint32_t>& counts) {
+  const auto size = static_cast<Eigen::Index>(counts.size());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
+  LostShare lost{zero, zero, zero, 0, zero, {}, zero};
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    lost.escaped[static_cast<Eigen::Index>(i)] = raw.escaped[i] / (2.0 * counts[i]);
+  return lost;
 }
 
 // Row by row without gaps; raw entries are let go.
@@ -126,7 +247,7 @@ struct MeasureBy {
 };
 
 // Those of patches that see backs are measured with groups of rays, the others are known.
-LostShare with_backs(LostShare lost, const std::vector<std::uint8_t>& sees_backs, const MeasureBy& by) {
+LostShare with_backs(LostShare lost, const std::vector<std::uint32_t>& sees_backs, const MeasureBy& by) {
   std::vector<PatchIndex> place(sees_backs.size());
   for (std::size_t i = 0; i < place.size(); ++i) place[i] = sees_backs[i] != 0 ? no_patch : static_cast<PatchIndex>(i);
   lost.rays_per_patch = by.options.lost_share_rays;
@@ -136,11 +257,11 @@ LostShare with_backs(LostShare lost, const std::vector<std::uint8_t>& sees_backs
 }  // namespace
 
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
-                      const RayOptions& options, const Observer& observer) {
+                      const RayOptions& options, const Observer& observer, const RowBlocks* blocks) {
   const RowTracer tracer(mesh, occluder, bright, options);
-  RawRows raw = traced(tracer, observer);
+  RawRows raw = traced(tracer, blocks, observer);
   TracedRows rows;
-  rows.lost = with_backs(std::move(raw.lost), raw.sees_backs, {mesh, occluder, options, observer});
+  rows.lost = with_backs(escaped_shares(raw, tracer.counts()), raw.sees_backs, {mesh, occluder, options, observer});
   rows.area = exposed_area(mesh, rows.lost, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.size())));
   rows.distance = std::move(raw.distance);
   rows.rays = 2 * raw.room.back();

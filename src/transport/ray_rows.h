@@ -14,6 +14,7 @@ namespace patchlight {
 
 class BrightPatches;
 class Occluder;
+struct RowBlocks;
 
 /// An entry F_ij of a row with a weight of its own.
 struct RayEntry {
@@ -56,8 +57,9 @@ struct TracedRows {
 /// shadow rays towards bright patches, both by the balance heuristic (Veach and Guibas 1995): docs/theory.md
 /// section 12. Each row sums up to what its patch sees, 1 - escaped - at_backs, to rounding; where a patch sees nothing
 /// but sides without patches, or all of it is covered, its rows may be empty. O(size) time and memory. The same bits
-/// for any number of threads. \throws Cancelled.
+/// for any number of threads, and when some of the blocks, null for none, were kept by an earlier call for the same.
+/// \throws Cancelled, and what the blocks throw.
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
-                      const RayOptions& options, const Observer& observer = {});
+                      const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 
 }  // namespace patchlight

@@ -122,7 +122,7 @@ RayEntry RowTracer::fill_lane(ShadowPacket& packet, std::size_t lane, const Towa
 }
 
 void RowTracer::add_toward_bright(const TowardBright& rays, std::vector<RayEntry>& into,
-                                  std::uint64_t& shadow_rays) const {
+                                  std::uint32_t& shadow_rays) const {
   for (std::size_t first = 0; first < toward_bright_; first += ShadowPacket::size) {
     ShadowPacket packet;
     std::array<RayEntry, ShadowPacket::size> entries;

@@ -28,7 +28,7 @@ struct PatchRays {
 /// The entries of some patches in both halves, before they are scaled, one patch after the other.
 struct RowEntries {
   std::array<std::vector<RayEntry>, 2> halves;
-  std::uint64_t shadow_rays = 0;
+  std::uint32_t shadow_rays = 0;
 };
 
 /// Traces the rays of one patch after the other, as trace_rows() has them. Safe to use from several threads.
@@ -50,7 +50,7 @@ class RowTracer {
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   float entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const;
   RayEntry fill_lane(ShadowPacket& packet, std::size_t lane, const TowardBright& rays, std::size_t k) const;
-  void add_toward_bright(const TowardBright& rays, std::vector<RayEntry>& into, std::uint64_t& shadow_rays) const;
+  void add_toward_bright(const TowardBright& rays, std::vector<RayEntry>& into, std::uint32_t& shadow_rays) const;
   void add_toward_bright(PatchIndex patch, RowEntries& entries) const;
 
   const PatchMesh& mesh_;

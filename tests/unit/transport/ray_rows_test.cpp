@@ -8,6 +8,7 @@
 #include "transport/bright_patches.h"
 #include "transport/ray_counts.h"
 #include "transport/ray_transport.h"
+#include "transport/row_blocks.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Geometry>
@@ -16,6 +17,11 @@
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace patchlight::ray_rows_test {
 namespace {
@@ -182,6 +188,75 @@ TEST(RayRows, HaveTheSameBitsForAnyNumberOfThreads) {
 
 // Which points are drawn follows from where patches lie in the scene: a model that is moved, turned and scaled has the
 // same rows, but for rays that pass an edge so closely that rounding decides; of some 50,000 hits a few may differ.
+// More than two blocks of rows, with rays towards a lamp.
+struct RowsInBlocks {
+  const Place place{furnished_room(0.5), 0.08, Sides::front};
+  std::map<std::size_t, std::vector<std::int32_t>> kept;
+  int read = 0;  // blocks that were there
+
+  TracedRows rows() {
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(place.mesh.size());
+    const PatchRange lamp = place.mesh.patches_on(static_cast<PolygonIndex>(12), Side::front);
+    expected.segment(lamp.begin, lamp.end - lamp.begin).setOnes();
+    std::mutex lock;
+    const RowBlocks blocks{[&](std::size_t block) -> std::optional<std::vector<std::int32_t>> {
+                             const auto found = kept.find(block);
+                             if (found == kept.end()) return std::nullopt;
+                             ++read;
+                             return found->second;
+                           },
+                           [&](std::size_t block, std::span<const std::int32_t> words) {
+                             const std::scoped_lock one(lock);
+                             kept[block].assign(words.begin(), words.end());
+                           }};
+    const BrightPatches bright(place.mesh, expected, 1, place.occluder);
+    return trace_rows(place.mesh, place.occluder, bright, {.rays = 32, .toward_bright = 32}, {}, &blocks);
+  }
+};
+
+void expect_same(const TracedRows& a, const TracedRows& b) {
+  for (std::size_t half = 0; half < 2; ++half) EXPECT_TRUE(same_rows(a.halves[half], b.halves[half]));
+  EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.area, b.area);
+  EXPECT_EQ(a.lost.escaped, b.lost.escaped);
+  EXPECT_EQ(a.shadow_rays, b.shadow_rays);
+}
+
+TEST(RayRows, GoOnFromTheBlocksThatWereKept) {
+  RowsInBlocks run;
+  ASSERT_GT(run.place.mesh.size(), 2 * RowBlocks::patches_of_a_block);
+  const TracedRows whole = run.rows();
+  EXPECT_EQ(run.read, 0);
+  const auto all = run.kept;
+  ASSERT_EQ(all.size(), 1 + (run.place.mesh.size() - 1) / RowBlocks::patches_of_a_block);
+  for (std::size_t missing = 0; missing < all.size(); ++missing) {
+    run.read = 0;
+    run.kept = all;
+    run.kept.erase(missing);
+    expect_same(run.rows(), whole);
+    EXPECT_EQ(run.read, static_cast<int>(all.size() - 1));
+    EXPECT_EQ(run.kept, all);
+  }
+}
+
+TEST(RayRows, AreTracedAgainWhereBlocksAreDamaged) {
+  // Cut, longer, with patches and counts that cannot be, and empty.
+  RowsInBlocks run;
+  const TracedRows whole = run.rows();
+  const auto all = run.kept;
+  const std::size_t size = all.at(0).size();
+  for (int damage = 0; damage < 5; ++damage) {
+    std::vector<std::int32_t>& block = run.kept.at(0);
+    if (damage == 0) block.resize(size / 2);
+    if (damage == 1) block.push_back(1);
+    if (damage == 2) std::fill(block.begin() + static_cast<std::ptrdiff_t>(size / 2), block.end(), -1);
+    if (damage == 3) std::fill(block.begin(), block.end(), std::numeric_limits<std::int32_t>::max());
+    if (damage == 4) block.clear();
+    expect_same(run.rows(), whole);
+    EXPECT_EQ(run.kept, all);
+  }
+}
+
 TEST(RayRows, StayTheSameWhenTheModelIsMovedAndScaled) {
   Eigen::Affine3d motion = Eigen::Affine3d::Identity();
   motion.translate(Vector(30, -20, 7)).rotate(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized())).scale(1e-3);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include "lighting/light_paths.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// Something through which the sky may be seen, and towards which rays are sent to find it: a clear face, or a hole.
+struct Opening {
+  PolygonIndex polygon = no_polygon;  ///< none: a hole
+  Vector normal;                      ///< unit
+  Point centre;
+  double area = 0;                              ///< m^2
+  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
+};
+
+/// Places that see more than this share of the sky find it without aiming at openings.
+inline constexpr double much_sky = 0.25;
+
+/// All clear faces, and of holes_between_faces() those through which the sky shines at places that see less of it
+/// than that, at most 64: those through which most straight lines get in. Found by rays; that a hole is missed costs
+/// accuracy alone.
+std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths);
+
+/// Uniformly distributed over an opening for (u, v) of the unit square.
+Point point_of(const Opening& opening, double u, double v);
+
+/// How far along a ray in a unit direction an opening lies; nothing when it is not met.
+std::optional<double> distance_to(const Opening& opening, const Point& origin, const Vector& direction);
+
+}  // namespace patchlight

@@ -1,0 +1,121 @@
+#include "lighting/sky_openings.h"
+
+#include "lighting/direct_irradiance.h"
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <vector>
+
+namespace patchlight::sky_openings_test {
+namespace {
+
+using namespace test;
+
+constexpr double pi = std::numbers::pi;
+
+// A square wall at this y, in four faces around a square hole in its middle; it reaches `beside` to either side.
+Scene with_pierced_wall(Scene scene, double y, double width, double beside) {
+  const auto quad = [&](double x0, double x1, double z0, double z1) {
+    return Quad{Point(x0, y, z0), Point(x0, y, z1), Point(x1, y, z1), Point(x1, y, z0)};
+  };
+  const double half = width / 2;
+  scene = with_quad(std::move(scene), quad(-beside, beside, -beside, -half));
+  scene = with_quad(std::move(scene), quad(-beside, beside, half, beside));
+  scene = with_quad(std::move(scene), quad(-beside, -half, -half, half));
+  return with_quad(std::move(scene), quad(half, beside, -half, half));
+}
+
+// A room of 4 x 4 x 4 m, the wall of which at y = 0 has a hole in its middle; with a wall of 0.2 m another face with a
+// hole lies before it, and faces line the way between both.
+Scene pierced_room(double width, bool thick) {
+  Scene scene = empty_scene({grey(0.5)});
+  const std::vector<Quad> faces = box_faces(Point(-2, 0, -2), Point(2, 4, 2), true);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (k != 2) scene = with_quad(std::move(scene), faces[k]);
+  }
+  scene = with_pierced_wall(std::move(scene), 0, width, 2);
+  Sky sky;
+  sky.zenith_radiance = Spectrum::Constant(1, 3);
+  sky.ground_radiance = Spectrum::Constant(1, 3);
+  scene.sky = sky;
+  if (!thick) return scene;
+  scene = with_pierced_wall(std::move(scene), -0.2, width, 2.2);
+  const std::vector<Quad> lining = box_faces(Point(-width / 2, -0.2, -width / 2), Point(width / 2, 0, width / 2), true);
+  for (std::size_t k = 0; k < lining.size(); ++k) {
+    if (k != 2 && k != 4) scene = with_quad(std::move(scene), lining[k]);
+  }
+  return scene;
+}
+
+double area_of(const std::vector<Opening>& openings) {
+  double area = 0;
+  for (const Opening& opening : openings) area += opening.area;
+  return area;
+}
+
+// From a point 2 m before the middle of a square to the square, whose normal is the point's: the configuration factor
+// 4 / (2 pi) sum over its quarter of a / sqrt(a^2 + c^2) atan(a / sqrt(a^2 + c^2)), twice.
+double factor_of_square(double width, double distance) {
+  const double root = std::hypot(width / 2, distance);
+  return 4 / pi * (width / 2) / root * std::atan(width / 2 / root);
+}
+
+TEST(SkyOpenings, AreTheHolesThroughWhichTheSkyShines) {
+  // Also in millimetres and turned.
+  const Eigen::Affine3d turned =
+      Eigen::Translation3d(3, -7, 2) * Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()) * Eigen::Scaling(0.001);
+  for (const Eigen::Affine3d& motion : {Eigen::Affine3d::Identity(), turned}) {
+    const double scale = std::cbrt(motion.linear().determinant());
+    for (const double width : {0.02, 0.1, 1.0}) {
+      const Scene scene = moved(pierced_room(width, false), motion);
+      const Lighting lighting = lighting_of(scene, Tracing(scene));
+      EXPECT_NEAR(area_of(lighting.openings), std::pow(scale * width, 2), 1e-6 * std::pow(scale, 2));
+    }
+  }
+}
+
+TEST(SkyOpenings, AreNotWhatLiesBesideAFloorInTheOpen) {
+  // Places that see much of the sky need no aiming; in the corner of the L and between the legs nothing shines in.
+  Scene scene = pierced_room(1, false);
+  scene.polygons.clear();
+  const auto floor = [](double x0, double x1, double y0, double y1) {
+    return Quad{Point(x0, y0, 0), Point(x1, y0, 0), Point(x1, y1, 0), Point(x0, y1, 0)};
+  };
+  scene = with_quad(with_quad(std::move(scene), floor(0, 4, 0, 1)), floor(0, 1, 1, 4));
+  scene = with_quad(std::move(scene), {Point(-9, -9, -5), Point(9, -9, -5), Point(9, 9, -5), Point(-9, 9, -5)});
+  EXPECT_TRUE(lighting_of(scene, Tracing(scene)).openings.empty());
+}
+
+TEST(SkyOpenings, OfTwoCentimetresLightAPointAsTheirFormFactor) {
+  // E = pi L F. 2 m behind a hole of 2 cm one of 31,000 rays over the hemisphere gets out. At the point half of 1,024
+  // rays go to the hole, over which the integrand varies by a thousandth.
+  const Eigen::Affine3d turned =
+      Eigen::Translation3d(3, -7, 2) * Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
+  for (const Eigen::Affine3d& motion : {Eigen::Affine3d::Identity(), turned}) {
+    for (const double width : {0.02, 0.1}) {
+      const Scene scene = moved(pierced_room(width, false), motion);
+      const SurfacePoint point{motion * Point(0, 2, 0), motion.linear() * -Vector::UnitY()};
+      const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), {&point, 1});
+      const double expected = 3 * pi * factor_of_square(width, 2);
+      EXPECT_NEAR(direct.irradiance(0, 0), expected, 0.002 * expected);
+      EXPECT_LT(direct.standard_error(0, 0), 0.002 * expected);
+    }
+  }
+}
+
+TEST(SkyOpenings, InAThickWallLightAPointAsTheMouthThatItSees) {
+  // From 2 m before its middle the outer mouth, 2.2 m away, is all that is seen of the sky.
+  const Scene scene = pierced_room(0.1, true);
+  const SurfacePoint point{Point(0, 2, 0), -Vector::UnitY()};
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), {&point, 1});
+  const double expected = 3 * pi * factor_of_square(0.1, 2.2);
+  // A binomial of 512 rays, 17 % of which meet the lining: a share of 0.02, stratified or not.
+  EXPECT_NEAR(direct.irradiance(0, 0), expected, 3 * 0.02 * expected);
+  EXPECT_NEAR(direct.irradiance(0, 0), expected, 4 * direct.standard_error(0, 0));
+  EXPECT_LT(direct.standard_error(0, 0), 0.02 * expected);
+}
+
+}  // namespace
+}  // namespace patchlight::sky_openings_test
