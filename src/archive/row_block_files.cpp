@@ -6,48 +6,69 @@
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "files/sha256.h"
+#include "output/append_bytes.h"
 #include "scene/transmittance.h"
 
 #include <array>
-#include <bit>
 #include <system_error>
 
 namespace patchlight {
 namespace {
 
-template <class Number>
-void append(std::string& bytes, Number number) {
-  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-  bytes.append(raw.data(), raw.size());
-}
+// To be raised when rows are found in another way, so that blocks of before are not taken.
+constexpr std::uint32_t way_of_finding = 1;
 
 std::string bytes_of_faces(const Scene& scene) {
   std::string bytes;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    append(bytes, mean_transmittance(scene, p));
+    append_bytes(bytes, mean_transmittance(scene, p));
+    append_bytes(bytes, scene.polygons[p].corners.size());
     for (const Point& corner : corner_points(scene, p)) {
-      for (const double coordinate : corner) append(bytes, coordinate);
+      for (const double coordinate : corner) append_bytes(bytes, coordinate);
     }
+  }
+  return bytes;
+}
+
+std::string bytes_of_effects(const EffectOptions& effects) {
+  std::string bytes;
+  for (const auto* list : {&effects.force, &effects.skip}) {
+    append_bytes(bytes, list->size());
+    for (const Effect effect : *list) append_bytes(bytes, static_cast<std::int32_t>(effect));
   }
   return bytes;
 }
 
 std::string bytes_of(const RayOptions& options, std::span<const float> bright_densities) {
   std::string bytes;
-  append(bytes, options.rays), append(bytes, options.toward_bright), append(bytes, options.seed);
-  for (const float density : bright_densities) append(bytes, density);
+  append_bytes(bytes, way_of_finding);
+  append_bytes(bytes, options.rays);
+  append_bytes(bytes, options.toward_bright);
+  append_bytes(bytes, options.seed);
+  for (const float density : bright_densities) append_bytes(bytes, density);
   return bytes;
 }
 
 std::string name_begin(const std::string& key) { return "rows_" + key + "_"; }
 
+// 32 bits of a SHA-256 of a block.
+std::int32_t digest(const std::string& key, std::size_t block, std::span<const std::int32_t> words) {
+  constexpr std::size_t digits = 8;
+  constexpr int hexadecimal = 16;
+  std::string bytes;
+  append_bytes(bytes, block);
+  bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
+  const std::array parts{key, std::move(bytes)};
+  return static_cast<std::int32_t>(std::stoul(sha256(parts).substr(0, digits), nullptr, hexadecimal));
+}
+
 }  // namespace
 
-std::string row_key(const Scene& scene, const PatchMesh& mesh, const RayOptions& options,
+std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions& options,
                     std::span<const float> bright_densities) {
   constexpr std::size_t digits = 16;
-  const std::array parts{std::string(version()), geometry_hash(mesh), bytes_of_faces(scene),
-                         bytes_of(options, bright_densities)};
+  const std::array parts{std::string(version()), geometry_hash(mesh), bytes_of_faces(of.scene),
+                         bytes_of_effects(of.effects), bytes_of(options, bright_densities)};
   return sha256(parts).substr(0, digits);
 }
 
@@ -55,29 +76,41 @@ RowBlocks row_blocks_in(const std::filesystem::path& folder, const std::string& 
   const auto file = [folder, key](std::size_t block) {
     return folder / (name_begin(key) + std::to_string(block) + ".npy");
   };
-  return {[file](std::size_t block) -> std::optional<std::vector<std::int32_t>> {
-            if (!std::filesystem::exists(file(block))) return std::nullopt;
-            try {
-              const auto words = read_npy_numbers<std::int32_t>(file(block), npy_count(file(block)));
-              return std::vector<std::int32_t>(words.begin(), words.end());
-            } catch (const InputError&) {
-              return std::nullopt;
-            }
-          },
-          [file](std::size_t block, std::span<const std::int32_t> words) { write_npy_numbers(file(block), words); }};
+  const auto read = [file, key](std::size_t block) -> std::optional<std::vector<std::int32_t>> {
+    try {
+      if (!std::filesystem::exists(file(block))) return std::nullopt;
+      const auto stored = read_npy_numbers<std::int32_t>(file(block), npy_count(file(block)));
+      if (stored.empty()) return std::nullopt;
+      std::vector<std::int32_t> words(stored.begin(), stored.end() - 1);
+      if (stored.back() != digest(key, block, words)) return std::nullopt;
+      return words;
+    } catch (const InputError&) {
+      return std::nullopt;
+    } catch (const std::filesystem::filesystem_error&) {
+      return std::nullopt;
+    }
+  };
+  const auto keep = [folder, file, key](std::size_t block, std::span<const std::int32_t> words) {
+    // A run that shares the folder may have removed it, when nothing was in it.
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::vector<std::int32_t> stored(words.begin(), words.end());
+    stored.push_back(digest(key, block, words));
+    write_npy_numbers(file(block), std::span<const std::int32_t>(stored));
+  };
+  return {read, keep};
 }
 
-void remove_row_blocks(const std::filesystem::path& folder, const std::vector<std::string>& keys) {
-  std::error_code ignored;
+void remove_row_blocks(const std::filesystem::path& folder, std::span<const std::string> keys) {
+  std::error_code error;
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
     for (const std::string& key : keys) {
-      if (name.starts_with(name_begin(key))) files.push_back(entry.path());
+      if (name.starts_with(name_begin(key))) files.push_back(entry->path());
     }
   }
-  for (const std::filesystem::path& file : files) std::filesystem::remove(file, ignored);
-  std::filesystem::remove(folder, ignored);
+  for (const std::filesystem::path& file : files) std::filesystem::remove(file, error);
 }
 
 }  // namespace patchlight

@@ -2,30 +2,46 @@
 
 #include "patchlight/base/error.h"
 
+#include "output/whole_file.h"
+
 #include <system_error>
 #include <utility>
 
 namespace patchlight::cli {
 
-RowBlocksOf row_blocks_kept_in(const std::filesystem::path& folder, const Scene& scene, KeptBlocks& kept) {
+Checkpoint::Checkpoint(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw OutputError(folder.string(), "cannot make this folder for --checkpoint: " + error.message());
-  return [&, folder](const PatchMesh& mesh, const RayOptions& options, std::span<const float> bright_densities) {
-    kept.keys.push_back(row_key(scene, mesh, options, bright_densities));
-    RowBlocks blocks = row_blocks_in(folder, kept.keys.back());
-    blocks.read = [&, read = std::move(blocks.read)](std::size_t block) {
+  made_ = std::filesystem::create_directories(folder_, error);
+  if (error) throw OutputError(folder_.string(), "cannot make this folder for --checkpoint: " + error.message());
+  check_writable(folder_ / "rows.npy");
+}
+
+RowBlocksOf Checkpoint::blocks(const RowScene& of) {
+  if (folder_.empty()) return {};
+  return [this, of](const PatchMesh& mesh, const RayOptions& options, std::span<const float> bright_densities) {
+    keys_.push_back(row_key(of, mesh, options, bright_densities));
+    RowBlocks blocks = row_blocks_in(folder_, keys_.back());
+    blocks.read = [this, read = std::move(blocks.read)](std::size_t block) {
       auto words = read(block);
-      if (words) ++kept.taken;
+      if (words) ++taken_;
       return words;
     };
     return blocks;
   };
 }
 
-std::string taken_note(const std::filesystem::path& folder, const KeptBlocks& kept) {
-  return "--checkpoint: " + std::to_string(kept.taken) + (kept.taken == 1 ? " block of rows" : " blocks of rows") +
-         " that an earlier run had kept in " + folder.string();
+void Checkpoint::remove() const {
+  if (folder_.empty()) return;
+  remove_row_blocks(folder_, keys_);
+  std::error_code ignored;
+  if ((made_ || taken_ > 0) && !std::filesystem::is_symlink(folder_, ignored))
+    std::filesystem::remove(folder_, ignored);
+}
+
+std::string Checkpoint::note() const {
+  if (taken_ == 0) return "";
+  return "--checkpoint: " + std::to_string(taken_) + (taken_ == 1 ? " block of rows" : " blocks of rows") +
+         " that an earlier run had kept in " + folder_.string();
 }
 
 }  // namespace patchlight::cli

@@ -11,17 +11,27 @@
 
 namespace patchlight::cli {
 
-/// What was kept of a run with --checkpoint.
-struct KeptBlocks {
-  std::vector<std::string> keys;  ///< of all rows that were traced, row_key()
-  std::size_t taken = 0;          ///< blocks that an earlier run had kept
+/// The folder of --checkpoint, and what became of its blocks of rows in this run.
+class Checkpoint {
+ public:
+  Checkpoint() = default;
+  /// Makes the folder if it is not there. \throws OutputError when it cannot be written into.
+  explicit Checkpoint(std::filesystem::path folder);
+
+  /// Its blocks; empty without a folder. This and the scene must outlive them.
+  RowBlocksOf blocks(const RowScene& of);
+
+  /// Removes the blocks of this run, and the folder when this has made it and nothing else is in it.
+  void remove() const;
+
+  /// Says how many blocks an earlier run had kept; empty: none.
+  std::string note() const;
+
+ private:
+  std::filesystem::path folder_;
+  bool made_ = false;
+  std::vector<std::string> keys_;
+  std::size_t taken_ = 0;
 };
-
-/// The blocks of rows in a folder, which is made if it is not there. Adds to `kept` what becomes of them; both
-/// references must outlive it. \throws OutputError.
-RowBlocksOf row_blocks_kept_in(const std::filesystem::path& folder, const Scene& scene, KeptBlocks& kept);
-
-/// Says how many blocks came from the folder.
-std::string taken_note(const std::filesystem::path& folder, const KeptBlocks& kept);
 
 }  // namespace patchlight::cli

@@ -55,7 +55,6 @@ struct Results {
   std::vector<IterateIrradiance> iterates;
   Report report;
   Provenance provenance;
-  KeptBlocks kept;
 };
 
 // The iterates of the last solutions: that which is written need not be the last, when the run was stopped or a second
@@ -105,6 +104,7 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   SolveInput input = read_input(arguments);
   input.scene = with_points(std::move(input.scene), arguments);
   std::vector<OutputFile> outputs = outputs_of(arguments);
+  if (!arguments.checkpoint.empty()) outputs.push_back({"--checkpoint", arguments.checkpoint});
   for (const std::filesystem::path& file : points_outputs(arguments, input.scene)) {
     check_writable(file);
     if (arguments.points_outputs.empty()) outputs.push_back({"--points-output", file});
@@ -150,7 +150,7 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   return results;
 }
 
-Results compute(const SolveArguments& arguments, const Observer& observer) {
+Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
 
@@ -168,8 +168,7 @@ Results compute(const SolveArguments& arguments, const Observer& observer) {
   };
   Steps with{.exchange = input.exchange, .ray_exchange = input.ray_exchange};
   if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
-  if (!arguments.checkpoint.empty())
-    with.row_blocks = row_blocks_kept_in(arguments.checkpoint, results.scene, results.kept);
+  with.row_blocks = checkpoint.blocks({results.scene, input.request.effects});
   simulation = simulate(results.scene, input.request, observed, with);
   // Who stops a run that comes to its end all the same wants what it has.
   if (!may_write_what_is_there()) throw Cancelled();
@@ -239,19 +238,20 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
 
 ExitCode solve(const SolveArguments& arguments) {
   check_outputs(arguments);
+  Checkpoint checkpoint = arguments.checkpoint.empty() ? Checkpoint() : Checkpoint(arguments.checkpoint);
 
   const ThreadLimit limit(arguments.request.resources.threads);
   const bool quiet = arguments.verbosity == Verbosity::quiet;
   if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
   const Results results = [&] {
     ProgressLine line(progress_shown(quiet));
-    return compute(arguments, observer_on(line));
+    return compute(arguments, checkpoint, observer_on(line));
   }();
   const std::vector<std::filesystem::path> written = write(arguments, results);
-  if (!results.report.solution.unfinished) remove_row_blocks(arguments.checkpoint, results.kept.keys);
+  if (!results.report.solution.unfinished) checkpoint.remove();
 
   if (!quiet) {
-    if (results.kept.taken > 0) print_message("note", taken_note(arguments.checkpoint, results.kept));
+    if (const std::string note = checkpoint.note(); !note.empty()) print_message("note", note);
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,

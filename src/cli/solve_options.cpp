@@ -28,8 +28,7 @@ namespace {
 void add_checkpoint_option(CLI::App& command, SolveOptions& options) {
   add(command, "--checkpoint", "FOLDER",
       "with --storage rays, which it implies: rows are kept there while\nthe run lasts, so that one that is killed "
-      "goes "
-      "on where it was\nwhen it is started again; default: nothing is kept",
+      "goes on where it was\nwhen it is started again; default: nothing is kept",
       [&options](const std::string& text) {
         if (text.empty()) throw refusal("--checkpoint", text, "the name of a folder");
         options.checkpoint = text;

@@ -16,7 +16,7 @@ struct LightingOptions {
   int lamp_samples = 64;   ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
                            ///< take one
   int sun_samples = 64;    ///< 64 times that where shadows are too many to be found by geometry; at a point one
-  int sky_samples = 1024;  ///< directions; where there are clear openings half of them towards these
+  int sky_samples = 1024;  ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
 };
 

@@ -18,6 +18,9 @@ namespace {
 constexpr std::uint32_t rays_ahead = 32;
 constexpr std::uint32_t seed_ahead = 2;
 
+// How far before the plane of a receiver an opening may lie by rounding, as a share of its distance.
+constexpr double plane_rounding = 1e-9;
+
 Vector toward(const Opening& opening, const Point& from, double u, double v) {
   return (point_of(opening, u, v) - from).normalized();
 }
@@ -47,43 +50,52 @@ bool pays_to_aim(const Lighting& lighting, const Receiver& receiver, const std::
          }) <= much_sky;
 }
 
-// Density of the rays towards openings, 1/sr, for one from here that crosses these clear faces and meets nothing
-// opaque.
+// How far along a ray from here that crosses these clear faces, and meets nothing opaque, an opening lies; nothing when
+// it is not met.
+std::optional<double> distance_to(const Opening& opening, const Point& from, const Vector& direction,
+                                  const std::vector<Crossing>& crossings) {
+  if (opening.polygon == no_polygon) return distance_to(opening, from, direction);
+  const auto crossing =
+      std::find_if(crossings.begin(), crossings.end(), [&](const Crossing& c) { return c.polygon == opening.polygon; });
+  if (crossing == crossings.end()) return std::nullopt;
+  return crossing->distance;
+}
+
+// Density of the rays towards openings, 1/sr, for such a ray.
 double aimed_density(const Lighting& lighting, const std::vector<double>& probabilities, const Point& from,
                      const Vector& direction, const std::vector<Crossing>& crossings) {
   double density = 0;
   for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    const Opening& opening = lighting.openings[k];
     if (!(probabilities[k] > 0)) continue;
-    std::optional<double> distance;
-    if (opening.polygon == no_polygon) {
-      distance = distance_to(opening, from, direction);
-    } else {
-      const auto crossing = std::find_if(crossings.begin(), crossings.end(),
-                                         [&](const Crossing& c) { return c.polygon == opening.polygon; });
-      if (crossing != crossings.end()) distance = crossing->distance;
-    }
+    const Opening& opening = lighting.openings[k];
+    const std::optional<double> distance = distance_to(opening, from, direction, crossings);
     const double facing = std::abs(opening.normal.dot(direction));
     if (distance && facing > 0) density += probabilities[k] * *distance * *distance / (facing * opening.area);
   }
   return density;
 }
 
+// Rays over the hemisphere do not count where those towards openings are so many times as dense: they hardly ever get
+// there, and their absence would not be noticed. Veach and Guibas 1995, the cutoff heuristic.
+constexpr double cutoff = 8;
+
 struct SkyRays {
   std::vector<Vector> directions;
   std::vector<double> cosines;  // to the receiver's normal
   std::vector<Segment> segments;
-  std::size_t places = 0;  // from each of which one ray goes over the hemisphere
-  std::size_t aimed = 0;   // from which one goes to an opening
+  std::vector<const Opening*> aimed_at;  // null: over the hemisphere
+  std::size_t places = 0;                // from each of which one ray goes over the hemisphere
+  std::size_t aimed = 0;                 // from which one goes to an opening
 };
 
 // Rays to panes are half of all. Those to holes, which may be hidden from the receiver, are a third, and more than
 // there are without.
 SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
   SkyRays rays;
-  const auto add = [&](const SurfacePoint& at, const Vector& direction) {
+  const auto add = [&](const SurfacePoint& at, const Vector& direction, const Opening* aimed_at) {
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) return;
+    rays.aimed_at.push_back(aimed_at);
     rays.directions.push_back(direction);
     rays.cosines.push_back(cosine);
     rays.segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
@@ -96,11 +108,12 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
     ++rays.places;
-    add(at, cosine_direction(at.normal, s, t));
+    add(at, cosine_direction(at.normal, s, t), nullptr);
     if (aim.probabilities.empty() || k >= half) continue;
     ++rays.aimed;
-    const Choice opening = choose(aim.probabilities, s);
-    add(at, toward(lighting.openings[opening.index], at.point, opening.rest, t));
+    const Choice chosen = choose(aim.probabilities, s);
+    const Opening& opening = lighting.openings[chosen.index];
+    add(at, toward(opening, at.point, chosen.rest, t), &opening);
   }
   return rays;
 }
@@ -118,7 +131,8 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver) {
     }
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
-    const double weight = rise > 0 && !is_own ? opening.area / (square + opening.area) : 0;
+    const bool is_before = rise > plane_rounding * std::sqrt(square);
+    const double weight = is_before && !is_own ? opening.area / (square + opening.area) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
     sum += weight;
@@ -136,11 +150,19 @@ Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
   const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
   const std::vector<Passage> passages = lighting.paths.passages(rays.segments);
   for (std::size_t k = 0; k < passages.size(); ++k) {
-    if (!(passages[k].transmittance > 0).any()) continue;
-    const double density =
-        rays.cosines[k] / std::numbers::pi + aimed * aimed_density(lighting, aim.probabilities, rays.segments[k].from,
-                                                                   rays.directions[k], passages[k].crossings);
-    sum += radiance(*lighting.sky, rays.directions[k]) * passages[k].transmittance * (rays.cosines[k] / density);
+    const auto& [transmittance, crossings] = passages[k];
+    if (!(transmittance > 0).any()) continue;
+    const Point& from = rays.segments[k].from;
+    const Vector& direction = rays.directions[k];
+    // A ray that slips past the edge of what it was aimed at belongs to neither kind.
+    const bool is_aimed = rays.aimed_at[k] != nullptr;
+    if (is_aimed && !distance_to(*rays.aimed_at[k], from, direction, crossings)) continue;
+    const double over_hemisphere = rays.cosines[k] / std::numbers::pi;
+    const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
+    const bool is_cut_off = at_openings > cutoff * over_hemisphere;
+    if (is_cut_off && !is_aimed) continue;
+    const double density = is_cut_off ? at_openings : over_hemisphere + at_openings;
+    sum += radiance(*lighting.sky, direction) * transmittance * (rays.cosines[k] / density);
   }
   return sum / static_cast<double>(rays.places);
 }

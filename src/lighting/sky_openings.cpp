@@ -1,5 +1,6 @@
 #include "lighting/sky_openings.h"
 
+#include "base/parallel.h"
 #include "base/sampling.h"
 #include "scene/holes.h"
 #include "scene/triangulate.h"
@@ -8,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
+#include <map>
 #include <utility>
 
 namespace patchlight {
@@ -18,13 +19,45 @@ namespace {
 constexpr std::uint32_t lines_through_a_hole = 64;
 constexpr std::uint32_t rays_from_a_place = 16;
 
-constexpr std::size_t most_holes = 64;
+constexpr std::size_t most_holes = 256;
 constexpr std::size_t most_candidates = 4096;  // the largest are looked at
 constexpr std::uint32_t seed_of_lines = 1;
 
-Opening opening_of(PolygonIndex polygon, const std::vector<Point>& corners) {
-  const Vector area = area_vector(corners);
-  return {polygon, area.normalized(), area_centroid(corners), area.norm(), triangles_of(corners)};
+double area_of(const std::array<Point, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  return (b - a).cross(c - a).norm() / 2;
+}
+
+// Of triangles in one plane.
+Opening opening_of(PolygonIndex polygon, const Vector& normal, std::vector<std::array<Point, 3>> triangles) {
+  Opening opening{polygon, normal, Point::Zero(), 0, std::move(triangles)};
+  const Point& origin = opening.triangles[0][0];
+  Vector moment = Vector::Zero();
+  for (const auto& triangle : opening.triangles) {
+    const double area = area_of(triangle);
+    opening.area += area;
+    opening.upto.push_back(opening.area);
+    for (const Point& corner : triangle) moment += area / 3 * (corner - origin);
+  }
+  opening.centre = origin + moment / opening.area;
+  return opening;
+}
+
+Opening pane_of(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  return opening_of(polygon, area_vector(corners).normalized(), triangles_of(corners));
+}
+
+// A hole, exactly in one plane.
+Opening hole_of(const Hole& hole) {
+  const Vector normal = area_vector(hole.pieces[0]).normalized();
+  const Point on_plane = hole.pieces[0][0];
+  std::vector<std::array<Point, 3>> triangles;
+  for (std::vector<Point> piece : hole.pieces) {
+    for (Point& corner : piece) corner -= normal.dot(corner - on_plane) * normal;
+    for (const auto& triangle : triangles_of(piece)) triangles.push_back(triangle);
+  }
+  return opening_of(no_polygon, normal, std::move(triangles));
 }
 
 // The end of a straight line through a hole that has the sky at its other end.
@@ -78,42 +111,68 @@ double free_share(const Scene& scene, const std::vector<Hit>& places, const Ligh
   return static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / static_cast<double>(blocked.size());
 }
 
-std::vector<Opening> largest_holes(const Scene& scene) {
-  std::vector<Opening> holes;
-  for (const std::vector<Point>& outline : holes_between_faces(scene)) holes.push_back(opening_of(no_polygon, outline));
-  std::stable_sort(holes.begin(), holes.end(), [](const Opening& a, const Opening& b) { return a.area > b.area; });
+struct Candidate {
+  PolygonIndex plane = 0;
+  Opening opening;
+  double light = 0;  // light_through()
+};
+
+std::vector<Candidate> largest_holes(const Scene& scene) {
+  std::vector<Candidate> holes;
+  for (const Hole& hole : holes_between_faces(scene)) holes.push_back({hole.plane, hole_of(hole)});
+  std::stable_sort(holes.begin(), holes.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.opening.area > b.opening.area; });
   if (holes.size() > most_candidates) holes.resize(most_candidates);
   return holes;
 }
 
-std::vector<Opening> shining_holes(const Scene& scene, const LightPaths& paths) {
-  struct Candidate {
-    Opening hole;
-    double lines;  // that get in, by its area
-  };
-  std::vector<Candidate> found;
-  for (Opening& hole : largest_holes(scene)) {
-    const std::vector<Hit> places = places_behind(lit_ends(hole, paths), paths);
-    if (places.empty() || free_share(scene, places, paths) > much_sky) continue;
-    const double lines = hole.area * static_cast<double>(places.size());
-    found.push_back({std::move(hole), lines});
+// By how many lines light gets in, times the area; 0 where what it meets sees much of the sky.
+double light_through(const Scene& scene, const Opening& hole, const LightPaths& paths) {
+  const std::vector<Hit> places = places_behind(lit_ends(hole, paths), paths);
+  if (places.empty() || free_share(scene, places, paths) > much_sky) return 0;
+  return hole.area * static_cast<double>(places.size());
+}
+
+// All holes of one plane as one.
+std::vector<Candidate> joined_by_plane(const std::vector<Candidate>& holes) {
+  std::map<PolygonIndex, Candidate> planes;
+  for (const Candidate& hole : holes) {
+    Candidate& all = planes.try_emplace(hole.plane, Candidate{hole.plane, hole.opening, 0}).first->second;
+    if (all.light > 0) {
+      std::vector<std::array<Point, 3>> triangles = all.opening.triangles;
+      triangles.insert(triangles.end(), hole.opening.triangles.begin(), hole.opening.triangles.end());
+      all.opening = opening_of(no_polygon, all.opening.normal, std::move(triangles));
+    }
+    all.light += hole.light;
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.lines > b.lines; });
-  std::vector<Opening> holes;
-  for (Candidate& candidate : std::span(found).first(std::min(found.size(), most_holes)))
-    holes.push_back(std::move(candidate.hole));
-  return holes;
+  std::vector<Candidate> joined;
+  for (auto& [plane, all] : planes) joined.push_back(std::move(all));
+  return joined;
+}
+
+std::vector<Opening> shining_holes(const Scene& scene, const LightPaths& paths) {
+  std::vector<Candidate> holes = largest_holes(scene);
+  parallel_for(holes.size(), [&](std::size_t k) { holes[k].light = light_through(scene, holes[k].opening, paths); });
+  std::erase_if(holes, [](const Candidate& hole) { return !(hole.light > 0); });
+  if (holes.size() > most_holes) holes = joined_by_plane(holes);
+  std::stable_sort(holes.begin(), holes.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.light > b.light; });
+  if (holes.size() > most_holes) holes.resize(most_holes);
+  std::vector<Opening> openings;
+  for (Candidate& hole : holes) openings.push_back(std::move(hole.opening));
+  return openings;
 }
 
 }  // namespace
 
 Point point_of(const Opening& opening, double u, double v) {
-  std::vector<double> shares;
-  for (const auto& [a, b, c] : opening.triangles) shares.push_back((b - a).cross(c - a).norm() / 2 / opening.area);
-  const Choice triangle = choose(shares, u);
-  const auto& [a, b, c] = opening.triangles[triangle.index];
-  const Eigen::Vector2d weights = square_to_triangle(triangle.rest, v);
+  const double wanted = u * opening.area;
+  const auto found = std::upper_bound(opening.upto.begin(), opening.upto.end(), wanted);
+  const std::size_t k = std::min<std::size_t>(found - opening.upto.begin(), opening.upto.size() - 1);
+  const double before = k == 0 ? 0 : opening.upto[k - 1];
+  const auto& [a, b, c] = opening.triangles[k];
+  const Eigen::Vector2d weights =
+      square_to_triangle(std::clamp((wanted - before) / (opening.upto[k] - before), 0.0, 1.0), v);
   return a + weights[0] * (b - a) + weights[1] * (c - a);
 }
 
@@ -135,7 +194,7 @@ std::optional<double> distance_to(const Opening& opening, const Point& origin, c
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
   std::vector<Opening> openings = shining_holes(scene, paths);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_opening(scene, p)) openings.push_back(opening_of(p, corner_points(scene, p)));
+    if (is_opening(scene, p)) openings.push_back(pane_of(scene, p));
   }
   return openings;
 }

@@ -16,14 +16,16 @@ struct Opening {
   Vector normal;                      ///< unit
   Point centre;
   double area = 0;                              ///< m^2
-  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of
+  std::vector<std::array<Point, 3>> triangles;  ///< that it consists of, in one plane
+  std::vector<double> upto = {};                ///< per triangle: the area of it and all before, m^2
 };
 
 /// Places that see more than this share of the sky find it without aiming at openings.
 inline constexpr double much_sky = 0.25;
 
 /// All clear faces, and of holes_between_faces() those through which the sky shines at places that see less of it
-/// than that, at most 64: those through which most straight lines get in. Found by rays; that a hole is missed costs
+/// than that, at most 256: those through which most straight lines get in.
+/// Where there are more, all of one plane are one opening first. Found by rays; that a hole is missed costs
 /// accuracy alone.
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths);
 

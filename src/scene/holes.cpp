@@ -16,12 +16,14 @@
 namespace patchlight {
 namespace {
 
-// How far the unit normals of faces in one plane may differ; corners decide whether they share it.
+// How far the unit normals of faces in one plane may differ; their means and farthest corners decide whether they share
+// it.
 constexpr double tilt_in_plane = 0.01;
 
 // Pieces beside which a triangle is looked for in all, some 10 ns each, and in one plane.
 constexpr std::size_t most_piece_tests = 10'000'000;
 constexpr std::size_t most_pieces = 1000;
+constexpr std::size_t vertices_of_a_test = 8;  // looked at in the same time
 
 struct Piece {
   std::vector<Point> outline;
@@ -90,13 +92,61 @@ FaceQuery plane_of(const FlatFace& face, const Box& everywhere, double near) {
           near};
 }
 
-// What the hull of these faces holds beside them; nothing when that takes too many pieces. Adds to the tests.
-std::vector<Piece> left_free(const Scene& scene, const std::vector<PolygonIndex>& faces, const Vector& normal,
-                             double width, std::size_t& tests) {
+// Pieces that touch each other, one after the other.
+std::vector<std::vector<Piece>> together(std::vector<Piece> pieces, double near) {
+  const Vector margin = Vector::Constant(near);
+  std::vector<std::vector<Piece>> holes;
+  while (!pieces.empty()) {
+    std::vector<Piece> hole{std::move(pieces.back())};
+    pieces.pop_back();
+    for (std::size_t k = 0; k < hole.size(); ++k) {
+      const Box around(hole[k].box.min() - margin, hole[k].box.max() + margin);
+      const auto touching = std::partition(pieces.begin(), pieces.end(),
+                                           [&](const Piece& piece) { return !piece.box.intersects(around); });
+      std::move(touching, pieces.end(), std::back_inserter(hole));
+      pieces.erase(touching, pieces.end());
+    }
+    holes.push_back(std::move(hole));
+  }
+  return holes;
+}
+
+// How far around the faces of a plane corners of other faces that lie in it count, as a share of their extent: a wall
+// may end a little below the ceiling, or lack a corner.
+constexpr double margin_around_faces = 0.1;
+
+struct HoleSearch {
+  const Scene& scene;
+  double width;           // metres; narrower pieces are left out
+  std::size_t tests = 0;  // done so far, of pieces and of corners
+
+  std::vector<Point> corners_in_plane(const std::vector<PolygonIndex>& faces, const Vector& normal);
+  std::vector<Piece> left_free(const std::vector<PolygonIndex>& faces, const Vector& normal);
+};
+
+// Of these faces, and of others as near.
+std::vector<Point> HoleSearch::corners_in_plane(const std::vector<PolygonIndex>& faces, const Vector& normal) {
+  Box box;
+  for (const PolygonIndex p : faces) {
+    for (const std::uint32_t corner : scene.polygons[p].corners) box.extend(scene.vertices[corner]);
+  }
+  const Vector margin = Vector::Constant(margin_around_faces * box.diagonal().norm());
+  const Box around(box.min() - margin, box.max() + margin);
+  const double offset = normal.dot(scene.vertices[scene.polygons[faces[0]].corners[0]]);
   std::vector<Point> corners;
   for (const PolygonIndex p : faces) {
     for (const std::uint32_t corner : scene.polygons[p].corners) corners.push_back(scene.vertices[corner]);
   }
+  for (const Point& vertex : scene.vertices) {
+    if (std::abs(normal.dot(vertex) - offset) <= width && around.contains(vertex)) corners.push_back(vertex);
+  }
+  tests += scene.vertices.size() / vertices_of_a_test;
+  return corners;
+}
+
+// What the hull of these corners holds beside the faces; nothing when that takes too many pieces.
+std::vector<Piece> HoleSearch::left_free(const std::vector<PolygonIndex>& faces, const Vector& normal) {
+  std::vector<Point> corners = corners_in_plane(faces, normal);
   Plane plane{normal, {piece_of(hull_around(std::move(corners), normal))}};
   for (const PolygonIndex p : faces) {
     for (const auto& triangle : triangles_of(corner_points(scene, p))) {
@@ -109,26 +159,29 @@ std::vector<Piece> left_free(const Scene& scene, const std::vector<PolygonIndex>
 
 }  // namespace
 
-std::vector<std::vector<Point>> holes_between_faces(const Scene& scene) {
+std::vector<Hole> holes_between_faces(const Scene& scene) {
   const FaceTree tree = tree_of_faces(scene);
   const Box everywhere = bounds(scene);
   const double near = weld_distance(scene);
   std::vector<std::uint8_t> seen(scene.polygons.size(), 0);
-  std::vector<std::vector<Point>> holes;
-  std::size_t tests = 0;
+  std::vector<Hole> holes;
+  HoleSearch search{scene, near};
   for (const PolygonIndex first : largest_first(tree, scene.polygons.size())) {
     if (seen[first] || !(tree.face(first).area > 0)) continue;
-    std::vector<PolygonIndex> faces;
+    std::vector<PolygonIndex> faces{first};
+    seen[first] = 1;
     tree.for_each(plane_of(tree.face(first), everywhere, near), [&](std::size_t k) {
       if (seen[k]) return;
       seen[k] = 1;
       faces.push_back(static_cast<PolygonIndex>(k));
     });
-    if (faces.size() == 1 && is_convex(corner_points(scene, first))) continue;
     std::sort(faces.begin(), faces.end());
-    for (Piece& piece : left_free(scene, faces, tree.face(first).normal, near, tests))
-      holes.push_back(std::move(piece.outline));
-    if (tests > most_piece_tests) break;
+    for (std::vector<Piece>& pieces : together(search.left_free(faces, tree.face(first).normal), near)) {
+      Hole hole{first, {}};
+      for (Piece& piece : pieces) hole.pieces.push_back(std::move(piece.outline));
+      holes.push_back(std::move(hole));
+    }
+    if (search.tests > most_piece_tests) break;
   }
   return holes;
 }

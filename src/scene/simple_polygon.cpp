@@ -170,12 +170,36 @@ std::vector<std::vector<Point>> cut_at_crossings(std::vector<Point> polygon, dou
   return simple;
 }
 
+namespace {
+
+// True when an edge of the first of two convex outlines that run around `normal` has all of the second on its outer
+// side, up to `width`.
+bool separates(std::span<const Point> outline, std::span<const Point> other, const Vector& normal, double width) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point& corner = outline[k];
+    const Vector edge = outline[(k + 1) % outline.size()] - corner;
+    if (!(edge.norm() > width)) continue;
+    const Vector inward = normal.cross(edge).normalized();
+    if (std::all_of(other.begin(), other.end(), [&](const Point& p) { return inward.dot(p - corner) <= width; }))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pieces,
                                        const std::array<Point, 3>& triangle, double width) {
   const Vector normal = area_vector(triangle).normalized();
   // Cut along the sides of the triangle one after the other.
   std::vector<std::vector<Point>> left;
   for (std::vector<Point> piece : pieces) {
+    const Vector around = area_vector(piece).dot(normal) < 0 ? Vector(-normal) : normal;
+    // Cutting what lies beside the triangle would only break it up.
+    if (separates(triangle, piece, normal, width) || separates(piece, triangle, around, width)) {
+      left.push_back(std::move(piece));
+      continue;
+    }
     for (std::size_t k = 0; k < 3 && piece.size() > 2; ++k) {
       const Vector inward = normal.cross(triangle[(k + 1) % 3] - triangle[k]).normalized();
       std::vector<Point> outside = clip_to_half_space(piece, triangle[k], -inward);

@@ -108,7 +108,10 @@ Runs at_points(const Scene& scene, const Eigen::Isometry3d& motion, int lamp_sam
   std::vector<DirectIrradiance> seeds;
   for (std::uint64_t seed = 1; seed <= number_of_seeds; ++seed)
     seeds.push_back(at(scene, {.lamp_samples = lamp_samples, .seed = seed}));
-  return with_reference(std::move(seeds), at(scene, many).irradiance, at(with_clear_plate(scene), many).irradiance);
+  LightingOptions reference = many;
+  reference.lamp_samples = 32 * lamp_samples;
+  return with_reference(std::move(seeds), at(scene, reference).irradiance,
+                        at(with_clear_plate(scene), reference).irradiance);
 }
 
 // Exact standard errors have a mean of 1, those of 16 replicates 15 / 13; those of four have 3, and where four may

@@ -186,8 +186,6 @@ TEST(RayRows, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_FALSE(same_rows(one.halves[0], one.halves[1]));
 }
 
-// Which points are drawn follows from where patches lie in the scene: a model that is moved, turned and scaled has the
-// same rows, but for rays that pass an edge so closely that rounding decides; of some 50,000 hits a few may differ.
 // More than two blocks of rows, with rays towards a lamp.
 struct RowsInBlocks {
   const Place place{furnished_room(0.5), 0.08, Sides::front};
@@ -257,6 +255,8 @@ TEST(RayRows, AreTracedAgainWhereBlocksAreDamaged) {
   }
 }
 
+// Which points are drawn follows from where patches lie in the scene: a model that is moved, turned and scaled has the
+// same rows, but for rays that pass an edge so closely that rounding decides; of some 50,000 hits a few may differ.
 TEST(RayRows, StayTheSameWhenTheModelIsMovedAndScaled) {
   Eigen::Affine3d motion = Eigen::Affine3d::Identity();
   motion.translate(Vector(30, -20, 7)).rotate(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized())).scale(1e-3);
