@@ -68,7 +68,7 @@ Solution solved(Assembly raw, const PatchMesh& mesh, const Occluder& occluder, c
 TEST(KnownEntries, GiveWhatAFreshAssemblyGives) {
   for (const Scene& scene : {test::furnished_room(0.5), test::test_room(0.8)}) {
     const Occluder occluder(scene);
-    NestedMesh mesh = nest(tessellate(scene, tiny::front_sides(scene), 1.5));
+    NestedMesh mesh = nest(tessellate(scene, tiny::front_sides(scene), 1.2));
     Assembly known = assemble_exchange_areas(mesh.patches, occluder, keep_errors);
     for (std::uint64_t round = 0; round < 2; ++round) {
       FinerMesh finer = refine(mesh, some_parents(mesh, round));
