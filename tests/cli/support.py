@@ -1,6 +1,7 @@
 """What the tests of the command-line tool share: small models, running the tool, looking at a folder."""
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -10,11 +11,17 @@ from room import MATERIALS, ROOM
 TOOL = os.environ["PATCHLIGHT_TOOL"]
 
 
+# What is said every ten seconds: on a slow machine now and then, which is no message.
+PROGRESS = re.compile(r"^patchlight: (?!error|note|warning).* \d+ %(, .* left)?\n", re.MULTILINE)
+
+
 def run(*arguments, folder, timeout=600, text=""):
-    """Runs the tool in a folder, with a text on its standard input; its output as text."""
+    """Runs the tool in a folder, with a text on its standard input; its output as text, without progress."""
     words = [str(argument) for argument in arguments]
-    return subprocess.run([TOOL, *words], cwd=folder, input=text, capture_output=True, text=True, timeout=timeout,
+    done = subprocess.run([TOOL, *words], cwd=folder, input=text, capture_output=True, text=True, timeout=timeout,
                           check=False)
+    done.stderr = PROGRESS.sub("", done.stderr)
+    return done
 
 
 def content(folder):
