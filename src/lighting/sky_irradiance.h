@@ -20,7 +20,8 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver);
 /// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
 /// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the
 /// balance heuristic (Veach and Guibas 1995, eq. 14): with clear faces a second one for each of half of the samples,
-/// with holes alone one more for each of the first half. What gets in through a gap that is no opening is found by the
+/// with holes alone one more for each of the first half. Where these are many times as dense they alone count (the
+/// cutoff heuristic of the same paper). What gets in through a gap that is no opening is found by the
 /// first kind alone.
 Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
 
