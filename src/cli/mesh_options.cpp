@@ -30,6 +30,13 @@ void add_patch_options(CLI::App& command, Request& request) {
       });
 }
 
+void add_contact_option(CLI::App& command, Request& request) {
+  command.add_flag_callback(
+      "--contact-lines", [&request] { request.mesh.contact_lines = true; },
+      "patches end where other faces touch, cross or end close before\n"
+      "a face, and none is left under what stands on it; default:\npatches follow the outlines of faces alone");
+}
+
 void add_closure_option(CLI::App& command, Request& request) {
   command.add_flag_callback(
       "--no-closure", [&request] { request.assembly.close = false; },

@@ -7,9 +7,6 @@
 namespace patchlight {
 namespace {
 
-// cos 30 degrees
-constexpr double smooth_cosine = 0.86602540378443865;
-
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 // OutlineCorners of all outlines are numbered through; an edge has the number of the corner where it begins.

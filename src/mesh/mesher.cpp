@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "mesh/boundary_vertices.h"
-#include "mesh/coarse_outline.h"
+#include "mesh/cut_outlines.h"
 #include "mesh/outline.h"
 #include "mesh/refine_polygon.h"
 #include "scene/triangulate.h"
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace patchlight {
@@ -24,6 +25,7 @@ constexpr double max_patches = 0x1p31;
 enum class Pattern { quad_grid, triangle_grid, delaunay };
 
 Pattern pattern_of(const Outline& outline) {
+  if (!outline.lines.empty()) return Pattern::delaunay;
   const auto& parts = outline.parts;
   if (parts.size() == 3 && parts[0] == parts[1] && parts[1] == parts[2]) return Pattern::triangle_grid;
   if (parts.size() == 4 && parts[0] == parts[2] && parts[1] == parts[3] && is_convex(outline.corners)) {
@@ -114,16 +116,12 @@ std::size_t count_patches(const Outline& outline, double max_edge) {
   return refine_polygon(outline, max_edge).patches.size();
 }
 
-Outline outline_of(const Scene& scene, const LooseCorners& loose, PolygonIndex polygon, double max_edge) {
-  return make_outline(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon), max_edge);
-}
-
-std::size_t count_patches(const Scene& scene, const LooseCorners& loose, const KeptSides& sides, double max_edge) {
-  std::vector<std::size_t> counts(scene.polygons.size(), 0);
+std::size_t count_patches(const std::vector<CutPolygon>& polygons, const KeptSides& sides, double max_edge) {
+  const std::vector<Outline> outlines = cut_outlines(polygons, max_edge);
+  std::vector<std::size_t> counts(polygons.size(), 0);
   parallel_for(counts.size(), [&](std::size_t p) {
     const std::size_t kept = sides.front[p] + sides.back[p];
-    const auto polygon = static_cast<PolygonIndex>(p);
-    if (kept > 0) counts[p] = kept * count_patches(outline_of(scene, loose, polygon, max_edge), max_edge);
+    if (kept > 0) counts[p] = kept * count_patches(outlines[p], max_edge);
   });
   return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
@@ -138,15 +136,13 @@ struct Pieces {
 
 bool is_kept(const KeptSides& sides, std::size_t slot) { return (slot % 2 == 0 ? sides.front : sides.back)[slot / 2]; }
 
-Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge) {
+Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts) {
   const std::size_t count = scene.polygons.size();
-  const LooseCorners loose = find_loose_corners(scene);
-  Pieces pieces{.outlines = std::vector<Outline>(count),
+  Pieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, max_edge), max_edge),
                 .meshes = std::vector<PolygonMesh>(count),
                 .first_inner = {},
                 .boundary = {}};
   parallel_for(count, [&](std::size_t p) {
-    pieces.outlines[p] = outline_of(scene, loose, static_cast<PolygonIndex>(p), max_edge);
     if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], max_edge);
   });
   pieces.boundary = {number_boundary(scene, pieces.outlines, Side::front, sides.front),
@@ -216,13 +212,13 @@ double diameter(const Scene& scene) { return bounds(scene).diagonal().norm(); }
 
 }  // namespace
 
-PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge) {
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts) {
   assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
   // A patch is never larger than max_edge squared.
   const double at_least = std::max(kept_area(scene, sides) / max_edge, diameter(scene)) / max_edge;
   if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 
-  Pieces pieces = make_pieces(scene, sides, max_edge);
+  Pieces pieces = make_pieces(scene, sides, max_edge, contacts);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);
   const auto& [front, back] = pieces.boundary;
@@ -235,8 +231,9 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
   return mesh;
 }
 
-std::size_t least_patches(const Scene& scene, const KeptSides& sides) {
-  return count_patches(scene, find_loose_corners(scene), sides, diameter(scene));
+std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts) {
+  const double edge = diameter(scene);
+  return count_patches(cut_polygons(scene, find_loose_corners(scene), contacts, edge), sides, edge);
 }
 
 std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge) {
@@ -251,13 +248,21 @@ std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge) {
   return counts;
 }
 
-double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches) {
+double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts) {
   constexpr double close_enough = 0.005;
   constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const LooseCorners loose = find_loose_corners(scene);
-  const auto count = [&](double edge) { return static_cast<double>(count_patches(scene, loose, sides, edge)); };
+  // Without loose corners edges of about one length have the same polygons.
+  std::map<double, std::vector<CutPolygon>> known;
+  const auto count = [&](double edge) {
+    if (!loose.empty() || contacts.on.empty())
+      return static_cast<double>(count_patches(cut_polygons(scene, loose, contacts, edge), sides, edge));
+    const auto [found, is_new] = known.try_emplace(followed_detail(contacts, edge));
+    if (is_new) found->second = cut_polygons(scene, loose, contacts, edge);
+    return static_cast<double>(count_patches(found->second, sides, edge));
+  };
 
   // 1. No number below that of the uncut scene.
   double too_long = diameter(scene);

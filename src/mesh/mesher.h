@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/contact_lines.h"
 #include "patchlight/scene/sides.h"
 
 #include <cstddef>
@@ -16,12 +17,13 @@ namespace patchlight {
 /// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
 /// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
 /// are numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
-/// 30 degrees, and between those only. Both sides of a polygon have their own vertices.
-/// \throws MemoryError when more than 2^31 patches would be needed.
-PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge);
+/// 30 degrees, and between those only. Patches end at lines of contact, see cut_polygons(), and share no vertices over
+/// them: a polygon with such lines becomes a Delaunay mesh around them. Both sides of a polygon have their own
+/// vertices. \throws MemoryError when more than 2^31 patches would be needed.
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts = {});
 
 /// The number of patches when no edge is cut: the least there can be.
-std::size_t least_patches(const Scene& scene, const KeptSides& sides);
+std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts = {});
 
 /// Per polygon how many corners of its outline patches do without, see coarse_outline().
 std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
@@ -29,6 +31,6 @@ std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 /// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
 /// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for
 /// more than 2^31 patches.
-double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches);
+double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts = {});
 
 }  // namespace patchlight

@@ -12,15 +12,18 @@ bool comes_before(const Point& a, const Point& b) {
   return a.z() < b.z();
 }
 
-Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge) {
+std::uint32_t parts_of(const Point& from, const Point& to, double max_edge) {
   // An edge of n max_edge has n parts, whatever the rounding of its length.
   constexpr double rounding = 1e-9;
+  return static_cast<std::uint32_t>(std::max(1.0, std::ceil((to - from).norm() / max_edge - rounding)));
+}
+
+Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge) {
   Outline outline{.corners = std::move(corners), .parts = {}, .normal = normal};
   const std::size_t n = outline.corners.size();
   outline.parts.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const double length = (outline.corners[(k + 1) % n] - outline.corners[k]).norm();
-    outline.parts.push_back(static_cast<std::uint32_t>(std::max(1.0, std::ceil(length / max_edge - rounding))));
+    outline.parts.push_back(parts_of(outline.corners[k], outline.corners[(k + 1) % n], max_edge));
   }
   return outline;
 }

@@ -2,16 +2,22 @@
 
 #include "patchlight/scene/scene.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
+
+/// Polygons whose normals are nearer to each other than 30 degrees go on over a common edge: its cosine.
+inline constexpr double smooth_cosine = 0.86602540378443865;
 
 /// A polygon's boundary as the mesher sees it.
 struct Outline {
   std::vector<Point> corners;        ///< counter-clockwise from the front, no two consecutive ones at one place
   std::vector<std::uint32_t> parts;  ///< of the edge from each corner to the next
   Vector normal;                     ///< unit, of the front
+  std::vector<std::array<Point, 2>> lines = {};  ///< inside, for patches to end at: they meet each other and the
+                                                 ///< outline in their ends alone, and there in corners
 };
 
 /// The mesh of one polygon. Boundary points come first: every corner followed by the points on the edge after it.
@@ -22,6 +28,9 @@ struct PolygonMesh {
 
 /// True when a comes before b in the order of their coordinates.
 bool comes_before(const Point& a, const Point& b);
+
+/// Into how many parts an edge is cut for none to be longer than `max_edge`.
+std::uint32_t parts_of(const Point& from, const Point& to, double max_edge);
 
 Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge);
 

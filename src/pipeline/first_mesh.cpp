@@ -1,15 +1,66 @@
 #include "pipeline/first_mesh.h"
 
+#include "patchlight/transport/lost_share.h"
+
+#include "mesh/kept_patches.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "plan/planned_scene.h"
+#include "visibility/tracing.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 namespace patchlight {
+namespace {
+
+// A patch is covered when every one of sixteen places on it is.
+constexpr int rays_for_cover = 128;
+
+NestedMesh nested_as_planned(const Plan& plan, const auto& patches_with_edge) {
+  if (plan.accuracy.error_bars) return nest(patches_with_edge(2 * plan.max_edge));
+  NestedMesh mesh;
+  mesh.patches = patches_with_edge(plan.max_edge);
+  return mesh;
+}
+
+}  // namespace
+
+PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, const Occluder& occluder) {
+  PatchMesh mesh = tessellate(scene, plan.sides, max_edge, plan.contacts);
+  if (plan.contacts.on.empty()) return mesh;
+  // Only where faces touch can others be covered. The rest counts as known: open.
+  LostShare open;
+  open.rays_per_patch = rays_for_cover;
+  open.escaped = open.at_backs = open.covered = open.dark = open.overlaid = Eigen::VectorXd::Zero(1);
+  std::vector<PatchIndex> place(mesh.size(), 0);
+  bool any = false;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const auto& lines = plan.contacts.on[mesh.polygon[i]];
+    const bool touches = std::any_of(lines.begin(), lines.end(), [](const ContactLine& line) { return line.gap == 0; });
+    if (touches) place[i] = no_patch;
+    any = any || touches;
+  }
+  if (!any) return mesh;
+  const LostShare lost = measure_lost_share(mesh, occluder, KnownShares{open, place}, plan.assembly.seed);
+  std::vector<std::uint8_t> is_left_out;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) is_left_out.push_back(lost.covered[i] == 1 ? 1 : 0);
+  return without_patches(mesh, is_left_out);
+}
+
+PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge) {
+  if (plan.contacts.on.empty()) return tessellate(scene, plan.sides, max_edge);
+  const Tracing tracing(scene, find_coverings(scene, plan.sides), blockers_of(plan));
+  return open_patches(scene, plan, max_edge, tracing.between_patches());
+}
+
+NestedMesh first_mesh(const Scene& scene, const Plan& plan, const Occluder& occluder) {
+  return nested_as_planned(plan, [&](double edge) { return open_patches(scene, plan, edge, occluder); });
+}
 
 NestedMesh first_mesh(const Scene& scene, const Plan& plan) {
-  if (plan.accuracy.error_bars) return nest(tessellate(scene, plan.sides, 2 * plan.max_edge));
-  NestedMesh mesh;
-  mesh.patches = tessellate(scene, plan.sides, plan.max_edge);
-  return mesh;
+  return nested_as_planned(plan, [&](double edge) { return open_patches(scene, plan, edge); });
 }
 
 }  // namespace patchlight

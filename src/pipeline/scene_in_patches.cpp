@@ -1,6 +1,6 @@
 #include "pipeline/scene_in_patches.h"
 
-#include "mesh/mesher.h"
+#include "pipeline/first_mesh.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
 
@@ -13,7 +13,7 @@ SceneInPatches scene_in_patches(const Scene& scene, Request request) {
   if (request.mesh.sides == Sides::automatic && !has_lamp(scene)) request.mesh.sides = Sides::front;
   Plan plan = plan_form_factors(scene, request);
   require_memory(scene, request, plan);
-  PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  PatchMesh mesh = open_patches(scene, plan, plan.max_edge);
   require_memory(mesh.size(), request, plan);
   auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides));
   std::vector<std::string> notes;

@@ -92,16 +92,18 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
 }
 
 // A patch is never larger than the square of the longest edge, and each face takes one at least.
-std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge) {
+std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge,
+                               const ContactLines& contacts) {
   // Too many to count are as good as the largest number.
   const double by_area = std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18);
-  return std::max(least_patches(scene, sides), static_cast<std::size_t>(by_area));
+  return std::max(least_patches(scene, sides, contacts), static_cast<std::size_t>(by_area));
 }
 
 // By the number of patches that is asked for, or the least number that an edge allows.
 void require_memory(const Scene& scene, const Request& request, const Plan& plan) {
   const std::optional<double>& edge = request.mesh.max_edge;
-  require_memory(edge ? least_patches_with(scene, plan.sides, *edge) : patches_asked(request), request, plan);
+  require_memory(edge ? least_patches_with(scene, plan.sides, *edge, plan.contacts) : patches_asked(request), request,
+                 plan);
 }
 
 }  // namespace patchlight

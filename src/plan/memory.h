@@ -19,7 +19,8 @@ double usable_memory(const Resources& resources);
 double patches_that_fit(const Plan& plan);
 
 /// The least number of patches with edges up to so many metres.
-std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge);
+std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge,
+                               const ContactLines& contacts);
 
 /// A number of bytes as messages have it: "1.25 GB".
 std::string gigabytes(double bytes);

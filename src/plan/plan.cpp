@@ -86,14 +86,15 @@ struct PatchSize {
 
 // The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
 // whole: of a model with many small faces the number of parents lies anywhere between a quarter of them and all.
-double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t wanted, std::size_t least) {
+double parents_edge_for(const Scene& scene, const KeptSides& sides, const ContactLines& contacts, std::size_t wanted,
+                        std::size_t least) {
   constexpr double enough = 0.8;
   constexpr int guesses = 6;
   // What no memory holds is refused later, and not meshed to find that out.
   constexpr std::size_t too_many = 5'000'000;
-  if (wanted > too_many) return 2 * max_edge_for(scene, sides, wanted);
-  double edge = max_edge_for(scene, sides, wanted / 4);
-  double number = static_cast<double>(nest(tessellate(scene, sides, edge)).patches.size());
+  if (wanted > too_many) return 2 * max_edge_for(scene, sides, wanted, contacts);
+  double edge = max_edge_for(scene, sides, wanted / 4, contacts);
+  double number = static_cast<double>(nest(tessellate(scene, sides, edge, contacts)).patches.size());
   const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
   // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
   const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - static_cast<double>(least)); };
@@ -102,8 +103,8 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t 
   std::size_t many = wanted;
   for (int k = 0; k < guesses && many > few + 1; ++k) {
     const std::size_t parents = (few + many) / 2;
-    const double guess = max_edge_for(scene, sides, parents);
-    const auto patches = static_cast<double>(nest(tessellate(scene, sides, guess)).patches.size());
+    const double guess = max_edge_for(scene, sides, parents, contacts);
+    const auto patches = static_cast<double>(nest(tessellate(scene, sides, guess, contacts)).patches.size());
     if (miss(patches) < miss(number)) edge = guess, number = patches;
     (patches < static_cast<double>(wanted) ? few : many) = parents;
   }
@@ -111,32 +112,48 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, std::size_t 
 }
 
 // The largest edge for the number of patches that is asked for.
-PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides) {
-  const std::size_t least = least_patches(scene, sides);
+PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides,
+                         const ContactLines& contacts) {
+  const std::size_t least = least_patches(scene, sides, contacts);
   // What is refined begins with no more than it has to; but so many rows of rays are not traced twice for nothing.
   const bool begins_coarse = refines(request.accuracy) && request.assembly.storage != Storage::rays;
   const std::size_t wanted = begins_coarse ? std::max(asked, least) : enough_patches(asked, least);
   // A nested mesh is made from parents with edges twice as long.
-  PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, wanted, least) / 2
-                                                  : max_edge_for(scene, sides, wanted),
+  PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, contacts, wanted, least) / 2
+                                                  : max_edge_for(scene, sides, wanted, contacts),
                  wanted,
                  {}};
   if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(scene, asked, wanted));
   return size;
 }
 
-PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides) {
+PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides, const ContactLines& contacts) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  PatchSize size = request.mesh.max_edge
-                       ? PatchSize{*request.mesh.max_edge, least_patches_with(scene, sides, *request.mesh.max_edge), {}}
-                       : patch_size_for(asked, scene, request, sides);
+  PatchSize size =
+      request.mesh.max_edge
+          ? PatchSize{*request.mesh.max_edge, least_patches_with(scene, sides, *request.mesh.max_edge, contacts), {}}
+          : patch_size_for(asked, scene, request, sides, contacts);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;
   for (Problem& problem : problems_with_size(scene)) of_size.push_back(std::move(problem.what));
   size.notes =
       joined({std::move(of_size), std::move(size.notes), notes_on_fine_outlines(scene, sides, asked, outline_edge)});
   return size;
+}
+
+// The lines of contact. A mesh that is refined begins with patches that tell nothing of the size of details: what is
+// worth a line then is what an accuracy can feel, as a share of the area of all kept sides.
+ContactLines contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
+  constexpr double detail_of_accuracy = 18;  // fitted to two furnished rooms at 1 to 5 %
+  constexpr double of_time = 0.01;           // an accuracy, where a time is asked for
+  if (!request.mesh.contact_lines) return {};
+  ContactLines contacts = find_contact_lines(scene, sides);
+  if (refines(request.accuracy) && !request.mesh.max_edge) {
+    const double accuracy = request.accuracy.relative_error.value_or(of_time);
+    contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
+  }
+  return contacts;
 }
 
 // Error bars follow from the errors of the entries.
@@ -180,11 +197,12 @@ AccuracyOptions decided(AccuracyOptions accuracy) {
 Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   require_lamp(scene);
   KeptSides sides = sides_for(scene, asked);
-  PatchSize size = patch_size(scene, asked, sides);
+  ContactLines contacts = contacts_for(scene, asked, sides);
+  PatchSize size = patch_size(scene, asked, sides, contacts);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
-  if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides);
+  if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides, contacts);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
@@ -194,6 +212,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const bool in_colour = simulates(decisions, Effect::colour);
   const auto left_out = [&] { return notes_on_left_out_sides(scene, *asked.mesh.kept_sides, asked.mesh.sides); };
   return {.sides = std::move(sides),
+          .contacts = std::move(contacts),
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
           .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage),
@@ -208,10 +227,12 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
-  PatchSize size = patch_size(scene, request, sides);
+  ContactLines contacts = contacts_for(scene, request, sides);
+  PatchSize size = patch_size(scene, request, sides, contacts);
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);
   return {.sides = std::move(sides),
+          .contacts = std::move(contacts),
           .max_edge = size.max_edge,
           .assembly = decided(request.assembly, request, close),
           .solver = decided(request.solver),

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/error.h"
 
-#include "mesh/mesher.h"
 #include "mesh/patch_lookup.h"
 #include "mesh/refine.h"
+#include "pipeline/first_mesh.h"
 #include "plan/memory.h"
 
 #include <algorithm>
@@ -38,23 +38,23 @@ PatchMesh cut_to(const PatchMesh& mesh, double max_edge) {
 }
 
 // From 2^(count - 1) times the finest edge down to it.
-std::vector<SizedMesh> all_sizes(const Scene& scene, const KeptSides& sides, double finest, int count) {
+std::vector<SizedMesh> all_sizes(const Scene& scene, const Plan& plan, double finest, int count) {
   std::vector<SizedMesh> all;
   for (int k = count - 1; k >= 0; --k) {
     const double edge = std::ldexp(finest, k);
-    all.push_back({edge, all.empty() ? tessellate(scene, sides, edge) : cut_to(all.back().mesh, edge)});
+    all.push_back({edge, all.empty() ? open_patches(scene, plan, edge) : cut_to(all.back().mesh, edge)});
   }
   return all;
 }
 
 // Halving edges overshoots: the edge for which the finest size has about as many patches as the plan's own mesh.
 double edge_for(const Scene& scene, const Plan& plan, int sizes) {
-  const double wanted = tessellate(scene, plan.sides, plan.max_edge).size();
+  const double wanted = open_patches(scene, plan, plan.max_edge).size();
   double best = plan.max_edge;
   double least = std::numeric_limits<double>::infinity();
   double edge = plan.max_edge;
   for (int guess = 0; guess < 6 && least > 0.1; ++guess) {
-    const double found = all_sizes(scene, plan.sides, edge, sizes).back().mesh.size();
+    const double found = all_sizes(scene, plan, edge, sizes).back().mesh.size();
     const double miss = std::abs(std::log(found / wanted));
     if (miss < least) least = miss, best = edge;
     edge *= std::sqrt(found / wanted);
@@ -76,7 +76,7 @@ void require_memory_for_reference(std::size_t patches, const Request& request, c
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
   const Plan plan = make_plan(scene, request);
   const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
-  std::vector<SizedMesh> all = all_sizes(scene, plan.sides, finest / 2, sizes + 1);
+  std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
   NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
   require_memory_for_reference(result.finer.mesh.size(), request, plan);
   all.pop_back();

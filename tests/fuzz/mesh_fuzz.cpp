@@ -93,7 +93,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Scene scene = repair(scene_from(bytes));
   if (scene.polygons.empty()) return 0;
   check(scene);
-  const PatchMesh mesh = tessellate(scene, kept_sides(scene, wanted), max_edge);
+  const KeptSides sides = kept_sides(scene, wanted);
+  const PatchMesh mesh = tessellate(scene, sides, max_edge, find_contact_lines(scene, sides));
   require_good(mesh, max_edge);
   if (mesh.size() > most_patches) return 0;
   require_good(assemble_exchange_areas(mesh, Occluder(scene), {.samples = 8, .seed = 1}).exchange_areas, mesh);

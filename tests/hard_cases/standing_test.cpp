@@ -94,6 +94,27 @@ TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
   EXPECT_GE(partly_covered, 4);
 }
 
+// With lines of contact there are no patches under the block, and those beside it are lit as ever, 100 W/m^2.
+TEST_P(BlockInTheSun, HasNoPatchesBelowWithLinesOfContact) {
+  const auto [bottom, size, storage, rug] = GetParam();
+  Request request;
+  request.mesh.max_edge = 1.001 * size;
+  request.mesh.sides = Sides::front;
+  request.mesh.contact_lines = true;
+  request.assembly.storage = storage;
+  if (storage == Storage::rays) request.solver.solver = Solver::gmres;
+  const Simulation lit = simulate(block_in_the_sun(bottom, size, rug), request);
+  EXPECT_NEAR(lit.balance.arriving[0], 1600 * size * size, 0.001 * 1600 * size * size);
+  double area = 0;
+  for (PatchIndex i = 0; i < lit.mesh.size(); ++i) {
+    if (lit.mesh.polygon[i] != 0) continue;
+    EXPECT_NEAR(lit.solution.irradiance(i, 0), 100, 1e-6) << "patch " << i;
+    EXPECT_EQ(lit.transport.lost.covered[i], 0) << "patch " << i;
+    area += lit.mesh.area[i];
+  }
+  EXPECT_NEAR(area, (16 - 2.25 - (rug ? 0.49 : 0)) * size * size, 1e-12 * size * size);
+}
+
 INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
                          testing::Combine(testing::Bool(), testing::Values(1.0, 1e-3),
                                           testing::Values(Storage::tiles, Storage::rays), testing::Bool()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/plan/effects.h"
+#include "patchlight/scene/contact_lines.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 #include "patchlight/solve/solve.h"
@@ -20,6 +21,7 @@ struct MeshOptions {
   std::optional<std::size_t> patches = {};  ///< or the number of kept patches; left open default_patches, and where
                                             ///< patches are refined first_patches
   Sides sides = Sides::automatic;
+  bool contact_lines = false;                ///< patches end where faces touch, cross or end close before them
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
 };
 
@@ -58,6 +60,7 @@ struct Request {
 /// mesh and effects.
 struct Plan {
   KeptSides sides;
+  ContactLines contacts;     ///< where patches end besides the outlines of their polygons; none unless asked for
   double max_edge = 0;       ///< metres
   AssemblyOptions assembly;  ///< stored as asked for, else as pairs, rays or rows of the lamps
   SolverOptions solver;      ///< of a mesh on the way to an accuracy: its own relative error

@@ -149,7 +149,7 @@ TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
   request.mesh.sides = Sides::front;
   const Plan plan = make_plan(scene, request);
   EXPECT_EQ(plan.notes.size(), 1U);
-  const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge);
+  const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge, plan.contacts);
   EXPECT_GT(mesh.patches_on(0, Side::front).end - mesh.patches_on(0, Side::front).begin, 30U);
   EXPECT_NEAR(static_cast<double>(mesh.size()), 2006 * 1.25, 250);
 }
@@ -160,7 +160,7 @@ TEST(MakePlan, MeetsTheNumberOfPatchesWithinTenPercent) {
     Request request;
     request.mesh.patches = patches;
     const Plan plan = make_plan(scene, request);
-    const double count = tessellate(scene, plan.sides, plan.max_edge).size();
+    const double count = tessellate(scene, plan.sides, plan.max_edge, plan.contacts).size();
     EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.1);
   }
 }
@@ -185,9 +185,10 @@ TEST(MakePlan, CutsLargeFacesBesideFacesThatAreEnoughPatches) {
     request.mesh.sides = Sides::front;
     request.accuracy.error_bars = error_bars;
     const Plan plan = make_plan(scene, request);
-    const double least = tessellate(scene, plan.sides, 100).size();
-    const NestedMesh nested = nest(tessellate(scene, plan.sides, 2 * plan.max_edge));
-    const double count = error_bars ? nested.patches.size() : tessellate(scene, plan.sides, plan.max_edge).size();
+    const double least = tessellate(scene, plan.sides, 100, plan.contacts).size();
+    const NestedMesh nested = nest(tessellate(scene, plan.sides, 2 * plan.max_edge, plan.contacts));
+    const double count =
+        error_bars ? nested.patches.size() : tessellate(scene, plan.sides, plan.max_edge, plan.contacts).size();
     EXPECT_NEAR((count - least) / (least / 4), 1, 0.4) << error_bars;
   }
 }
@@ -202,7 +203,7 @@ TEST(MakePlan, MeetsTheNumberOfPatchesOfNestedMeshesWithManySmallFaces) {
     request.mesh.sides = Sides::front;
     request.accuracy.error_bars = true;
     const Plan plan = make_plan(scene, request);
-    const double count = nest(tessellate(scene, plan.sides, 2 * plan.max_edge)).patches.size();
+    const double count = nest(tessellate(scene, plan.sides, 2 * plan.max_edge, plan.contacts)).patches.size();
     EXPECT_NEAR(count / static_cast<double>(patches), 1, 0.25) << patches;
   }
 }

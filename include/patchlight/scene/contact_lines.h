@@ -1,0 +1,34 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include <limits>
+#include <vector>
+
+namespace patchlight {
+
+/// A line on a polygon along which another face touches it, crosses it, or ends close before it: there the light on the
+/// polygon changes at once, or nearly so.
+struct ContactLine {
+  Point from;      ///< in the polygon's plane, metres
+  Point to;        ///< likewise
+  double gap = 0;  ///< how far the other face is from the line at most, metres; 0 where it touches or crosses
+};
+
+/// The lines of contact of a scene, and how fine these have to be.
+struct ContactLines {
+  std::vector<std::vector<ContactLine>> on;  ///< at the index of each polygon; empty: there are none
+  double size = 0;                           ///< the root of the area of all faces, metres
+  /// Metres. Patches with longer edges follow the lines as those of this length do.
+  double detail = std::numeric_limits<double>::infinity();
+};
+
+/// The lines of contact on every polygon with a kept side. Faces touch where they are within weld_distance(). Edges
+/// close before a polygon count as far as a fiftieth of the root of the area of all faces and a tenth of that of the
+/// polygon, and only where the face before it ends, not where it goes on; such an edge is a line of its own face too.
+/// Lines may reach beyond a polygon that is not convex, may cross and may be there twice. O(n log n + k) for n polygons
+/// of which k pairs are near each other.
+ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept);
+
+}  // namespace patchlight

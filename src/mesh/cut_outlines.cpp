@@ -1,0 +1,360 @@
+#include "mesh/cut_outlines.h"
+
+#include "base/parallel.h"
+#include "mesh/noded_lines.h"
+#include "scene/extent.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Of the detail that is followed, the longest patch edge or less:
+constexpr double line_tolerance = 0.01;
+constexpr double largest_gap_of_detail = 0.25;
+constexpr double farthest_beside = 0.075;
+constexpr double least_beside = 0.0075;  // length times gap, of its square
+
+constexpr double least_size_of_lines = 16;  // in tolerances; smaller ones are left out
+constexpr double least_size_over_gap = 4;   // farther from what is smaller its shadow has no edge
+
+constexpr double grid_of_extent = 2e-7;  // the width of the grid on which lines meet
+
+struct Plane {
+  Point origin;
+  Eigen::Matrix<double, 3, 2> axes;
+
+  FlatPoint flat(const Point& point) const { return axes.transpose() * (point - origin); }
+  Point lifted(const FlatPoint& point) const { return origin + axes * point; }
+};
+
+Plane plane_along(const Point& origin, const Vector& along, const Vector& normal) {
+  Plane plane{origin, {}};
+  plane.axes.col(0) = (along - along.dot(normal) * normal).normalized();
+  plane.axes.col(1) = normal.cross(plane.axes.col(0));
+  return plane;
+}
+
+// Where on the edge from one point to another, from 0 to 1.
+double place_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point) {
+  return (point - from).dot(to - from) / (to - from).squaredNorm();
+}
+
+bool is_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point, double near) {
+  const double t = std::clamp(place_on(from, to, point), 0.0, 1.0);
+  return (from + t * (to - from) - point).norm() <= near;
+}
+
+// Does a ray along x cross the outline an odd number of times? A seam counts twice.
+bool is_inside(std::span<const FlatPoint> outline, const FlatPoint& point) {
+  bool inside = false;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const FlatPoint& from = outline[k];
+    const FlatPoint& to = outline[(k + 1) % outline.size()];
+    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
+    if (from.x() + (point.y() - from.y()) / (to.y() - from.y()) * (to.x() - from.x()) > point.x()) inside = !inside;
+  }
+  return inside;
+}
+
+// The outline of one polygon in its plane.
+class FlatOutline {
+ public:
+  FlatOutline(const std::vector<Point>& corners, const Vector& normal, double grid)
+      : corners_(corners), plane_(plane_along(corners[0], corners[1] - corners[0], normal)), grid_(grid) {
+    for (const Point& corner : corners) flat_.push_back(plane_.flat(corner));
+  }
+
+  std::vector<FlatLine> flat(const std::vector<ContactLine>& lines, double least_gap, double largest_gap) const {
+    std::vector<FlatLine> result;
+    for (const ContactLine& line : lines) {
+      if (line.gap >= least_gap && line.gap <= largest_gap)
+        result.push_back({snapped(plane_.flat(line.from)), snapped(plane_.flat(line.to))});
+    }
+    return result;
+  }
+
+  // The parts of the lines that lie inside, cut where they meet.
+  std::vector<FlatLine> parts_inside(std::vector<FlatLine> lines) const {
+    const std::size_t n = flat_.size();
+    for (std::size_t k = 0; k < n; ++k) lines.push_back({flat_[k], flat_[(k + 1) % n]});
+    std::vector<FlatLine> parts = noded_lines(lines, grid_);
+    std::erase_if(parts, [&](const FlatLine& part) {
+      const FlatPoint middle = (part[0] + part[1]) / 2;
+      return edge_at(middle).has_value() || !is_inside(flat_, middle);
+    });
+    return parts;
+  }
+
+  // Is the line a part of an edge?
+  bool runs_along(const FlatLine& line) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
+      if (is_on(flat_[k], to, line[0], near()) && is_on(flat_[k], to, line[1], near())) return true;
+    }
+    return false;
+  }
+
+  LineEnd end_at(const FlatPoint& point) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if ((flat_[k] - point).norm() <= near()) return {{}, corners_[k]};
+    }
+    const std::optional<std::size_t> edge = edge_at(point);
+    if (!edge) return {{}, plane_.lifted(point)};
+    return {mark_on(*edge, point), {}};
+  }
+
+  // On every edge that goes through a point: both of a seam.
+  std::vector<Mark> marks_at(const FlatPoint& point) const {
+    std::vector<Mark> marks;
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) marks.push_back(mark_on(k, point));
+    }
+    return marks;
+  }
+
+ private:
+  double near() const { return 2 * grid_; }
+
+  std::optional<std::size_t> edge_at(const FlatPoint& point) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) return k;
+    }
+    return std::nullopt;
+  }
+
+  Mark mark_on(std::size_t edge, const FlatPoint& point) const {
+    const std::size_t next = (edge + 1) % flat_.size();
+    const double t = place_on(flat_[edge], flat_[next], point);
+    return {edge, comes_before(corners_[next], corners_[edge]) ? 1 - t : t};
+  }
+
+  // What is as near to the outline as faces that touch are is on it.
+  FlatPoint snapped(const FlatPoint& point) const {
+    constexpr double grids = 10;
+    for (const FlatPoint& corner : flat_) {
+      if ((corner - point).norm() <= grids * grid_) return corner;
+    }
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      const FlatPoint& from = flat_[k];
+      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
+      if (is_on(from, to, point, grids * grid_)) return from + place_on(from, to, point) * (to - from);
+    }
+    return point;
+  }
+
+  const std::vector<Point>& corners_;
+  Plane plane_;
+  double grid_;
+  std::vector<FlatPoint> flat_;
+};
+
+// The diagonal of all of them together.
+double size_of(const std::vector<FlatLine>& lines) {
+  Eigen::AlignedBox2d box;
+  for (const FlatLine& line : lines) box.extend(line[0]).extend(line[1]);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+// Contact lines whose gaps are of about one width.
+struct GapClass {
+  std::vector<FlatLine> lines;
+  double widest;  // metres; 0: they touch
+};
+
+// The ones with a gap that patches of this detail are wider than.
+std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<ContactLine>& contacts, double detail) {
+  std::vector<double> gaps;
+  for (const ContactLine& line : contacts) {
+    if (line.gap <= largest_gap_of_detail * detail) gaps.push_back(line.gap);
+  }
+  std::sort(gaps.begin(), gaps.end(), std::greater());
+  std::vector<GapClass> classes;
+  for (std::size_t k = 0; k < gaps.size();) {
+    const double widest = gaps[k];
+    while (k < gaps.size() && (4 * gaps[k] > widest || widest == 0)) ++k;
+    classes.push_back({outline.flat(contacts, gaps[k - 1], widest), widest});
+  }
+  return classes;
+}
+
+// Light that gets under an edge fades over some widths of the gap: one and three of them from the edge there are lines
+// as well, where patches would be wider and the edge is long enough for it to matter.
+std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double gap, double detail) {
+  double length = 0;
+  for (const FlatLine& line : edges) length += (line[1] - line[0]).norm();
+  if (length * gap < least_beside * detail * detail) return {};
+  std::vector<FlatLine> beside;
+  for (const double widths : {1.0, 3.0}) {
+    if (widths * gap > farthest_beside * detail) continue;
+    const std::vector<FlatLine> some = lines_beside(edges, widths * gap);
+    beside.insert(beside.end(), some.begin(), some.end());
+  }
+  return beside;
+}
+
+// Not those of lines along the outline, unless they are worth lines beside them.
+bool matters(const FlatOutline& outline, const GapClass& gap, double detail) {
+  double length = 0;
+  for (const FlatLine& line : gap.lines) {
+    if (!outline.runs_along(line)) return true;
+    length += (line[1] - line[0]).norm();
+  }
+  return length * gap.widest >= least_beside * detail * detail;
+}
+
+CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const std::vector<ContactLine>& contacts,
+                       double detail, double grid) {
+  CutPolygon cut{std::move(corners), normal, 4 * grid, {}, {}};
+  if (contacts.empty()) return cut;
+  const FlatOutline outline(cut.corners, normal, grid);
+  std::vector<FlatLine> lines;
+  for (const GapClass& gap : by_gap(outline, contacts, detail)) {
+    const double tolerance = line_tolerance * detail;
+    const double least_size = std::max(least_size_of_lines * tolerance, least_size_over_gap * gap.widest);
+    if (size_of(gap.lines) < least_size || !matters(outline, gap, detail)) continue;
+    const std::vector<FlatLine> edges = simplified_lines(gap.lines, grid, tolerance, least_size);
+    const std::vector<FlatLine> beside = lines_beside_gap(edges, gap.widest, detail);
+    lines.insert(lines.end(), edges.begin(), edges.end());
+    lines.insert(lines.end(), beside.begin(), beside.end());
+  }
+  if (lines.empty()) return cut;
+  for (const FlatLine& part : outline.parts_inside(std::move(lines))) {
+    cut.lines.push_back({outline.end_at(part[0]), outline.end_at(part[1])});
+    for (const FlatPoint& end : part) {
+      if (!outline.end_at(end).mark) continue;
+      for (const Mark& mark : outline.marks_at(end)) cut.marks.push_back(mark);
+    }
+  }
+  return cut;
+}
+
+using EdgeKey = std::array<double, 6>;
+
+// The ends of an edge, that which comes first first.
+EdgeKey key_of(const std::vector<Point>& corners, std::size_t edge) {
+  const Point* a = &corners[edge];
+  const Point* b = &corners[(edge + 1) % corners.size()];
+  if (comes_before(*b, *a)) std::swap(a, b);
+  return {a->x(), a->y(), a->z(), b->x(), b->y(), b->z()};
+}
+
+struct MarksOfEdge {
+  Vector normal;
+  double near;
+  std::vector<double> places;  // in order
+};
+
+// Per edge with marks, those of every polygon that has it, with one in place of several at one place.
+using MarksByEdge = std::map<EdgeKey, std::vector<MarksOfEdge>>;
+
+double length_of(const EdgeKey& key) { return Point(key[3] - key[0], key[4] - key[1], key[5] - key[2]).norm(); }
+
+MarksByEdge marks_by_edge(const std::vector<CutPolygon>& polygons) {
+  MarksByEdge all;
+  for (const CutPolygon& polygon : polygons) {
+    for (const Mark& mark : polygon.marks) {
+      std::vector<MarksOfEdge>& of_edge = all[key_of(polygon.corners, mark.edge)];
+      const auto same = std::find_if(of_edge.begin(), of_edge.end(), [&](const MarksOfEdge& other) {
+        return std::abs(other.normal.dot(polygon.normal)) >= smooth_cosine;
+      });
+      (same == of_edge.end() ? of_edge.emplace_back(MarksOfEdge{polygon.normal, polygon.near, {}}) : *same)
+          .places.push_back(mark.t);
+    }
+  }
+  for (auto& [key, of_edge] : all) {
+    const double step = of_edge.front().near / length_of(key);
+    for (MarksOfEdge& marks : of_edge) {
+      std::sort(marks.places.begin(), marks.places.end());
+      std::vector<double> apart;
+      for (const double t : marks.places) {
+        if (apart.empty() || t - apart.back() > step) apart.push_back(t);
+      }
+      marks.places = std::move(apart);
+    }
+  }
+  return all;
+}
+
+// The places on an edge of a polygon where lines of it or of its neighbour end.
+std::vector<double> places_on(const MarksByEdge& all, const CutPolygon& polygon, std::size_t edge) {
+  const auto found = all.find(key_of(polygon.corners, edge));
+  if (found == all.end()) return {};
+  for (const MarksOfEdge& marks : found->second) {
+    if (std::abs(marks.normal.dot(polygon.normal)) >= smooth_cosine) return marks.places;
+  }
+  return {};
+}
+
+// The same bits from both polygons that have the edge.
+Point marked_point(const EdgeKey& key, double t) {
+  const Point from(key[0], key[1], key[2]);
+  return from + t * (Point(key[3], key[4], key[5]) - from);
+}
+
+Outline outline_with_marks(const CutPolygon& polygon, const MarksByEdge& all, double max_edge) {
+  if (all.empty() && polygon.lines.empty()) return make_outline(polygon.corners, polygon.normal, max_edge);
+  std::vector<Point> corners;
+  for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
+    corners.push_back(polygon.corners[k]);
+    std::vector<double> places = places_on(all, polygon, k);
+    const EdgeKey key = places.empty() ? EdgeKey{} : key_of(polygon.corners, k);
+    if (comes_before(polygon.corners[(k + 1) % polygon.corners.size()], polygon.corners[k]))
+      std::reverse(places.begin(), places.end());
+    for (const double t : places) corners.push_back(marked_point(key, t));
+  }
+  Outline outline = make_outline(std::move(corners), polygon.normal, max_edge);
+
+  const auto point_at = [&](const LineEnd& end) -> Point {
+    if (!end.mark) return end.point;
+    const std::vector<double> places = places_on(all, polygon, end.mark->edge);
+    const double nearest = *std::min_element(places.begin(), places.end(), [&](double a, double b) {
+      return std::abs(a - end.mark->t) < std::abs(b - end.mark->t);
+    });
+    return marked_point(key_of(polygon.corners, end.mark->edge), nearest);
+  };
+  for (const auto& [from, to] : polygon.lines) outline.lines.push_back({point_at(from), point_at(to)});
+  std::erase_if(outline.lines, [](const auto& line) { return line[0] == line[1]; });
+  return outline;
+}
+
+}  // namespace
+
+double followed_detail(const ContactLines& contacts, double max_edge) {
+  constexpr double rounding = 1e-9;
+  const double detail = std::min(max_edge, contacts.detail);
+  return std::ldexp(contacts.size, static_cast<int>(std::floor(std::log2(detail / contacts.size) + rounding)));
+}
+
+std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
+                                     double max_edge) {
+  const bool any = !contacts.on.empty();
+  const double grid = any ? grid_of_extent * extent_of(scene) : 0;
+  const double detail = any ? followed_detail(contacts, max_edge) : 0;
+  static const std::vector<ContactLine> none;
+  std::vector<CutPolygon> polygons(scene.polygons.size());
+  parallel_for(polygons.size(), [&](std::size_t p) {
+    const auto polygon = static_cast<PolygonIndex>(p);
+    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon),
+                              any ? contacts.on[p] : none, detail, grid);
+  });
+  return polygons;
+}
+
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge) {
+  const MarksByEdge marks = marks_by_edge(polygons);
+  std::vector<Outline> outlines(polygons.size());
+  parallel_for(polygons.size(), [&](std::size_t p) { outlines[p] = outline_with_marks(polygons[p], marks, max_edge); });
+  return outlines;
+}
+
+}  // namespace patchlight

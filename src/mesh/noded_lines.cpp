@@ -1,0 +1,240 @@
+#include "mesh/noded_lines.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <geos_c.h>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// A context of GEOS serves one thread.
+class Geos {
+ public:
+  Geos() : context_(GEOS_init_r()) {}
+  ~Geos() { GEOS_finish_r(context_); }
+  Geos(const Geos&) = delete;
+  Geos& operator=(const Geos&) = delete;
+  operator GEOSContextHandle_t() const { return context_; }
+
+ private:
+  GEOSContextHandle_t context_;
+};
+
+struct DestroyShape {
+  GEOSContextHandle_t context = nullptr;
+  void operator()(GEOSGeometry* shape) const { GEOSGeom_destroy_r(context, shape); }
+};
+using FlatShape = std::unique_ptr<GEOSGeometry, DestroyShape>;
+
+FlatShape shape_of(const Geos& geos, std::span<const FlatLine> lines) {
+  std::vector<GEOSGeometry*> parts;
+  for (const auto& [from, to] : lines) {
+    const std::array<double, 4> ends{from.x(), from.y(), to.x(), to.y()};
+    GEOSCoordSequence* sequence = GEOSCoordSeq_copyFromBuffer_r(geos, ends.data(), 2, 0, 0);
+    GEOSGeometry* line = sequence == nullptr ? nullptr : GEOSGeom_createLineString_r(geos, sequence);
+    if (line != nullptr) parts.push_back(line);
+  }
+  return {GEOSGeom_createCollection_r(geos, GEOS_MULTILINESTRING, parts.data(), static_cast<unsigned>(parts.size())),
+          {geos}};
+}
+
+// The corners of one line string.
+std::vector<FlatPoint> points_of(const Geos& geos, const GEOSGeometry* string) {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos, string);
+  unsigned count = 0;
+  if (sequence == nullptr || GEOSCoordSeq_getSize_r(geos, sequence, &count) == 0) return {};
+  std::vector<double> values(std::size_t{2} * count);
+  if (GEOSCoordSeq_copyToBuffer_r(geos, sequence, values.data(), 0, 0) == 0) return {};
+  std::vector<FlatPoint> points;
+  for (std::size_t k = 0; k < count; ++k) points.emplace_back(values[2 * k], values[2 * k + 1]);
+  return points;
+}
+
+bool has_order(const FlatPoint& a, const FlatPoint& b) { return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y()); }
+
+std::vector<FlatLine> in_order(std::vector<FlatLine> lines) {
+  for (auto& [from, to] : lines) {
+    if (has_order(to, from)) std::swap(from, to);
+  }
+  std::sort(lines.begin(), lines.end(), [](const FlatLine& a, const FlatLine& b) {
+    return a[0] != b[0] ? has_order(a[0], b[0]) : has_order(a[1], b[1]);
+  });
+  return lines;
+}
+
+// The strings that a shape is made of.
+std::vector<std::vector<FlatPoint>> strings_of(const Geos& geos, const GEOSGeometry* shape) {
+  std::vector<std::vector<FlatPoint>> strings;
+  for (int k = 0; shape != nullptr && k < GEOSGetNumGeometries_r(geos, shape); ++k) {
+    std::vector<FlatPoint> points = points_of(geos, GEOSGetGeometryN_r(geos, shape, k));
+    if (points.size() > 1) strings.push_back(std::move(points));
+  }
+  return strings;
+}
+
+std::vector<FlatLine> lines_of(std::span<const std::vector<FlatPoint>> strings) {
+  std::vector<FlatLine> lines;
+  for (const std::vector<FlatPoint>& points : strings) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      if (points[i] != points[i + 1]) lines.push_back({points[i], points[i + 1]});
+    }
+  }
+  return in_order(std::move(lines));
+}
+
+// Without those that are, with all that hang together with them, smaller than that.
+std::vector<std::vector<FlatPoint>> large_ones(std::vector<std::vector<FlatPoint>> strings, double least_size) {
+  std::map<std::array<double, 2>, std::size_t> first_at;
+  std::vector<std::size_t> part(strings.size());
+  const auto root = [&](std::size_t k) {
+    while (part[k] != k) k = part[k] = part[part[k]];
+    return k;
+  };
+  for (std::size_t k = 0; k < strings.size(); ++k) {
+    part[k] = k;
+    for (const FlatPoint& end : {strings[k].front(), strings[k].back()})
+      part[root(k)] = root(first_at.try_emplace({end.x(), end.y()}, k).first->second);
+  }
+  std::vector<Eigen::AlignedBox2d> boxes(strings.size());
+  for (std::size_t k = 0; k < strings.size(); ++k) {
+    for (const FlatPoint& point : strings[k]) boxes[root(k)].extend(point);
+  }
+  std::vector<std::vector<FlatPoint>> large;
+  for (std::size_t k = 0; k < strings.size(); ++k) {
+    if (boxes[root(k)].diagonal().norm() >= least_size) large.push_back(std::move(strings[k]));
+  }
+  return large;
+}
+
+double wedge(const FlatPoint& a, const FlatPoint& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+bool is_near(const FlatLine& line, const FlatPoint& point, double near) {
+  const auto& [from, to] = line;
+  const FlatPoint low = from.cwiseMin(to).array() - near;
+  const FlatPoint high = from.cwiseMax(to).array() + near;
+  if ((point.array() < low.array()).any() || (point.array() > high.array()).any()) return false;
+  return std::abs(wedge(to - from, point - from)) <= near * (to - from).norm();
+}
+
+// Where a point of the grid lies on the lines themselves: on an end of one, or where two cross. Nowhere else is there
+// anything to be cut: what is found there are lines that lie on each other but for rounding.
+std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const FlatPoint& point, double near) {
+  constexpr double least_sine = 0.01;
+  std::vector<const FlatLine*> through;
+  const FlatPoint* end = nullptr;
+  for (const FlatLine& line : lines) {
+    if (!is_near(line, point, near)) continue;
+    through.push_back(&line);
+    for (const FlatPoint& one : line) {
+      const double nearest = end == nullptr ? near : (*end - point).norm();
+      if ((one - point).norm() < nearest) end = &one;
+    }
+  }
+  if (end != nullptr) return *end;
+  for (const FlatLine* other : through) {
+    const auto& [from, to] = *through.front();
+    const FlatPoint along = to - from;
+    const FlatPoint across = (*other)[1] - (*other)[0];
+    const double sine = wedge(along, across);
+    if (std::abs(sine) > least_sine * along.norm() * across.norm())
+      return from + wedge((*other)[0] - from, across) / sine * along;
+  }
+  return std::nullopt;
+}
+
+using GridPoint = std::array<double, 2>;
+
+GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
+
+// Parts of the lines with their ends on a grid where they belong. Two that meet where nothing is to be cut become one.
+std::vector<FlatLine> off_grid(std::vector<FlatLine> parts, std::span<const FlatLine> lines, double grid) {
+  std::map<GridPoint, std::optional<FlatPoint>> places;
+  for (const FlatLine& part : parts) {
+    for (const FlatPoint& end : part) {
+      const auto [place, is_new] = places.try_emplace(grid_key(end));
+      if (is_new) place->second = exact_place(lines, end, 2 * grid);
+    }
+  }
+  std::map<GridPoint, std::size_t> open;  // places where a part waits for another one
+  std::vector<std::uint8_t> is_gone(parts.size(), 0);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      const FlatPoint at = parts[k][end];
+      if (places[grid_key(at)]) continue;
+      const auto waiting = open.find(grid_key(at));
+      if (waiting == open.end()) {
+        open.emplace(grid_key(at), k);
+        continue;
+      }
+      // The other part grows into this one, which may in turn wait elsewhere.
+      const std::size_t other = waiting->second;
+      open.erase(waiting);
+      const FlatPoint far = parts[other][0] == at ? parts[other][1] : parts[other][0];
+      const auto far_waits = open.find(grid_key(far));
+      if (far_waits != open.end() && far_waits->second == other) far_waits->second = k;
+      parts[k][end] = far;
+      is_gone[other] = 1;
+    }
+  }
+  std::vector<FlatLine> placed;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (is_gone[k]) continue;
+    const auto at = [&](const FlatPoint& end) { return places[grid_key(end)].value_or(end); };
+    const FlatLine part{at(parts[k][0]), at(parts[k][1])};
+    if (part[0] != part[1]) placed.push_back(part);
+  }
+  return placed;
+}
+
+// With the ends on the grid, where coordinates that differ by rounding are equal.
+FlatShape on_grid(const Geos& geos, std::span<const FlatLine> lines, double grid) {
+  const FlatShape all = shape_of(geos, lines);
+  return {GEOSUnaryUnionPrec_r(geos, all.get(), grid), {geos}};
+}
+
+// Joined to strings where no third line meets two.
+FlatShape joined(const Geos& geos, const FlatShape& lines) {
+  return {lines ? GEOSLineMerge_r(geos, lines.get()) : nullptr, {geos}};
+}
+
+}  // namespace
+
+std::vector<FlatLine> noded_lines(std::span<const FlatLine> lines, double grid) {
+  const Geos geos;
+  const FlatShape noded = on_grid(geos, lines, grid);
+  return off_grid(lines_of(strings_of(geos, noded.get())), lines, grid);
+}
+
+std::vector<FlatLine> simplified_lines(std::span<const FlatLine> lines, double grid, double tolerance,
+                                       double least_size) {
+  const Geos geos;
+  const FlatShape strings = joined(geos, on_grid(geos, lines, grid));
+  if (!strings) return {};
+  const FlatShape simpler(GEOSTopologyPreserveSimplify_r(geos, strings.get(), tolerance), {geos});
+  return off_grid(lines_of(large_ones(strings_of(geos, simpler.get()), least_size)), lines, grid);
+}
+
+std::vector<FlatLine> lines_beside(std::span<const FlatLine> lines, double distance) {
+  const Geos geos;
+  const FlatShape strings = joined(geos, shape_of(geos, lines));
+  if (!strings) return {};
+  constexpr int arc_segments = 1;
+  constexpr double longest_mitre = 2;
+  const FlatShape band(GEOSBufferWithStyle_r(geos, strings.get(), distance, arc_segments, GEOSBUF_CAP_FLAT,
+                                             GEOSBUF_JOIN_MITRE, longest_mitre),
+                       {geos});
+  if (!band) return {};
+  const FlatShape rim(GEOSBoundary_r(geos, band.get()), {geos});
+  return lines_of(strings_of(geos, rim.get()));
+}
+
+}  // namespace patchlight
