@@ -20,5 +20,5 @@ echo "| scene | asked | without: stated, patches, CPU s | with: stated, patches,
 echo "|---|---|---|---|"
 for run in "two_rooms 5%" "two_rooms 3%" "two_rooms 1%" "cornell_box 0.5%"; do
   read -r scene accuracy <<<"$run"
-  echo "| $scene | $accuracy | $(figures "$meshes/$scene.obj" --accuracy "$accuracy") | $(figures "$meshes/$scene.obj" --accuracy "$accuracy" --contact-lines) |"
+  echo "| $scene | $accuracy | $(figures "$meshes/$scene.obj" --accuracy "$accuracy" --no-contact-lines) | $(figures "$meshes/$scene.obj" --accuracy "$accuracy") |"
 done

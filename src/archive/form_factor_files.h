@@ -52,6 +52,7 @@ struct FormFactorInfo {
   std::string closure;               ///< the method that closed them; empty if none did
   double max_edge = 0;               ///< metres
   Sides sides = Sides::automatic;
+  bool contact_lines = true;  ///< MeshOptions::contact_lines
   int samples = 8;
   std::uint64_t seed = 1;
   int lost_share_rays = 256;

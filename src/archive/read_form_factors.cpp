@@ -62,6 +62,8 @@ FormFactorInfo info_of_any(const nlohmann::json& json) {
   const nlohmann::json& options = json.at("options");
   info.max_edge = options.at("max_edge_m").get<double>();
   info.sides = sides_of(options.at("sides").get<std::string>());
+  // Nor this: their patches follow the outlines of faces alone.
+  info.contact_lines = options.value("contact_lines", false);
   info.seed = options.at("seed").get<std::uint64_t>();
   info.lost_share_rays = options.at("lost_share_rays").get<int>();
   if (!(info.max_edge > 0 && std::isfinite(info.max_edge) && info.lost_share_rays >= 1))

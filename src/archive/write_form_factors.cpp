@@ -156,6 +156,7 @@ std::string info_json(const FormFactorResult& result) {
   json["closure"] = exchange.closure.empty() ? Json() : Json(exchange.closure);
   json["options"] = {{"max_edge_m", plan.max_edge},
                      {"sides", name_of(request.mesh.sides)},
+                     {"contact_lines", request.mesh.contact_lines},
                      {"samples", plan.assembly.samples},
                      {"estimator", name_of(plan.assembly.estimator)},
                      {"without", left_out(plan.assembly.short_cuts)},

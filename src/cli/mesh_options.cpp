@@ -28,13 +28,10 @@ void add_patch_options(CLI::App& command, Request& request) {
       [&request](const std::string& text) {
         request.mesh.patches = whole_number("--patches", text, 1, 1'000'000'000);
       });
-}
-
-void add_contact_option(CLI::App& command, Request& request) {
   command.add_flag_callback(
-      "--contact-lines", [&request] { request.mesh.contact_lines = true; },
-      "patches end where other faces touch, cross or end close before\n"
-      "a face, and none is left under what stands on it; default:\npatches follow the outlines of faces alone");
+      "--no-contact-lines", [&request] { request.mesh.contact_lines = false; },
+      "patches follow the outlines of faces alone; default: they also end\nwhere other faces touch, cross or end close "
+      "before a face, and none\nis left under what stands on it");
 }
 
 void add_closure_option(CLI::App& command, Request& request) {

@@ -16,9 +16,6 @@ Sides sides_named(const std::string& text);
 /// Adds --max-edge, in model units, and --patches.
 void add_patch_options(CLI::App& command, Request& request);
 
-/// Adds --contact-lines.
-void add_contact_option(CLI::App& command, Request& request);
-
 /// Adds --no-closure.
 void add_closure_option(CLI::App& command, Request& request);
 

@@ -33,7 +33,6 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
     to.json = text;
   });
   add_patch_options(command, to.request);
-  add_contact_option(command, to.request);
   add_accuracy_options(command, to.request);
   add_storage_options(command, to.request);
   add_effect_options(command, to.request);

@@ -66,6 +66,7 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   Request request = arguments.request;
   if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;
   if (request.mesh.sides == Sides::automatic) request.mesh.sides = info.sides;
+  request.mesh.contact_lines = info.contact_lines;
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {
     request.assembly.rays = info.rays;

@@ -141,7 +141,8 @@ std::array<double, 2> heights(const PatchShape& patch, const PatchShape& plane) 
 }
 
 bool closer_than(const PatchShape& first, const PatchShape& second, double diameters) {
-  const double limit = 2 * diameters * std::max(first.radius, second.radius);
+  constexpr double rounding = 1e-9;  // the same answer for distances that are equal but for it
+  const double limit = (1 - rounding) * 2 * diameters * std::max(first.radius, second.radius);
   return (second.centroid - first.centroid).squaredNorm() < limit * limit;
 }
 

@@ -331,7 +331,7 @@ Outline outline_with_marks(const CutPolygon& polygon, const MarksByEdge& all, do
 
 double followed_detail(const ContactLines& contacts, double max_edge) {
   constexpr double rounding = 1e-9;
-  const double detail = std::min(max_edge, contacts.detail);
+  const double detail = std::min(contacts.of_edge * max_edge, contacts.detail);
   return std::ldexp(contacts.size, static_cast<int>(std::floor(std::log2(detail / contacts.size) + rounding)));
 }
 

@@ -158,11 +158,17 @@ GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
 // Parts of the lines with their ends on a grid where they belong. Two that meet where nothing is to be cut become one.
 std::vector<FlatLine> off_grid(std::vector<FlatLine> parts, std::span<const FlatLine> lines, double grid) {
   std::map<GridPoint, std::optional<FlatPoint>> places;
+  std::map<GridPoint, int> meet;
   for (const FlatLine& part : parts) {
     for (const FlatPoint& end : part) {
       const auto [place, is_new] = places.try_emplace(grid_key(end));
       if (is_new) place->second = exact_place(lines, end, 2 * grid);
+      ++meet[grid_key(end)];
     }
+  }
+  // Where more than two meet it is not known which of them go on as one.
+  for (const auto& [key, count] : meet) {
+    if (count != 2 && !places[key]) places[key] = FlatPoint(key[0], key[1]);
   }
   std::map<GridPoint, std::size_t> open;  // places where a part waits for another one
   std::vector<std::uint8_t> is_gone(parts.size(), 0);

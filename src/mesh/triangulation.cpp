@@ -159,13 +159,12 @@ void Triangulation::cut_boundary() {
   }
 }
 
-// Twice the signed area of the triangle of an edge and a point, a point on the edge but for rounding counting as
-// inside.
+// A point on the edge but for rounding counts as left of it.
 bool Triangulation::is_left_of(HalfedgeHandle edge, const Workbench::Point& point) const {
   constexpr double rounding = 1e-9;
   const auto& from = mesh_.point(mesh_.from_vertex_handle(edge));
   const auto& to = mesh_.point(mesh_.to_vertex_handle(edge));
-  return turn(from, to, point) >= -rounding * max_square_;
+  return turn(from, to, point) >= -rounding * std::sqrt(dot(from, to, to) * max_square_);
 }
 
 // Walks from triangle to triangle towards the point. Where the boundary of a concave polygon is in the way, every

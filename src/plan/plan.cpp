@@ -144,16 +144,31 @@ PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides
 
 // The lines of contact. A mesh that is refined begins with patches that tell nothing of the size of details: what is
 // worth a line then is what an accuracy can feel, as a share of the area of all kept sides.
-ContactLines contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
+struct PlannedContacts {
+  ContactLines lines;
+  std::vector<std::string> notes;
+};
+
+PlannedContacts contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
   constexpr double detail_of_accuracy = 18;  // fitted to two furnished rooms at 1 to 5 %
   constexpr double of_time = 0.01;           // an accuracy, where a time is asked for
+  // Where there are so many times the patches that there are without lines faces cross anywhere.
+  constexpr std::size_t many = 3;
+  constexpr std::size_t few = 1000;
   if (!request.mesh.contact_lines) return {};
   ContactLines contacts = find_contact_lines(scene, sides);
+  if (contacts.on.empty()) return {};
+  if (has_error_bars(request.accuracy)) contacts.of_edge = 0.5;
   if (refines(request.accuracy) && !request.mesh.max_edge) {
     const double accuracy = request.accuracy.relative_error.value_or(of_time);
     contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
   }
-  return contacts;
+  const std::size_t with_lines = least_patches(scene, sides, contacts);
+  if (with_lines > std::max(few, many * least_patches(scene, sides)))
+    return {{},
+            {"patches that end where faces touch or cross would be " + std::to_string(with_lines) +
+             " at least; they follow the outlines of faces alone"}};
+  return {std::move(contacts), {}};
 }
 
 // Error bars follow from the errors of the entries.
@@ -197,7 +212,7 @@ AccuracyOptions decided(AccuracyOptions accuracy) {
 Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   require_lamp(scene);
   KeptSides sides = sides_for(scene, asked);
-  ContactLines contacts = contacts_for(scene, asked, sides);
+  auto [contacts, notes_on_contacts] = contacts_for(scene, asked, sides);
   PatchSize size = patch_size(scene, asked, sides, contacts);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
@@ -220,14 +235,14 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .resources = request.resources,
           .decisions = std::move(decisions),
           .lamp_colour = !in_colour && one_colour ? *facts.lamp_colour : Spectrum(),
-          .notes = joined({std::move(size.notes), notes_on_overruling(facts, request), notes_on_sun(scene),
-                           notes_on_luminaires_behind(scene),
+          .notes = joined({std::move(size.notes), std::move(notes_on_contacts), notes_on_overruling(facts, request),
+                           notes_on_sun(scene), notes_on_luminaires_behind(scene),
                            request.mesh.kept_sides ? left_out() : std::vector<std::string>()})};
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
-  ContactLines contacts = contacts_for(scene, request, sides);
+  auto [contacts, notes_on_contacts] = contacts_for(scene, request, sides);
   PatchSize size = patch_size(scene, request, sides, contacts);
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);
@@ -239,7 +254,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = {},
-          .notes = std::move(size.notes)};
+          .notes = joined({std::move(size.notes), std::move(notes_on_contacts)})};
 }
 
 bool refines(const AccuracyOptions& accuracy) { return accuracy.relative_error || accuracy.seconds; }

@@ -240,6 +240,7 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   parallel_for(found.size(), [&](std::size_t p) { found[p] = search.on(static_cast<PolygonIndex>(p)); });
   ContactLines lines;
   lines.size = std::sqrt(area);
+  if (std::all_of(found.begin(), found.end(), [](const LinesOnFaces& some) { return some.empty(); })) return {};
   lines.on.resize(scene.polygons.size());
   for (const LinesOnFaces& some : found) {
     for (const auto& [polygon, line] : some) lines.on[polygon].push_back(line);

@@ -163,10 +163,12 @@ Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { retu
 double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem) {
   const Eigen::ArrayXd error = area_norm(reference - radiosity, problem.area);
   const Eigen::ArrayXd size = area_norm(reference - problem.exitance, problem.area);
+  constexpr double rounding = 1e-14;
+  const Eigen::ArrayXd rounded = rounding * area_norm(reference, problem.area);
   double worst = 0;
   for (Eigen::Index band = 0; band < error.size(); ++band) {
-    // 0 / 0 is 0: nothing is wrong where there is nothing. What is not a number is worse than any.
-    const double of_band = error[band] == 0 ? 0 : error[band] / size[band];
+    // 0 / 0 is 0, but for rounding: nothing is wrong where there is nothing. What is not a number is worse than any.
+    const double of_band = error[band] <= rounded[band] ? 0 : error[band] / size[band];
     if (std::isnan(of_band) || of_band > worst) worst = of_band;
   }
   return worst;

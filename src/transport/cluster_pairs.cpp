@@ -12,6 +12,15 @@ bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occlud
                      [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
 }
 
+std::vector<PolygonIndex> polygons_of(const PatchMesh& mesh, const PatchCluster& cluster) {
+  std::vector<PolygonIndex> polygons;
+  for (int lane = 0; lane < cluster.size; ++lane)
+    polygons.push_back(mesh.polygon[cluster.patches[static_cast<std::size_t>(lane)]]);
+  std::sort(polygons.begin(), polygons.end());
+  polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+  return polygons;
+}
+
 }  // namespace
 
 ClusterPairs::ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options)
@@ -24,6 +33,7 @@ ClusterPairs::ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, cons
   for (const PatchCluster& cluster : clusters_) {
     hulls_.push_back(hull_of(cluster, shapes_, occluder.shafts()));
     hulls_.back().is_covered = is_covered(mesh, cluster, occluder);
+    hulls_.back().polygons = polygons_of(mesh, cluster);
   }
 }
 
@@ -32,7 +42,10 @@ PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
   const ClusterHull& a = hulls_[pair.row];
   const ClusterHull& b = hulls_[pair.column];
   if (short_cuts_.free && is_free(a, b)) return PairClass::free;
-  return short_cuts_.hidden && occluder_.hides(a.corners, b.corners) ? PairClass::hidden : PairClass::sampled;
+  if (!short_cuts_.hidden) return PairClass::sampled;
+  std::vector<PolygonIndex> own = a.polygons;
+  own.insert(own.end(), b.polygons.begin(), b.polygons.end());
+  return occluder_.hides(a.corners, b.corners, own) ? PairClass::hidden : PairClass::sampled;
 }
 
 bool ClusterPairs::is_free(const ClusterHull& a, const ClusterHull& b) const {

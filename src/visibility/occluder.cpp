@@ -166,7 +166,8 @@ std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, c
   return blockers->planes[query.hit.primID].polygon;
 }
 
-bool Occluder::hides(std::span<const Point> first, std::span<const Point> second) const {
+bool Occluder::hides(std::span<const Point> first, std::span<const Point> second,
+                     std::span<const PolygonIndex> own) const {
   std::vector<Point> from;
   std::vector<Point> to;
   for (const Point& point : first) from.push_back(tracer_->recentred(point));
@@ -175,12 +176,12 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
     return Point(std::accumulate(points.begin(), points.end(), Point(Point::Zero())) /
                  static_cast<double>(points.size()));
   };
+  const auto cuts = [&](const std::optional<PolygonIndex>& polygon) {
+    return polygon && std::find(own.begin(), own.end(), *polygon) == own.end() &&
+           cuts_all(tracer_->faces->covered_places.polygons[*polygon], from, to, in_plane_tolerance);
+  };
   const auto met = tracer_->first_polygon(middle(from), middle(to));
-  if (!met) return false;
-  const std::vector<FlatPolygon>& polygons = tracer_->faces->covered_places.polygons;
-  if (cuts_all(polygons[*met], from, to, in_plane_tolerance)) return true;
-  const auto other = tracer_->first_polygon(middle(to), middle(from));
-  return other && *other != *met && cuts_all(polygons[*other], from, to, in_plane_tolerance);
+  return met && (cuts(met) || cuts(tracer_->first_polygon(middle(to), middle(from))));
 }
 
 const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }

@@ -110,8 +110,9 @@ class Occluder {
 
   /// True when one polygon hides the convex hulls of two groups of points from each other: it cuts every segment
   /// between them. May be false when they are hidden by several. The polygons tried are those that a ray between the
-  /// middles meets first from either end.
-  bool hides(std::span<const Point> first, std::span<const Point> second) const;
+  /// middles meets first from either end, but for those of the groups' own: what is bent by rounding lies before its
+  /// patches in places.
+  bool hides(std::span<const Point> first, std::span<const Point> second, std::span<const PolygonIndex> own = {}) const;
 
   /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <ostream>
 #include <string>
@@ -65,32 +66,43 @@ std::vector<Quad> drawer_in_cupboard() {
   return faces;
 }
 
+// Into an open box few paths find their way: of too few their scatter tells nothing.
 struct Gap {
   std::string name;
   std::vector<Quad> faces;
+  std::uint32_t paths = 1024;  // per patch
 };
 
 void PrintTo(const Gap& gap, std::ostream* out) { *out << gap.name; }
 
 class Gaps : public testing::TestWithParam<Gap> {};
 
-// Every patch of what stands in the room. Bars are standard errors: the mean of (difference / bar)^2 is 1, or less
-// where they are wide.
+// Every patch of what stands in the room. Bars are standard errors: the mean of (difference / bar)^2 over the patches
+// is 1, or less where they are wide. Errors of patches go together, so that only other seeds tell how well that is
+// known.
 struct Compared {
-  double chi_square = 0;  // mean over the patches
-  double scatter = 0;     // of that mean where bars are just right: its standard deviation
+  double chi_square = 0;  // mean over patches and seeds
+  double scatter = 0;     // standard error of that mean, from the seeds
   double width = 0;       // of the bars, as a share of the light there
 };
 
-Compared with_paths(const Scene& scene, const Simulation& simulation) {
-  std::vector<PathReceiver> receivers;
+std::vector<PatchIndex> patches_in_room(const Simulation& simulation) {
   std::vector<PatchIndex> patches;
-  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
-    if (simulation.mesh.polygon[i] < 7 || simulation.transport.lost.covered[i] > 0.5) continue;
-    patches.push_back(i);
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i)
+    if (simulation.mesh.polygon[i] >= 7 && simulation.transport.lost.covered[i] <= 0.5) patches.push_back(i);
+  return patches;
+}
+
+PathEstimate traced(const Scene& scene, const Simulation& simulation, std::uint32_t paths) {
+  std::vector<PathReceiver> receivers;
+  for (const PatchIndex i : patches_in_room(simulation))
     receivers.push_back({simulation.mesh.corner_points(i).points, simulation.mesh.polygon[i], simulation.mesh.side[i]});
-  }
-  const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), receivers, {.paths = 1024});
+  return trace_irradiance(scene, kept_sides(scene, Sides::both), receivers, {.paths = paths});
+}
+
+// Of one seed, with no scatter.
+Compared with_paths(const PathEstimate& paths, const Simulation& simulation) {
+  const std::vector<PatchIndex> patches = patches_in_room(simulation);
   const Field bar = simulation.error_bars->total();
   double chi_square = 0;
   double bars = 0;
@@ -101,26 +113,39 @@ Compared with_paths(const Scene& scene, const Simulation& simulation) {
     bars += bar(patches[k], 0) * bar(patches[k], 0);
     if (off != 0) chi_square += std::min(off * off / (expected * expected), 1e6);
   }
-  const auto count = static_cast<double>(patches.size());
-  return {chi_square / count, std::sqrt(2 / count), std::sqrt(bars) / paths.irradiance.matrix().norm()};
+  return {chi_square / static_cast<double>(patches.size()), 0, std::sqrt(bars) / paths.irradiance.matrix().norm()};
 }
 
-Compared solved_and_traced(const std::vector<Quad>& faces, double size, std::size_t patches, Storage storage) {
+Compared solved_and_traced(const Gap& gap, double size, std::size_t patches, Storage storage) {
+  constexpr int seeds = 4;
   const Eigen::AngleAxisd turn(size == 1 ? 0.0 : 0.7, Vector(1, 2, 3).normalized());
-  const Scene scene = moved(room_with(faces), Eigen::Affine3d(turn) * Eigen::Scaling(size));
+  const Scene scene = moved(room_with(gap.faces), Eigen::Affine3d(turn) * Eigen::Scaling(size));
   Request request;
   request.mesh.patches = patches;
   request.mesh.sides = Sides::both;
   request.assembly.storage = storage;
   if (storage == Storage::rays) request.solver.solver = Solver::gmres;
   request.accuracy.error_bars = storage == Storage::tiles;  // rows of rays state theirs unasked
-  return with_paths(scene, simulate(scene, request));
+  Compared mean;
+  double squares = 0;
+  PathEstimate paths;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    request.assembly.seed = static_cast<std::uint64_t>(seed);
+    const Simulation simulation = simulate(scene, request);
+    if (seed == 1) paths = traced(scene, simulation, gap.paths);
+    const Compared one = with_paths(paths, simulation);
+    mean.chi_square += one.chi_square / seeds;
+    mean.width = std::max(mean.width, one.width);
+    squares += one.chi_square * one.chi_square / seeds;
+  }
+  mean.scatter = std::sqrt(std::max(0.0, squares - mean.chi_square * mean.chi_square) / (seeds - 1));
+  return mean;
 }
 
 TEST_P(Gaps, LeakNoMoreThanBarsSay) {
   for (const double size : {1.0, 1e-3}) {
-    const Compared by = solved_and_traced(GetParam().faces, size, 500, Storage::tiles);
-    EXPECT_LT(by.chi_square, 1) << "size " << size;
+    const Compared by = solved_and_traced(GetParam(), size, 500, Storage::tiles);
+    EXPECT_LT(by.chi_square, 1 + 2 * by.scatter) << "size " << size << ", scatter " << by.scatter;
     EXPECT_LT(by.width, 0.2) << "bars that tell nothing, size " << size;
   }
 }
@@ -128,7 +153,7 @@ TEST_P(Gaps, LeakNoMoreThanBarsSay) {
 // Noise of the rays is most of these bars: they are as wide as what they state, not wider.
 TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
   for (const double size : {1.0, 1e-3}) {
-    const Compared by = solved_and_traced(GetParam().faces, size, 2000, Storage::rays);
+    const Compared by = solved_and_traced(GetParam(), size, 2000, Storage::rays);
     EXPECT_LT(by.chi_square, 1 + 2 * by.scatter) << "size " << size << ", scatter " << by.scatter;
     EXPECT_LT(by.width, 0.2) << "bars that tell nothing, size " << size;
   }
@@ -136,10 +161,11 @@ TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
 
 INSTANTIATE_TEST_SUITE_P(HardCases, Gaps,
                          testing::Values(Gap{"Box1mm", box_above(0.001)}, Gap{"Box5mm", box_above(0.005)},
-                                         Gap{"Box2cm", box_above(0.02)}, Gap{"OpenBox1mm", open_box_above(0.001)},
-                                         Gap{"OpenBox5mm", open_box_above(0.005)},
-                                         Gap{"OpenBox2cm", open_box_above(0.02)}, Gap{"Board", board_before_wall()},
-                                         Gap{"Drawer", drawer_in_cupboard()}),
+                                         Gap{"Box2cm", box_above(0.02)},
+                                         Gap{"OpenBox1mm", open_box_above(0.001), 16384},
+                                         Gap{"OpenBox5mm", open_box_above(0.005), 16384},
+                                         Gap{"OpenBox2cm", open_box_above(0.02), 16384},
+                                         Gap{"Board", board_before_wall()}, Gap{"Drawer", drawer_in_cupboard()}),
                          [](const auto& instance) { return instance.param.name; });
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST_P(SmallOpenings, LightSensorsAsPathsFind) {
     around.push_back({{spot - y - z, spot - y + z, spot + y + z, spot + y - z}, far_wall, {}});
     sensors.push_back({spot - 1e-4 * Vector::UnitX(), -Vector::UnitX()});
   }
-  const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), around, {.paths = 1 << 18});
+  const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), around, {.paths = 1 << 20});
   const Simulation simulation = simulated(scene, 1);
   const ErrorBars& bars = *simulation.error_bars;
   constexpr double reflectance = 0.5;

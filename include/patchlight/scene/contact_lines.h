@@ -22,6 +22,8 @@ struct ContactLines {
   double size = 0;                           ///< the root of the area of all faces, metres
   /// Metres. Patches with longer edges follow the lines as those of this length do.
   double detail = std::numeric_limits<double>::infinity();
+  double of_edge = 1;  ///< patches follow the lines as those with this part of their edges do: a half where they will
+                       ///< be cut in four
 };
 
 /// The lines of contact on every polygon with a kept side. Faces touch where they are within weld_distance(). Edges

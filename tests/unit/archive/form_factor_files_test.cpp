@@ -242,7 +242,9 @@ TEST(StoredFormFactors, OfAnotherGeometryAreRefused) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
   Scene scene = furnished_room(0.5);
-  const FormFactors found = find_form_factors(scene, coarse());
+  Request request = coarse();
+  request.mesh.contact_lines = false;
+  const FormFactors found = find_form_factors(scene, request);
   write_form_factors(place, {scene, found, {}, "a command"});
   const FormFactorInfo info = read_form_factor_info(place);
   EXPECT_NO_THROW(read_exchange(place, info, found.mesh));
