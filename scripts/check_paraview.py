@@ -85,12 +85,16 @@ def colours_of(data):
     return {tuple(int(c) for c in rgb.GetTuple(k)) for k in range(rgb.GetNumberOfTuples())}
 
 
-def check_screenshot(file, data):
-    """Colours come out as they stand in the array, neither mapped nor shaded; only edges are mixed."""
+def pixels_of(file):
     reader = vtkPNGReader()
     reader.SetFileName(str(file))
     reader.Update()
-    pixels = reader.GetOutput().GetPointData().GetScalars()
+    return reader.GetOutput().GetPointData().GetScalars()
+
+
+def check_screenshot(file, data):
+    """Colours come out as they stand in the array, neither mapped nor shaded; only edges are mixed."""
+    pixels = pixels_of(file)
     known, shown, lit = colours_of(data), 0, 0
     for k in range(pixels.GetNumberOfTuples()):
         pixel = pixels.GetTuple(k)
@@ -101,12 +105,32 @@ def check_screenshot(file, data):
     check(shown > 0.9 * lit, f"{file.name}: {100 * shown / max(lit, 1):.1f} % of them have a colour of the array rgb")
 
 
+def mean_colour(file):
+    """Over the pixels that show the model."""
+    pixels = pixels_of(file)
+    lit = [pixels.GetTuple(k)[:3] for k in range(pixels.GetNumberOfTuples()) if sum(pixels.GetTuple(k)) > 0]
+    return [sum(pixel[channel] for pixel in lit) / max(len(lit), 1) for channel in range(3)]
+
+
+def check_smooth(result, file):
+    """What the macro shows of a result are the colours of its points: the same light as that of the patches, smoothed."""
+    view = simple.CreateView("RenderView")
+    simple.SetActiveView(view)
+    simple.SetActiveSource(result)
+    runpy.run_path(str(MACRO))
+    simple.GetActiveCamera().Zoom(1.2)
+    simple.SaveScreenshot(str(file), view, ImageResolution=[1000, 1000])
+    smooth, patches = mean_colour(file), mean_colour(file.with_name(file.stem + "_patches.png"))
+    check(all(abs(a - b) <= 3 for a, b in zip(smooth, patches)), f"smooth colours {smooth} are those of patches {patches}")
+    simple.Delete(view)
+
+
 def screenshot(source, file, time=0.0):
     """As with the macro's button: a source is active, the script runs; then the time slider is moved."""
     view = simple.CreateView("RenderView")
     simple.SetActiveView(view)
     simple.SetActiveSource(source)
-    runpy.run_path(str(MACRO))
+    runpy.run_path(str(MACRO))["show_colours"](source, view, of_patches=True)
     simple.GetAnimationScene().AnimationTime = time
     simple.GetActiveCamera().Zoom(1.2)
     simple.SaveScreenshot(str(file), view, ImageResolution=[1000, 1000])
@@ -152,7 +176,8 @@ def main():
     check_ranges(result, report)
     check_units(result, report)
     check_flux(result, report)
-    screenshot(result, folder / (name + ".png"))
+    screenshot(result, folder / (name + "_patches.png"))
+    check_smooth(result, folder / (name + ".png"))
     check_series(folder, name, result, report)
     check_coloured(folder, name, report)
     print(f"paraview: {len(faults)} faults; screenshots in {folder}", flush=True)

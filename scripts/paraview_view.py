@@ -3,11 +3,12 @@
 
 From the command line, with or without a picture:
 
-    pvpython scripts/paraview_view.py result.vtp [screenshot.png]
+    pvpython scripts/paraview_view.py [--patches] result.vtp [screenshot.png]
 
 In ParaView's window: Macros > Import new macro, choose this file, open a result, press the macro's button.
 
-The colours in the array `rgb` are final: they must not go through a colour map (Map Scalars off) nor be shaded again
+Of a result it shows the colours `rgb_smooth` of the points, or, with --patches before the file, `rgb` of the patches, one
+colour each, as of a series. They are final: they must not go through a colour map (Map Scalars off) nor be shaded again
 (lighting off). Back faces are culled, so that a room can be looked into through its walls.
 """
 import sys
@@ -23,11 +24,12 @@ def set_where_known(proxy, **values):
             setattr(proxy, name, value)
 
 
-def show_colours(source, view):
-    """Shows `rgb` of the source in the view just as it is."""
+def show_colours(source, view, of_patches=False):
+    """Shows the colours of the source in the view just as they are."""
     display = simple.Show(source, view)
     display.Representation = "Surface"
-    simple.ColorBy(display, ("CELLS", "rgb"))
+    is_smooth = not of_patches and source.PointData.GetArray("rgb_smooth") is not None
+    simple.ColorBy(display, ("POINTS", "rgb_smooth") if is_smooth else ("CELLS", "rgb"))
     # ColorBy has made a colour map: leave it out.
     display.MapScalars = 0
     display.SetScalarBarVisibility(view, False)
@@ -65,10 +67,10 @@ def look_at(source, view):
     simple.ResetCamera(view)  # keeps the direction, fits the distance
 
 
-def show(source, screenshot=None):
+def show(source, screenshot=None, of_patches=False):
     """Shows the source in the active view and, when a name is given, saves a picture."""
     view = simple.GetActiveViewOrCreate("RenderView")
-    show_colours(source, view)
+    show_colours(source, view, of_patches)
     plain_background(view)
     look_at(source, view)
     simple.Render(view)
@@ -77,15 +79,17 @@ def show(source, screenshot=None):
 
 
 def main(arguments):
+    of_patches = "--patches" in arguments
+    arguments = [argument for argument in arguments if argument != "--patches"]
     if len(arguments) not in (1, 2):
         # No exit: it would close ParaView's window.
-        print("usage: pvpython paraview_view.py result.vtp [screenshot.png]; as a macro: choose a result first")
+        print("usage: pvpython paraview_view.py [--patches] result.vtp [screenshot.png]; as a macro: choose a result first")
         return
     reader = simple.XMLPolyDataReader(FileName=[arguments[0]])
     reader.UpdatePipeline()
     if reader.CellData.GetArray("rgb") is None:
         sys.exit(arguments[0] + ": holds no cell array 'rgb'; expected a result of patchlight solve")
-    show(reader, arguments[1] if len(arguments) == 2 else None)
+    show(reader, arguments[1] if len(arguments) == 2 else None, of_patches)
     if len(arguments) == 1:
         simple.Interact()
 

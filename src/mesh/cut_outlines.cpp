@@ -189,14 +189,14 @@ std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<Conta
 
 // Light that gets under an edge fades over some widths of the gap: one and three of them from the edge there are lines
 // as well, where patches would be wider and the edge is long enough for it to matter.
-std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double gap, double detail) {
+std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double grid, double gap, double detail) {
   double length = 0;
   for (const FlatLine& line : edges) length += (line[1] - line[0]).norm();
   if (length * gap < least_beside * detail * detail) return {};
   std::vector<FlatLine> beside;
   for (const double widths : {1.0, 3.0}) {
     if (widths * gap > farthest_beside * detail) continue;
-    const std::vector<FlatLine> some = lines_beside(edges, widths * gap);
+    const std::vector<FlatLine> some = lines_beside(edges, grid, widths * gap);
     beside.insert(beside.end(), some.begin(), some.end());
   }
   return beside;
@@ -223,7 +223,7 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
     const double least_size = std::max(least_size_of_lines * tolerance, least_size_over_gap * gap.widest);
     if (size_of(gap.lines) < least_size || !matters(outline, gap, detail)) continue;
     const std::vector<FlatLine> edges = simplified_lines(gap.lines, grid, tolerance, least_size);
-    const std::vector<FlatLine> beside = lines_beside_gap(edges, gap.widest, detail);
+    const std::vector<FlatLine> beside = lines_beside_gap(edges, grid, gap.widest, detail);
     lines.insert(lines.end(), edges.begin(), edges.end());
     lines.insert(lines.end(), beside.begin(), beside.end());
   }

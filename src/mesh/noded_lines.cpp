@@ -1,5 +1,7 @@
 #include "mesh/noded_lines.h"
 
+#include "mesh/grid_lines.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -117,52 +119,63 @@ std::vector<std::vector<FlatPoint>> large_ones(std::vector<std::vector<FlatPoint
 
 double wedge(const FlatPoint& a, const FlatPoint& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-bool is_near(const FlatLine& line, const FlatPoint& point, double near) {
-  const auto& [from, to] = line;
-  const FlatPoint low = from.cwiseMin(to).array() - near;
-  const FlatPoint high = from.cwiseMax(to).array() + near;
-  if ((point.array() < low.array()).any() || (point.array() > high.array()).any()) return false;
-  return std::abs(wedge(to - from, point - from)) <= near * (to - from).norm();
+using GridPoint = std::array<double, 2>;
+
+GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
+
+// Lines on a grid: their parts, each once, and which lines go through each place where parts end.
+struct GridLines {
+  std::vector<FlatLine> parts;
+  std::map<GridPoint, std::vector<std::size_t>> through;
+};
+
+GridLines on_grid(std::span<const FlatLine> lines, double grid) {
+  GridLines found;
+  for (const auto& [ends, line] : lines_on_grid(lines, grid)) {
+    if (found.parts.empty() || found.parts.back() != ends) found.parts.push_back(ends);
+    for (const FlatPoint& end : ends) {
+      std::vector<std::size_t>& here = found.through[grid_key(end)];
+      if (std::find(here.begin(), here.end(), line) == here.end()) here.push_back(line);
+    }
+  }
+  for (auto& [place, here] : found.through) std::sort(here.begin(), here.end());
+  return found;
 }
 
-// Where a point of the grid lies on the lines themselves: on an end of one, or where two cross. Nowhere else is there
+// Where a point of the grid lies on the lines through it: on an end of one, or where two cross. Nowhere else is there
 // anything to be cut: what is found there are lines that lie on each other but for rounding.
-std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const FlatPoint& point, double near) {
+std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std::vector<std::size_t>& through,
+                                     const FlatPoint& point, double near) {
   constexpr double least_sine = 0.01;
-  std::vector<const FlatLine*> through;
   const FlatPoint* end = nullptr;
-  for (const FlatLine& line : lines) {
-    if (!is_near(line, point, near)) continue;
-    through.push_back(&line);
-    for (const FlatPoint& one : line) {
+  for (const std::size_t k : through) {
+    for (const FlatPoint& one : lines[k]) {
       const double nearest = end == nullptr ? near : (*end - point).norm();
       if ((one - point).norm() < nearest) end = &one;
     }
   }
   if (end != nullptr) return *end;
-  for (const FlatLine* other : through) {
-    const auto& [from, to] = *through.front();
+  for (const std::size_t k : through) {
+    const auto& [from, to] = lines[through.front()];
     const FlatPoint along = to - from;
-    const FlatPoint across = (*other)[1] - (*other)[0];
+    const FlatPoint across = lines[k][1] - lines[k][0];
     const double sine = wedge(along, across);
     if (std::abs(sine) > least_sine * along.norm() * across.norm())
-      return from + wedge((*other)[0] - from, across) / sine * along;
+      return from + wedge(lines[k][0] - from, across) / sine * along;
   }
   return std::nullopt;
 }
 
-using GridPoint = std::array<double, 2>;
-
-GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
-
 // Parts of the lines with their ends on a grid where they belong. Two that meet where nothing is to be cut become one.
-std::vector<FlatLine> off_grid(std::vector<FlatLine> parts, std::span<const FlatLine> lines, double grid) {
+std::vector<FlatLine> off_grid(std::vector<FlatLine> parts, const GridLines& on, std::span<const FlatLine> lines,
+                               double grid) {
   std::map<GridPoint, std::optional<FlatPoint>> places;
   std::map<GridPoint, int> meet;
   for (const FlatLine& part : parts) {
     for (const FlatPoint& end : part) {
       const auto [place, is_new] = places.try_emplace(grid_key(end));
-      if (is_new) place->second = exact_place(lines, end, 2 * grid);
+      const auto through = on.through.find(grid_key(end));
+      if (is_new && through != on.through.end()) place->second = exact_place(lines, through->second, end, 2 * grid);
       ++meet[grid_key(end)];
     }
   }
@@ -201,46 +214,76 @@ std::vector<FlatLine> off_grid(std::vector<FlatLine> parts, std::span<const Flat
   return placed;
 }
 
-// With the ends on the grid, where coordinates that differ by rounding are equal.
-FlatShape on_grid(const Geos& geos, std::span<const FlatLine> lines, double grid) {
-  const FlatShape all = shape_of(geos, lines);
-  return {GEOSUnaryUnionPrec_r(geos, all.get(), grid), {geos}};
-}
-
 // Joined to strings where no third line meets two.
 FlatShape joined(const Geos& geos, const FlatShape& lines) {
   return {lines ? GEOSLineMerge_r(geos, lines.get()) : nullptr, {geos}};
 }
 
+double distance_from(const FlatLine& line, const FlatPoint& point) {
+  const auto& [from, to] = line;
+  const double t = std::clamp((point - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+  return (from + t * (to - from) - point).norm();
+}
+
+// The edges at a distance to the left of those of a string, negative to the right. They meet in mitres, those of acute
+// corners cut short. What would run backwards, where the string bends within the distance, is left out.
+std::vector<FlatLine> edges_beside(const std::vector<FlatPoint>& string, double distance) {
+  constexpr double longest_mitre = 2;
+  constexpr double nothing = 1e-6;
+  const std::size_t n = string.size() - 1;
+  const bool is_ring = string.front() == string.back();
+  const auto along = [&](std::size_t edge) -> FlatPoint { return (string[edge + 1] - string[edge]).normalized(); };
+  const auto left = [](const FlatPoint& direction) -> FlatPoint { return {-direction.y(), direction.x()}; };
+  std::vector<FlatPoint> places;
+  for (std::size_t k = 0; k <= n; ++k) {
+    const bool is_end = (k == 0 || k == n) && !is_ring;
+    const FlatPoint after = left(along(is_end ? std::min(k, n - 1) : k % n));
+    const FlatPoint before = is_end ? after : left(along((k + n - 1) % n));
+    const FlatPoint middle = before + after;
+    const double length = std::max(middle.norm(), nothing);  // twice the cosine of half the bend
+    places.push_back(string[k] + distance * std::min(2 / length, longest_mitre) / length * middle);
+  }
+  std::vector<FlatLine> edges;
+  for (std::size_t k = 0; k < n; ++k)
+    if ((places[k + 1] - places[k]).dot(along(k)) > 0) edges.push_back({places[k], places[k + 1]});
+  return edges;
+}
+
 }  // namespace
 
 std::vector<FlatLine> noded_lines(std::span<const FlatLine> lines, double grid) {
-  const Geos geos;
-  const FlatShape noded = on_grid(geos, lines, grid);
-  return off_grid(lines_of(strings_of(geos, noded.get())), lines, grid);
+  const GridLines on = on_grid(lines, grid);
+  return off_grid(on.parts, on, lines, grid);
 }
 
 std::vector<FlatLine> simplified_lines(std::span<const FlatLine> lines, double grid, double tolerance,
                                        double least_size) {
   const Geos geos;
-  const FlatShape strings = joined(geos, on_grid(geos, lines, grid));
+  const GridLines on = on_grid(lines, grid);
+  const FlatShape strings = joined(geos, shape_of(geos, on.parts));
   if (!strings) return {};
   const FlatShape simpler(GEOSTopologyPreserveSimplify_r(geos, strings.get(), tolerance), {geos});
-  return off_grid(lines_of(large_ones(strings_of(geos, simpler.get()), least_size)), lines, grid);
+  return off_grid(lines_of(large_ones(strings_of(geos, simpler.get()), least_size)), on, lines, grid);
 }
 
-std::vector<FlatLine> lines_beside(std::span<const FlatLine> lines, double distance) {
+std::vector<FlatLine> lines_beside(std::span<const FlatLine> lines, double grid, double distance) {
   const Geos geos;
   const FlatShape strings = joined(geos, shape_of(geos, lines));
-  if (!strings) return {};
-  constexpr int arc_segments = 1;
-  constexpr double longest_mitre = 2;
-  const FlatShape band(GEOSBufferWithStyle_r(geos, strings.get(), distance, arc_segments, GEOSBUF_CAP_FLAT,
-                                             GEOSBUF_JOIN_MITRE, longest_mitre),
-                       {geos});
-  if (!band) return {};
-  const FlatShape rim(GEOSBoundary_r(geos, band.get()), {geos});
-  return lines_of(strings_of(geos, rim.get()));
+  std::vector<FlatLine> beside;
+  for (const std::vector<FlatPoint>& string : strings_of(geos, strings.get())) {
+    for (const double offset : {distance, -distance}) {
+      const std::vector<FlatLine> edges = edges_beside(string, offset);
+      beside.insert(beside.end(), edges.begin(), edges.end());
+    }
+  }
+  // Without the parts that lie nearer to another line, or to the same one farther on.
+  std::vector<FlatLine> parts = noded_lines(beside, grid);
+  std::erase_if(parts, [&](const FlatLine& part) {
+    const FlatPoint middle = (part[0] + part[1]) / 2;
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const FlatLine& line) { return distance_from(line, middle) < distance - 2 * grid; });
+  });
+  return parts;
 }
 
 }  // namespace patchlight

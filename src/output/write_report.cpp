@@ -36,12 +36,6 @@ Json names_of(const std::vector<Effect>& effects) {
   return names;
 }
 
-std::size_t number_of_lines(const ContactLines& contacts) {
-  std::size_t number = 0;
-  for (const std::vector<ContactLine>& lines : contacts.on) number += lines.size();
-  return number;
-}
-
 Json request_part(const Request& request) {
   Json part;
   part["max_edge_m"] = json_of(request.mesh.max_edge);
@@ -93,7 +87,7 @@ Json plan_part(const Report& report) {
   const Plan& plan = report.plan;
   Json part;
   part["max_edge_m"] = plan.max_edge;
-  part["contact_lines"] = number_of_lines(plan.contacts);
+  part["contact_lines"] = number_of(plan.contacts);
   part["samples"] = plan.assembly.samples;
   part["estimator"] = name_of(plan.assembly.estimator);
   part["close"] = plan.assembly.close;

@@ -14,7 +14,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 22> units_of_arrays = {
+constexpr std::array<std::array<const char*, 2>, 23> units_of_arrays = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -36,7 +36,8 @@ constexpr std::array<std::array<const char*, 2>, 22> units_of_arrays = {
      {"display_error", "W/(m^2 sr)"},
      {"error_irradiance", "W/m^2"},
      {"error_direct_irradiance", "W/m^2"},
-     {"radiance_smooth", "W/(m^2 sr)"}}};
+     {"radiance_smooth", "W/(m^2 sr)"},
+     {"rgb_smooth", "sRGB, 8 bits, at the recorded exposure"}}};
 
 // How far the radiance may be off, by where it comes from; of the solver alone where that is all that is known.
 void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
@@ -95,7 +96,9 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
-  polygons.GetPointData()->AddArray(floats("radiance_smooth", surface.radiance_at_vertices));
+  vtkPointData& point_data = *polygons.GetPointData();
+  point_data.AddArray(floats("radiance_smooth", surface.radiance_at_vertices));
+  point_data.AddArray(colours("rgb_smooth", tone_map(surface.radiance_at_vertices, exposure, bands)));
 }
 
 template <class Value>

@@ -152,12 +152,19 @@ struct PlannedContacts {
 PlannedContacts contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
   constexpr double detail_of_accuracy = 18;  // fitted to two furnished rooms at 1 to 5 %
   constexpr double of_time = 0.01;           // an accuracy, where a time is asked for
+  // To cut faces at more lines takes longer than light through them.
+  constexpr std::size_t most_lines = 5000;
   // Where there are so many times the patches that there are without lines faces cross anywhere.
   constexpr std::size_t many = 3;
   constexpr std::size_t few = 1000;
   if (!request.mesh.contact_lines) return {};
   ContactLines contacts = find_contact_lines(scene, sides);
   if (contacts.on.empty()) return {};
+  if (const std::size_t lines = number_of(contacts); lines > most_lines)
+    return {{},
+            {std::to_string(lines) +
+             " lines where faces touch, cross or end close before one are too many to cut faces at; patches follow the "
+             "outlines of faces alone"}};
   if (has_error_bars(request.accuracy)) contacts.of_edge = 0.5;
   if (refines(request.accuracy) && !request.mesh.max_edge) {
     const double accuracy = request.accuracy.relative_error.value_or(of_time);

@@ -230,6 +230,12 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
 
 }  // namespace
 
+std::size_t number_of(const ContactLines& contacts) {
+  std::size_t number = 0;
+  for (const std::vector<ContactLine>& lines : contacts.on) number += lines.size();
+  return number;
+}
+
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   FaceTree tree = tree_of_faces(scene);
   double area = 0;

@@ -74,7 +74,8 @@ void require_memory_for_reference(std::size_t patches, const Request& request, c
 }  // namespace
 
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
-  const Plan plan = make_plan(scene, request);
+  Plan plan = make_plan(scene, request);
+  plan.contacts.of_edge = 0.5;  // as meshes with error bars have it, which the largest patches are the parents of
   const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
   std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
   NestedSizes result{{}, std::move(all.back()), all.front().max_edge};

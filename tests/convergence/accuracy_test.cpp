@@ -30,8 +30,9 @@ Request by_rays(Request request) {
 }
 
 // Uniform patches, many more and with more samples than what is tested, from other random numbers.
-FinerReference finer_reference(const Scene& scene) {
+FinerReference finer_reference(const Scene& scene, bool contact_lines = true) {
   Request request;
+  request.mesh.contact_lines = contact_lines;
   request.mesh.sides = Sides::front;
   request.mesh.patches = 5000;
   request.assembly.samples = 16;
@@ -92,16 +93,18 @@ TEST(AskedAccuracyOf, MoreRaysErrLess) {
   EXPECT_LE(of_rays(256), 0.6 * of_rays(64));
 }
 
-// All pairs of some 870 patches fit into the memory, and the accuracy takes more.
+// All pairs of some 870 patches fit into the memory, and the accuracy takes more where patches do not end at the feet
+// of the blocks.
 TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   const Scene scene = varied_room("blocks");
-  Request request = asked(0.01);
-  request.resources.memory = 62e6;
+  Request request = asked(0.02);
+  request.mesh.contact_lines = false;
+  request.resources.memory = 57e6;
   const Simulation simulation = simulate(scene, request);
   EXPECT_EQ(simulation.plan.assembly.storage, Storage::rays);
   EXPECT_EQ(simulation.plan.solver.solver, Solver::gmres);
-  EXPECT_LE(simulation.accuracy.back().total, 0.01);
-  EXPECT_LE(error_against(finer_reference(scene), simulation).relative, 0.01);
+  EXPECT_LE(simulation.accuracy.back().total, 0.02);
+  EXPECT_LE(error_against(finer_reference(scene, false), simulation).relative, 0.02);
   ASSERT_FALSE(simulation.notes.empty());
   EXPECT_NE(simulation.notes.back().find("rows of rays"), std::string::npos) << simulation.notes.back();
   request.assembly.storage = Storage::tiles;

@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct ContactLines {
   double of_edge = 1;  ///< patches follow the lines as those with this part of their edges do: a half where they will
                        ///< be cut in four
 };
+
+/// How many there are on all polygons.
+std::size_t number_of(const ContactLines& contacts);
 
 /// The lines of contact on every polygon with a kept side. Faces touch where they are within weld_distance(). Edges
 /// close before a polygon count as far as a fiftieth of the root of the area of all faces and a tenth of that of the

@@ -1,6 +1,7 @@
 // Patches and lines of contact: laws on rooms with things in them at random.
 #include "mesh/cut_outlines.h"
 #include "mesh/mesher.h"
+#include "mesh/noded_lines.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -98,8 +99,8 @@ TEST_P(CrowdedRooms, AreTheSameElsewhere) {
   const PatchMesh here = tessellate(scene, front_sides(scene), edge, find_contact_lines(scene, front_sides(scene)));
   const PatchMesh there =
       tessellate(other, front_sides(other), 0.37 * edge, find_contact_lines(other, front_sides(other)));
-  EXPECT_NEAR(here.size(), there.size(), 0.001 * here.size());
-  // Two patches in a quadrilateral whose corners lie on one circle may divide it either way.
+  // Two patches in a quadrilateral whose corners lie on one circle may divide it either way, and then pair otherwise.
+  EXPECT_NEAR(here.size(), there.size(), 0.005 * here.size());
   PatchIndex elsewhere = 0;
   for (PatchIndex i = 0; i < here.size(); ++i) {
     const Point place = motion * here.centroid[i];
@@ -115,6 +116,17 @@ INSTANTIATE_TEST_SUITE_P(Seeds, CrowdedRooms,
                          testing::Combine(testing::Range(1U, 9U), testing::Values(0.15, 0.5, 4.0)));
 
 // A vertex on a line belongs to patches on one side of it alone.
+// Two lines that cross at too narrow an angle to tell where: all parts of both are left, and every stretch is covered.
+TEST(NodedLines, KeepLinesThatCrossAtANarrowAngle) {
+  for (const double height : {0.0005, 0.002, 0.004}) {
+    const std::vector<FlatLine> lines{{FlatPoint(0, 0), FlatPoint(1, 0)},
+                                      {FlatPoint(0, height), FlatPoint(1, -height)}};
+    double length = 0;
+    for (const auto& [from, to] : noded_lines(lines, 1e-4)) length += std::abs(to.x() - from.x());
+    EXPECT_NEAR(length, 2, 1e-9) << height;
+  }
+}
+
 TEST(CutMesh, SharesNoVerticesOverALine) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2), true);
   scene = with_quad(std::move(scene), {Point(1.5, 0, 0), Point(1.5, 3, 0), Point(1.5, 3, 2), Point(1.5, 0, 2)});

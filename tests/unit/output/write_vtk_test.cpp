@@ -158,20 +158,24 @@ TEST(WriteVtk, ValuesComeBackAsFloats) {
   expect_floats(cells->GetArray("area"), simulation.problem.area);
   expect_floats(cells->GetArray("row_sum"), simulation.transport.row_sum);
   expect_floats(cells->GetArray("raw_row_sum"), simulation.transport.raw_row_sum);
-  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"),
-                smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices);
+  const Field at_vertices =
+      smooth(simulation.mesh, radiance, simulation.problem.area, Occluder(tiny_scene())).at_vertices;
+  expect_floats(polygons->GetPointData()->GetArray("radiance_smooth"), at_vertices);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(cells->GetArray("material_id")->GetComponent(i, 0), i == 0 ? 0 : 1);
     EXPECT_EQ(cells->GetArray("source_polygon")->GetComponent(i, 0), 10 + i);
   }
-  const auto colours = tone_map(radiance, exposure, usual_bands(3));
-  vtkDataArray* const rgb = cells->GetArray("rgb");
-  EXPECT_EQ(rgb->GetDataType(), VTK_UNSIGNED_CHAR);
-  for (int i = 0; i < 3; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_EQ(rgb->GetComponent(i, c), colours[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)]);
+  const auto expect_colours = [&](vtkDataArray* rgb, const Field& radiances) {
+    const auto colours = tone_map(radiances, exposure, usual_bands(3));
+    ASSERT_EQ(rgb->GetDataType(), VTK_UNSIGNED_CHAR);
+    ASSERT_EQ(rgb->GetNumberOfTuples(), radiances.rows());
+    for (int i = 0; i < rgb->GetNumberOfTuples(); ++i) {
+      for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(rgb->GetComponent(i, c), colours[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)]);
     }
-  }
+  };
+  expect_colours(cells->GetArray("rgb"), radiance);
+  expect_colours(polygons->GetPointData()->GetArray("rgb_smooth"), at_vertices);
 }
 
 TEST(WriteVtk, TellsWhereItComesFrom) {

@@ -25,7 +25,8 @@ KeptSides front_sides(const Scene& scene) {
 }
 
 std::vector<ContactLine> lines_on_floor(const Scene& scene) {
-  return find_contact_lines(scene, front_sides(scene)).on[0];
+  const ContactLines found = find_contact_lines(scene, front_sides(scene));
+  return found.on.empty() ? std::vector<ContactLine>() : found.on[0];
 }
 
 double length_of(const std::vector<ContactLine>& lines) {

@@ -82,6 +82,22 @@ TEST(Occluder, HidesWhatOnePolygonCutsOff) {
   EXPECT_TRUE(hides(with_door(3)));
 }
 
+// Patches of a face that rounding has bent lie behind it in places: it does not hide them.
+TEST(Occluder, DoesNotHidePatchesByTheirOwnPolygon) {
+  const Scene room = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 4), true);
+  const std::vector<Point> left = points_of(square_at(Point(0.5, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
+  const std::vector<Point> right = points_of(square_at(Point(4, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
+  const auto plate = [](double x) { return square_at(Point(x, 0.5, 0.5), Vector(0, 2, 0), Vector(0, 0, 2)); };
+  const PolygonIndex own = 6;
+  const PolygonIndex no_other = 5;
+  const Scene before = with_quad(room, plate(0.501));
+  EXPECT_TRUE(Occluder(before).hides(left, right));
+  EXPECT_TRUE(Occluder(before).hides(left, right, {&no_other, 1}));
+  EXPECT_FALSE(Occluder(before).hides(left, right, {&own, 1}));
+  // Another one does, whichever way they stand.
+  EXPECT_TRUE(Occluder(with_quad(before, plate(2))).hides(left, right, {&own, 1}));
+}
+
 TEST(ShaftCuller, FindsAThinPlateAndSmallThings) {
   const Scene room = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 4), true);
   const std::vector<Point> floor = points_of(square_at(Point(1.5, 1.5, 0), Vector(1, 0, 0), Vector(0, 1, 0)));
