@@ -126,7 +126,7 @@ def check_smooth(result, file):
 
 
 def screenshot(source, file, time=0.0):
-    """As with the macro's button: a source is active, the script runs; then the time slider is moved."""
+    """The colours of patches: a source is active, the macro runs; then the time slider is moved."""
     view = simple.CreateView("RenderView")
     simple.SetActiveView(view)
     simple.SetActiveSource(source)

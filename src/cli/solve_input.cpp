@@ -66,6 +66,11 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   Request request = arguments.request;
   if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;
   if (request.mesh.sides == Sides::automatic) request.mesh.sides = info.sides;
+  if (!request.mesh.contact_lines && info.contact_lines)
+    throw InputError(
+        arguments.form_factors.string(),
+        "found patches that end where faces touch, with --no-contact-lines; leave that out, or make the form "
+        "factors anew with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
   request.mesh.contact_lines = info.contact_lines;
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {

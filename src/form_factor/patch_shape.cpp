@@ -181,11 +181,14 @@ bool is_adjacent(const PatchShape& first, const PatchShape& second) {
 
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second, FarRule far) {
   if (is_near(first, second)) return contour_exchange_area(first.corners, second.corners);
-  if (orientation(first, second) == Orientation::straddling) return clipped_quadrature(first, second);
-  if (far == FarRule::fine || closer_than(first, second, middle_diameters)) {
-    return product_quadrature(first.fine, first.normal, second.fine, second.normal);
-  }
-  return product_quadrature(first.coarse, first.normal, second.coarse, second.normal);
+  const auto by_quadrature = [&] {
+    if (orientation(first, second) == Orientation::straddling) return clipped_quadrature(first, second);
+    if (far == FarRule::fine || closer_than(first, second, middle_diameters))
+      return product_quadrature(first.fine, first.normal, second.fine, second.normal);
+    return product_quadrature(first.coarse, first.normal, second.coarse, second.normal);
+  };
+  // Of strips as narrow as their corners are rounded some points may look away.
+  return std::max(0.0, by_quadrature());
 }
 
 }  // namespace patchlight

@@ -23,6 +23,7 @@ constexpr double line_tolerance = 0.01;
 constexpr double largest_gap_of_detail = 0.25;
 constexpr double farthest_beside = 0.075;
 constexpr double least_beside = 0.0075;  // length times gap, of its square
+constexpr double least_width = 5e-4;     // narrower strips along edges come from rounding
 
 constexpr double least_size_of_lines = 16;  // in tolerances; smaller ones are left out
 constexpr double least_size_over_gap = 4;   // farther from what is smaller its shadow has no edge
@@ -83,23 +84,26 @@ class FlatOutline {
     return result;
   }
 
-  // The parts of the lines that lie inside, cut where they meet.
-  std::vector<FlatLine> parts_inside(std::vector<FlatLine> lines) const {
+  // The parts of the lines that lie inside, cut where they meet, without those that run along an edge in less than this
+  // width.
+  std::vector<FlatLine> parts_inside(std::vector<FlatLine> lines, double narrow) const {
     const std::size_t n = flat_.size();
     for (std::size_t k = 0; k < n; ++k) lines.push_back({flat_[k], flat_[(k + 1) % n]});
     std::vector<FlatLine> parts = noded_lines(lines, grid_);
     std::erase_if(parts, [&](const FlatLine& part) {
       const FlatPoint middle = (part[0] + part[1]) / 2;
-      return edge_at(middle).has_value() || !is_inside(flat_, middle);
+      return edge_at(middle).has_value() || runs_along(part, narrow) || !is_inside(flat_, middle);
     });
     return parts;
   }
 
   // Is the line a part of an edge?
-  bool runs_along(const FlatLine& line) const {
+  bool runs_along(const FlatLine& line) const { return runs_along(line, near()); }
+
+  bool runs_along(const FlatLine& line, double width) const {
     for (std::size_t k = 0; k < flat_.size(); ++k) {
       const FlatPoint& to = flat_[(k + 1) % flat_.size()];
-      if (is_on(flat_[k], to, line[0], near()) && is_on(flat_[k], to, line[1], near())) return true;
+      if (is_on(flat_[k], to, line[0], width) && is_on(flat_[k], to, line[1], width)) return true;
     }
     return false;
   }
@@ -228,7 +232,7 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
     lines.insert(lines.end(), beside.begin(), beside.end());
   }
   if (lines.empty()) return cut;
-  for (const FlatLine& part : outline.parts_inside(std::move(lines))) {
+  for (const FlatLine& part : outline.parts_inside(std::move(lines), least_width * detail)) {
     cut.lines.push_back({outline.end_at(part[0]), outline.end_at(part[1])});
     for (const FlatPoint& end : part) {
       if (!outline.end_at(end).mark) continue;

@@ -41,7 +41,8 @@ double followed_detail(const ContactLines& contacts, double max_edge);
 /// Every polygon with the lines of contact that matter to patches with edges of `max_edge` at most: those with a gap of
 /// less than a quarter of the detail that is followed, and of what ends there. Lines that bend have corners only as far
 /// as a hundredth of the detail shows them, and what is smaller than sixteen times that is left out. On both sides of
-/// long edges that are very close there are lines in one and three widths of the gap. O(n log n).
+/// long edges that are very close there are lines in one and three widths of the gap. Quadratic in the lines of one
+/// polygon.
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      double max_edge);
 

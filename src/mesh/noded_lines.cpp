@@ -142,8 +142,8 @@ GridLines on_grid(std::span<const FlatLine> lines, double grid) {
   return found;
 }
 
-// Where a point of the grid lies on the lines through it: on an end of one, or where two cross. Nowhere else is there
-// anything to be cut: what is found there are lines that lie on each other but for rounding.
+// Where a point of the grid lies on the lines through it: on an end of one, or where two cross, if that is near.
+// Nowhere else is there anything to be cut: what is found there are lines that lie on each other but for rounding.
 std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std::vector<std::size_t>& through,
                                      const FlatPoint& point, double near) {
   constexpr double least_sine = 0.01;
@@ -155,15 +155,23 @@ std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std:
     }
   }
   if (end != nullptr) return *end;
-  for (const std::size_t k : through) {
-    const auto& [from, to] = lines[through.front()];
+  // Of the two that cross at the widest angle.
+  double widest = least_sine;
+  std::optional<FlatPoint> crossing;
+  for (const std::size_t one : through) {
+    const auto& [from, to] = lines[one];
     const FlatPoint along = to - from;
-    const FlatPoint across = lines[k][1] - lines[k][0];
-    const double sine = wedge(along, across);
-    if (std::abs(sine) > least_sine * along.norm() * across.norm())
-      return from + wedge(lines[k][0] - from, across) / sine * along;
+    for (const std::size_t other : through) {
+      const FlatPoint across = lines[other][1] - lines[other][0];
+      const double sine = wedge(along, across);
+      const double relative = std::abs(sine) / (along.norm() * across.norm());
+      if (relative <= widest) continue;
+      widest = relative;
+      crossing = from + wedge(lines[other][0] - from, across) / sine * along;
+    }
   }
-  return std::nullopt;
+  // Those of narrow angles cross anywhere near.
+  return crossing && (*crossing - point).norm() <= near ? crossing : std::nullopt;
 }
 
 // Parts of the lines with their ends on a grid where they belong. Two that meet where nothing is to be cut become one.

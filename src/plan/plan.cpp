@@ -12,6 +12,7 @@
 #include "plan/luminaires_behind.h"
 #include "plan/memory.h"
 #include "plan/survey.h"
+#include "scene/extent.h"
 
 #include <algorithm>
 #include <cassert>
@@ -158,6 +159,10 @@ PlannedContacts contacts_for(const Scene& scene, const Request& request, const K
   constexpr std::size_t many = 3;
   constexpr std::size_t few = 1000;
   if (!request.mesh.contact_lines) return {};
+  if (largest_bend(scene) > weld_distance(scene))
+    return {{},
+            {"faces are bent by rounding, more than touching faces may be apart; patches follow the outlines of faces "
+             "alone, wherever others touch them"}};
   ContactLines contacts = find_contact_lines(scene, sides);
   if (contacts.on.empty()) return {};
   if (const std::size_t lines = number_of(contacts); lines > most_lines)

@@ -168,7 +168,8 @@ void ContactSearch::add_edges(const Ground& ground, PolygonIndex face, LinesOnFa
     const auto line = inside(ground, {ground.foot(from), ground.foot(to), touches ? 0 : gap});
     if (!line) continue;
     lines.emplace_back(ground.polygon, *line);
-    if (!touches) lines.emplace_back(face, ContactLine{from, to, gap});
+    if (!touches && (kept.front[face] != 0 || kept.back[face] != 0))
+      lines.emplace_back(face, ContactLine{from, to, gap});
   }
 }
 
@@ -229,6 +230,22 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
 }
 
 }  // namespace
+
+double largest_bend(const Scene& scene) {
+  double largest = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Vector normal = front_normal(scene, p);
+    double lowest = 0;
+    double highest = 0;
+    for (const Point& corner : corner_points(scene, p)) {
+      const double height = normal.dot(corner - scene.vertices[scene.polygons[p].corners[0]]);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+    largest = std::max(largest, highest - lowest);
+  }
+  return largest;
+}
 
 std::size_t number_of(const ContactLines& contacts) {
   std::size_t number = 0;

@@ -47,9 +47,8 @@ std::vector<SizedMesh> all_sizes(const Scene& scene, const Plan& plan, double fi
   return all;
 }
 
-// Halving edges overshoots: the edge for which the finest size has about as many patches as the plan's own mesh.
-double edge_for(const Scene& scene, const Plan& plan, int sizes) {
-  const double wanted = open_patches(scene, plan, plan.max_edge).size();
+// Halving edges overshoots: the edge for which the finest size has about as many patches as wanted.
+double edge_for(const Scene& scene, const Plan& plan, double wanted, int sizes) {
   double best = plan.max_edge;
   double least = std::numeric_limits<double>::infinity();
   double edge = plan.max_edge;
@@ -75,8 +74,9 @@ void require_memory_for_reference(std::size_t patches, const Request& request, c
 
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
   Plan plan = make_plan(scene, request);
+  const double patches = open_patches(scene, plan, plan.max_edge).size();
   plan.contacts.of_edge = 0.5;  // as meshes with error bars have it, which the largest patches are the parents of
-  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, sizes);
+  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, patches, sizes);
   std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
   NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
   require_memory_for_reference(result.finer.mesh.size(), request, plan);

@@ -212,6 +212,17 @@ class FormFactorsTest(ToolTest):
             self.assertIn(words, done.stderr)
         self.assertFalse((self.folder / "a.vtp").exists())
 
+    def test_they_tell_whether_patches_end_at_lines_of_contact(self):
+        for words, lines in (([], True), (["--no-contact-lines"], False)):
+            self.find("-o", "room.ff", "--patches", "60", *words)
+            info = json.loads((self.folder / "room.ff" / "info.json").read_text())
+            self.assertEqual(info["options"]["contact_lines"], lines)
+            done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff")
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff",
+                                 "--no-contact-lines")
+            self.assertEqual(done.returncode, INPUT if lines else GOOD, done.stderr)
+
     def test_those_of_a_far_smaller_model_are_refused_before_it_is_cut(self):
         """A room a thousand times as large would take 60 million patches with these edges."""
         self.find("-o", "room.ff", "--patches", "60")

@@ -60,8 +60,8 @@ struct Request {
 /// mesh and effects.
 struct Plan {
   KeptSides sides;
-  ContactLines contacts;     ///< where patches end besides the outlines of their polygons; none unless asked for
-  double max_edge = 0;       ///< metres
+  ContactLines contacts;  ///< where patches end besides the outlines of their polygons; none where there are too many
+  double max_edge = 0;    ///< metres
   AssemblyOptions assembly;  ///< stored as asked for, else as pairs, rays or rows of the lamps
   SolverOptions solver;      ///< of a mesh on the way to an accuracy: its own relative error
   AccuracyOptions accuracy;  ///< with error bars where patches are refined

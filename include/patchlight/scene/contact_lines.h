@@ -27,6 +27,10 @@ struct ContactLines {
                        ///< be cut in four
 };
 
+/// How far corners of a polygon are from lying in one plane, of that where it is most, metres. Where that is more than
+/// weld_distance(), as coordinates far from the origin in single precision have it, nobody knows which faces touch.
+double largest_bend(const Scene& scene);
+
 /// How many there are on all polygons.
 std::size_t number_of(const ContactLines& contacts);
 

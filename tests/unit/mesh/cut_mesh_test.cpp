@@ -115,7 +115,6 @@ TEST_P(CrowdedRooms, AreTheSameElsewhere) {
 INSTANTIATE_TEST_SUITE_P(Seeds, CrowdedRooms,
                          testing::Combine(testing::Range(1U, 9U), testing::Values(0.15, 0.5, 4.0)));
 
-// A vertex on a line belongs to patches on one side of it alone.
 // Two lines that cross at too narrow an angle to tell where: all parts of both are left, and every stretch is covered.
 TEST(NodedLines, KeepLinesThatCrossAtANarrowAngle) {
   for (const double height : {0.0005, 0.002, 0.004}) {
@@ -127,6 +126,7 @@ TEST(NodedLines, KeepLinesThatCrossAtANarrowAngle) {
   }
 }
 
+// A vertex on a line belongs to patches on one side of it alone.
 TEST(CutMesh, SharesNoVerticesOverALine) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2), true);
   scene = with_quad(std::move(scene), {Point(1.5, 0, 0), Point(1.5, 3, 0), Point(1.5, 3, 2), Point(1.5, 0, 2)});
