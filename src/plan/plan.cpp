@@ -170,8 +170,9 @@ PlannedContacts contacts_for(const Scene& scene, const Request& request, const K
             {std::to_string(lines) +
              " lines where faces touch, cross or end close before one are too many to cut faces at; patches follow the "
              "outlines of faces alone"}};
-  if (has_error_bars(request.accuracy)) contacts.of_edge = 0.5;
-  if (refines(request.accuracy) && !request.mesh.max_edge) {
+  const bool by_accuracy = refines(request.accuracy) && !request.mesh.max_edge;
+  if (has_error_bars(request.accuracy) && !by_accuracy) contacts.of_edge = 0.5;
+  if (by_accuracy) {
     const double accuracy = request.accuracy.relative_error.value_or(of_time);
     contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
   }
