@@ -73,17 +73,22 @@ Scene block_in_the_sun(bool bottom, double size, bool rug) {
 // With and without a bottom; metres and millimetres; storage; with and without a rug on the same floor.
 class BlockInTheSun : public testing::TestWithParam<std::tuple<bool, double, Storage, bool>> {};
 
-// What of a patch is not under the block is lit as ever: 100 W/m^2, within four times what the share that is exposed
-// may be off. All light arrives: 100 W for each m^2 of the floor, whichever face it falls on.
-TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
-  const auto [bottom, size, storage, rug] = GetParam();
+Simulation solved_in_the_sun(const std::tuple<bool, double, Storage, bool>& of, bool contact_lines) {
+  const auto& [bottom, size, storage, rug] = of;
   Request request;
   request.mesh.max_edge = 1.001 * size;
   request.mesh.sides = Sides::front;
-  request.mesh.contact_lines = false;
+  request.mesh.contact_lines = contact_lines;
   request.assembly.storage = storage;
   if (storage == Storage::rays) request.solver.solver = Solver::gmres;
-  const Simulation lit = simulate(block_in_the_sun(bottom, size, rug), request);
+  return simulate(block_in_the_sun(bottom, size, rug), request);
+}
+
+// What of a patch is not under the block is lit as ever: 100 W/m^2, within four times what the share that is exposed
+// may be off. All light arrives: 100 W for each m^2 of the floor, whichever face it falls on.
+TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
+  const double size = std::get<1>(GetParam());
+  const Simulation lit = solved_in_the_sun(GetParam(), false);
   EXPECT_NEAR(lit.balance.arriving[0], 1600 * size * size, 0.001 * 1600 * size * size);
   const Eigen::ArrayXd error = exposure_errors(lit.transport.lost);
   int partly_covered = 0;
@@ -97,13 +102,8 @@ TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
 
 // Patches end where the block does, and none are left below: all those beside it are lit as ever, 100 W/m^2.
 TEST_P(BlockInTheSun, HasNoPatchesBelow) {
-  const auto [bottom, size, storage, rug] = GetParam();
-  Request request;
-  request.mesh.max_edge = 1.001 * size;
-  request.mesh.sides = Sides::front;
-  request.assembly.storage = storage;
-  if (storage == Storage::rays) request.solver.solver = Solver::gmres;
-  const Simulation lit = simulate(block_in_the_sun(bottom, size, rug), request);
+  const double size = std::get<1>(GetParam());
+  const Simulation lit = solved_in_the_sun(GetParam(), true);
   EXPECT_NEAR(lit.balance.arriving[0], 1600 * size * size, 0.001 * 1600 * size * size);
   double area = 0;
   for (PatchIndex i = 0; i < lit.mesh.size(); ++i) {
@@ -112,7 +112,7 @@ TEST_P(BlockInTheSun, HasNoPatchesBelow) {
     EXPECT_EQ(lit.transport.lost.covered[i], 0) << "patch " << i;
     area += lit.mesh.area[i];
   }
-  EXPECT_NEAR(area, (16 - 2.25 - (rug ? 0.49 : 0)) * size * size, 1e-12 * size * size);
+  EXPECT_NEAR(area, (16 - 2.25 - (std::get<3>(GetParam()) ? 0.49 : 0)) * size * size, 1e-12 * size * size);
 }
 
 INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,

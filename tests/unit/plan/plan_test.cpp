@@ -248,5 +248,21 @@ TEST(MakePlan, KeepsFormFactorsThatAreGiven) {
   EXPECT_EQ(make_plan(furnished_room(0), {}, {.form_factors = true}).assembly.storage, Storage::tiles);
 }
 
+// Where the corners of a face lie farther from one plane than touching faces may be apart no lines are looked for, and
+// the plan says so.
+TEST(Plan, LooksForNoLinesOfContactBetweenBentFaces) {
+  const auto notes_of = [](double bend) {
+    Scene scene = furnished_room(0.5);
+    scene.vertices[0].z() += bend;
+    const Plan plan = make_plan(scene, Request());
+    const bool told = std::any_of(plan.notes.begin(), plan.notes.end(),
+                                  [](const std::string& note) { return note.find("bent") != std::string::npos; });
+    EXPECT_EQ(told, plan.contacts.on.empty());
+    return told;
+  };
+  EXPECT_FALSE(notes_of(0));
+  EXPECT_TRUE(notes_of(1e-4));
+}
+
 }  // namespace
 }  // namespace patchlight::plan_test
