@@ -11,6 +11,7 @@
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
 #include "plan/memory.h"
+#include "plan/shadow_lines.h"
 #include "plan/survey.h"
 #include "scene/extent.h"
 
@@ -143,21 +144,35 @@ PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides
   return size;
 }
 
-// The lines of contact. A mesh that is refined begins with patches that tell nothing of the size of details: what is
-// worth a line then is what an accuracy can feel, as a share of the area of all kept sides.
+// The lines at which patches end. What is worth one where an accuracy is asked for is what it can feel, as a share of
+// the area of all kept sides.
 struct PlannedContacts {
   ContactLines lines;
   std::vector<std::string> notes;
 };
 
-PlannedContacts contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
-  constexpr double detail_of_accuracy = 18;  // fitted to two furnished rooms at 1 to 5 %
-  constexpr double of_time = 0.01;           // an accuracy, where a time is asked for
-  // To cut faces at more lines takes longer than light through them.
-  constexpr std::size_t most_lines = 5000;
-  // Where there are so many times the patches that there are without lines faces cross anywhere.
+// To cut faces at more lines takes longer than light through them.
+constexpr std::size_t most_lines = 5000;
+
+// Where there are so many times the patches that there are without lines faces cross anywhere.
+bool are_too_many(std::size_t patches, std::size_t without_lines) {
   constexpr std::size_t many = 3;
   constexpr std::size_t few = 1000;
+  return patches > std::max(few, many * without_lines);
+}
+
+// A mesh that is refined begins with patches that tell nothing of the size of details.
+void set_detail(ContactLines& contacts, const Scene& scene, const Request& request, const KeptSides& sides) {
+  constexpr double detail_of_accuracy = 18;  // fitted to two furnished rooms at 1 to 5 %
+  constexpr double of_time = 0.01;           // an accuracy, where a time is asked for
+  const bool by_accuracy = refines(request.accuracy) && !request.mesh.max_edge;
+  if (has_error_bars(request.accuracy) && !by_accuracy) contacts.of_edge = 0.5;
+  if (!by_accuracy) return;
+  const double accuracy = request.accuracy.relative_error.value_or(of_time);
+  contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
+}
+
+PlannedContacts contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
   if (!request.mesh.contact_lines) return {};
   if (largest_bend(scene) > weld_distance(scene))
     return {{},
@@ -170,18 +185,56 @@ PlannedContacts contacts_for(const Scene& scene, const Request& request, const K
             {std::to_string(lines) +
              " lines where faces touch, cross or end close before one are too many to cut faces at; patches follow the "
              "outlines of faces alone"}};
-  const bool by_accuracy = refines(request.accuracy) && !request.mesh.max_edge;
-  if (has_error_bars(request.accuracy) && !by_accuracy) contacts.of_edge = 0.5;
-  if (by_accuracy) {
-    const double accuracy = request.accuracy.relative_error.value_or(of_time);
-    contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
-  }
+  set_detail(contacts, scene, request, sides);
   const std::size_t with_lines = least_patches(scene, sides, contacts);
-  if (with_lines > std::max(few, many * least_patches(scene, sides)))
+  if (are_too_many(with_lines, least_patches(scene, sides)))
     return {{},
             {"patches that end where faces touch or cross would be " + std::to_string(with_lines) +
              " at least; they follow the outlines of faces alone"}};
   return {std::move(contacts), {}};
+}
+
+// The sun above the horizon, and luminaires without extent. Where these are many the shadow of one is faint.
+std::vector<LightPlace> lights_with_hard_shadows(const Scene& scene, const std::vector<Effect>& skipped) {
+  constexpr std::size_t many = 4;
+  std::vector<LightPlace> lights;
+  if (scene.sun && scene.sun->direction.dot(scene.up) > 0 && !contains(skipped, Effect::sun))
+    lights.push_back({scene.sun->direction, 0});
+  if (scene.luminaires.size() > many || contains(skipped, Effect::luminaires)) return lights;
+  for (const Luminaire& luminaire : scene.luminaires) {
+    if (!std::holds_alternative<SphericalLamp>(luminaire.light)) lights.push_back({luminaire.position, 1});
+  }
+  return lights;
+}
+
+double area_of_faces(const Scene& scene) {
+  double area = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += area_vector(corner_points(scene, p)).norm();
+  return area;
+}
+
+// The same with the edges of hard shadows, unless these are too many.
+PlannedContacts with_shadow_edges(PlannedContacts planned, const Scene& scene, const Request& request,
+                                  const KeptSides& sides) {
+  const std::vector<LightPlace> lights = lights_with_hard_shadows(scene, request.effects.skip);
+  if (!request.mesh.contact_lines || lights.empty()) return planned;
+  const auto shadows = find_shadow_lines(scene, sides, lights);
+  ContactLines all = planned.lines;
+  all.on.resize(scene.polygons.size());
+  if (all.size == 0) all.size = std::sqrt(area_of_faces(scene));
+  std::size_t number = 0;
+  for (std::size_t p = 0; p < shadows.size(); ++p) {
+    all.on[p].insert(all.on[p].end(), shadows[p].begin(), shadows[p].end());
+    number += shadows[p].size();
+  }
+  if (number == 0) return planned;
+  set_detail(all, scene, request, sides);
+  const bool fits = number_of(all) <= most_lines &&
+                    !are_too_many(least_patches(scene, sides, all), least_patches(scene, sides, planned.lines));
+  planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
+                          (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
+  if (fits) planned.lines = std::move(all);
+  return planned;
 }
 
 // Error bars follow from the errors of the entries.
@@ -225,7 +278,11 @@ AccuracyOptions decided(AccuracyOptions accuracy) {
 Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   require_lamp(scene);
   KeptSides sides = sides_for(scene, asked);
-  auto [contacts, notes_on_contacts] = contacts_for(scene, asked, sides);
+  // Form factors that are given belong to a mesh that knows of no light.
+  const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
+  PlannedContacts planned = contacts_for(scene, asked, sides);
+  if (knows_lights) planned = with_shadow_edges(std::move(planned), scene, asked, sides);
+  auto [contacts, notes_on_contacts] = std::move(planned);
   PatchSize size = patch_size(scene, asked, sides, contacts);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
