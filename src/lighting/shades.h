@@ -5,6 +5,7 @@
 
 #include "lighting/receiver.h"
 #include "scene/coverings.h"
+#include "scene/light_place.h"
 #include "visibility/shaft.h"
 
 #include <array>
@@ -14,15 +15,6 @@
 #include <vector>
 
 namespace patchlight {
-
-/// Where a light without extent is: a point, or a direction.
-struct LightPlace {
-  Vector at;          ///< a point, m, or a unit vector towards the light
-  double weight = 0;  ///< 1 for a point, 0 for a direction
-
-  /// Towards the light, of any length.
-  Vector way_from(const Point& point) const { return at - weight * point; }
-};
 
 /// A part of a patch, convex.
 struct LitPart {

@@ -198,6 +198,7 @@ PlannedContacts contacts_for(const Scene& scene, const Request& request, const K
 std::vector<LightPlace> lights_with_hard_shadows(const Scene& scene, const std::vector<Effect>& skipped) {
   constexpr std::size_t many = 4;
   std::vector<LightPlace> lights;
+  if (contains(skipped, Effect::occlusion)) return lights;
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0 && !contains(skipped, Effect::sun))
     lights.push_back({scene.sun->direction, 0});
   if (scene.luminaires.size() > many || contains(skipped, Effect::luminaires)) return lights;

@@ -200,6 +200,17 @@ void tie_loose_ends(std::vector<ShadowLine>& lines, const std::vector<Point>& co
   }
 }
 
+// Faces that meet there without the same vertices throw each other's outlines.
+bool is_along_outline(const ContactLine& line, const std::vector<Point>& corners, double near) {
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const Vector edge = corners[(c + 1) % corners.size()] - corners[c];
+    if (edge.cross(line.from - corners[c]).norm() <= near * edge.norm() &&
+        edge.cross(line.to - corners[c]).norm() <= near * edge.norm())
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, const KeptSides& kept,
@@ -215,8 +226,11 @@ std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, cons
   }
   std::vector<std::vector<ContactLine>> lines(scene.polygons.size());
   parallel_for(on.size(), [&](std::size_t p) {
-    tie_loose_ends(on[p], corner_points(scene, static_cast<PolygonIndex>(p)));
-    for (const ShadowLine& line : on[p]) lines[p].push_back(line.line);
+    const std::vector<Point> corners = corner_points(scene, static_cast<PolygonIndex>(p));
+    tie_loose_ends(on[p], corners);
+    for (const ShadowLine& line : on[p]) {
+      if (!is_along_outline(line.line, corners, 4 * search.beside)) lines[p].push_back(line.line);
+    }
   });
   return lines;
 }

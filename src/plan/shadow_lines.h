@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
-#include "lighting/shades.h"
+#include "scene/light_place.h"
 
 #include <vector>
 

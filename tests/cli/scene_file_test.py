@@ -189,11 +189,12 @@ class SceneFileTest(ToolTest):
     def test_lights_of_a_scene_are_not_lost_with_its_form_factors(self):
         self.write("lit.toml", '[[model]]\nfile = "room.obj"\n[[luminaire]]\nkind = "point"\nposition = [0, 0, 1.5]\n'
                    'lumens = 100\n[[sensors]]\npoints = [[0.5, 0.5, 0.3, 0, 0, 1]]\n')
-        done = self.run_tool("form-factors", "lit.toml", "-o", "lit.ff", "--patches", 200, "--quiet")
+        done = self.run_tool("form-factors", "lit.toml", "-o", "lit.ff", "--patches", 200, "--no-contact-lines", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.refused(INPUT, ["luminaires", "--form-factors"], "relight", "lit.ff", "-o", "a.vtp")
         self.solve("lit.toml", "--form-factors", "lit.ff", "--points-output", "stored.csv", "-q")
-        self.solve("lit.toml", "--patches", 200, "--points-output", "anew.csv", "-q")
+        # Patches do not end at the edges of shadows here: form factors that are kept know of no lights.
+        self.solve("lit.toml", "--patches", 200, "--no-contact-lines", "--points-output", "anew.csv", "-q")
         stored, anew = self.rows("stored.csv"), self.rows("anew.csv")
         # Stored form factors are rounded to floats: 6e-8.
         self.assertAlmostEqual(float(stored[0]["E_v_lx"]), float(anew[0]["E_v_lx"]), delta=1e-6 * float(anew[0]["E_v_lx"]))
