@@ -31,7 +31,7 @@ void add_patch_options(CLI::App& command, Request& request) {
   command.add_flag_callback(
       "--no-contact-lines", [&request] { request.mesh.contact_lines = false; },
       "patches follow the outlines of faces alone; default: they also end\nwhere other faces touch, cross or end close "
-      "before a face, and none\nis left under what stands on it");
+      "before a face and at the\nedges of hard shadows, and none is left under what stands on a face");
 }
 
 void add_closure_option(CLI::App& command, Request& request) {

@@ -152,7 +152,7 @@ struct PlannedContacts {
 };
 
 // To cut faces at more lines takes longer than light through them.
-constexpr std::size_t most_lines = 5000;
+constexpr std::size_t most_lines = 20'000;
 
 // Where there are so many times the patches that there are without lines faces cross anywhere.
 bool are_too_many(std::size_t patches, std::size_t without_lines) {
