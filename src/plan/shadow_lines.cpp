@@ -16,7 +16,9 @@
 namespace patchlight {
 namespace {
 
-constexpr int rays_per_edge = 16;
+constexpr std::size_t few_rays = 16;    // along an edge
+constexpr std::size_t many_rays = 128;  // along one whose shadow is broken
+constexpr std::size_t few_stretches = 2;
 constexpr int bisections = 8;
 constexpr double beside_edge = 1e-5;  // of the extent: how far from an edge rays pass it
 constexpr double grazing = 0.02;      // sine; light that comes flatter draws shadows out without end
@@ -105,6 +107,7 @@ struct ShadowSearch {
   PolygonIndex ground_below(const Silhouette& edge, double t) const;
   std::optional<Point> shadow_of(const Silhouette& edge, double t, PolygonIndex ground) const;
   double border(const Silhouette& edge, PolygonIndex ground, double inside, double outside) const;
+  std::vector<PolygonIndex> grounds_of(const Silhouette& edge, std::size_t rays) const;
   std::vector<ShadowLine> lines_of(const Silhouette& edge) const;
 };
 
@@ -140,26 +143,38 @@ double ShadowSearch::border(const Silhouette& edge, PolygonIndex ground, double 
   return outside;
 }
 
+// The polygons on which the shadows of evenly spread places of the edge fall.
+std::vector<PolygonIndex> ShadowSearch::grounds_of(const Silhouette& edge, std::size_t rays) const {
+  std::vector<PolygonIndex> grounds;
+  for (std::size_t k = 0; k < rays; ++k)
+    grounds.push_back(ground_below(edge, (static_cast<double>(k) + 0.5) / static_cast<double>(rays)));
+  return grounds;
+}
+
 std::vector<ShadowLine> ShadowSearch::lines_of(const Silhouette& edge) const {
-  const auto place = [](int k) { return (k + 0.5) / rays_per_edge; };
-  std::array<PolygonIndex, rays_per_edge> grounds{};
-  for (int k = 0; k < rays_per_edge; ++k) grounds[static_cast<std::size_t>(k)] = ground_below(edge, place(k));
+  std::vector<PolygonIndex> grounds = grounds_of(edge, few_rays);
+  std::size_t changes = 0;
+  for (std::size_t k = 1; k < grounds.size(); ++k) changes += grounds[k] == grounds[k - 1] ? 0 : 1;
+  if (changes >= few_stretches) grounds = grounds_of(edge, many_rays);
+
+  const std::size_t rays = grounds.size();
+  const auto place = [rays](std::size_t k) { return (static_cast<double>(k) + 0.5) / static_cast<double>(rays); };
   std::vector<ShadowLine> lines;
-  for (int first = 0, next = 0; first < rays_per_edge; first = next) {
-    const PolygonIndex ground = grounds[static_cast<std::size_t>(first)];
-    while (next < rays_per_edge && grounds[static_cast<std::size_t>(next)] == ground) ++next;
+  for (std::size_t first = 0, next = 0; first < rays; first = next) {
+    const PolygonIndex ground = grounds[first];
+    while (next < rays && grounds[next] == ground) ++next;
     if (ground == no_polygon) continue;
     const auto end_towards = [&](double inside, double outside) {
       return ground_below(edge, outside) == ground ? outside : border(edge, ground, inside, outside);
     };
     constexpr double almost = 1e-6;  // rays at the very ends pass the neighbour's edges
     const double from = end_towards(place(first), first == 0 ? almost : place(first - 1));
-    const double to = end_towards(place(next - 1), next == rays_per_edge ? 1 - almost : place(next));
+    const double to = end_towards(place(next - 1), next == rays ? 1 - almost : place(next));
     const std::array loose{from > almost, to < 1 - almost};
     const auto begin = shadow_of(edge, loose[0] ? from : 0, ground);
     const auto end = shadow_of(edge, loose[1] ? to : 1, ground);
     if (!begin || !end || (*end - *begin).norm() <= touch) continue;
-    const double step = (*end - *begin).norm() / (to - from) / rays_per_edge / (1 << bisections);
+    const double step = (*end - *begin).norm() / (to - from) / static_cast<double>(rays << bisections);
     lines.push_back({ground, {*begin, *end, 0}, loose, 4 * step + beside});
   }
   return lines;
@@ -179,6 +194,8 @@ std::optional<double> meeting(const ContactLine& line, const Point& from, const 
 
 // Moves loose ends to what they nearly reach: to the nearest of the polygon's edges and other lines.
 void tie_loose_ends(std::vector<ShadowLine>& lines, const std::vector<Point>& corners) {
+  constexpr std::size_t too_many = 5000;  // for pairs of them
+  if (lines.size() > too_many) return;
   const std::vector<ShadowLine> before = lines;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const ContactLine& line = before[k].line;
