@@ -201,10 +201,12 @@ std::vector<LightPlace> lights_with_hard_shadows(const Scene& scene, const std::
   if (contains(skipped, Effect::occlusion)) return lights;
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0 && !contains(skipped, Effect::sun))
     lights.push_back({scene.sun->direction, 0});
-  if (scene.luminaires.size() > many || contains(skipped, Effect::luminaires)) return lights;
+  if (contains(skipped, Effect::luminaires)) return lights;
+  std::vector<LightPlace> luminaires;
   for (const Luminaire& luminaire : scene.luminaires) {
-    if (!std::holds_alternative<SphericalLamp>(luminaire.light)) lights.push_back({luminaire.position, 1});
+    if (!std::holds_alternative<SphericalLamp>(luminaire.light)) luminaires.push_back({luminaire.position, 1});
   }
+  if (luminaires.size() <= many) lights.insert(lights.end(), luminaires.begin(), luminaires.end());
   return lights;
 }
 
@@ -218,7 +220,8 @@ double area_of_faces(const Scene& scene) {
 PlannedContacts with_shadow_edges(PlannedContacts planned, const Scene& scene, const Request& request,
                                   const KeptSides& sides) {
   const std::vector<LightPlace> lights = lights_with_hard_shadows(scene, request.effects.skip);
-  if (!request.mesh.contact_lines || lights.empty()) return planned;
+  const bool is_bent = largest_bend(scene) > weld_distance(scene);
+  if (!request.mesh.contact_lines || lights.empty() || is_bent) return planned;
   const auto shadows = find_shadow_lines(scene, sides, lights);
   ContactLines all = planned.lines;
   all.on.resize(scene.polygons.size());
@@ -230,8 +233,8 @@ PlannedContacts with_shadow_edges(PlannedContacts planned, const Scene& scene, c
   }
   if (number == 0) return planned;
   set_detail(all, scene, request, sides);
-  const bool fits = number_of(all) <= most_lines &&
-                    !are_too_many(least_patches(scene, sides, all), least_patches(scene, sides, planned.lines));
+  const bool fits =
+      number_of(all) <= most_lines && !are_too_many(least_patches(scene, sides, all), least_patches(scene, sides));
   planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
                           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
   if (fits) planned.lines = std::move(all);

@@ -116,12 +116,15 @@ PolygonIndex ShadowSearch::ground_below(const Silhouette& edge, double t) const 
   const Point place = edge.at(t) + beside * edge.outward;
   const Vector way = edge.light->way_from(place);
   const Vector toward = way.normalized();
-  const auto hits = occluder.first_hits(std::array{Ray{place, toward}, Ray{place, -toward}});
-  if (hits[0] && (edge.light->weight == 0 || hits[0]->distance < way.norm())) return no_polygon;
-  if (!hits[1] || hits[1]->distance <= touch) return no_polygon;
-  const auto& sides = hits[1]->side == Side::front ? kept.front : kept.back;
-  const double sine = std::abs(front_normal(scene, hits[1]->polygon).dot(toward));
-  return sides[hits[1]->polygon] != 0 && sine > grazing ? hits[1]->polygon : no_polygon;
+  const bool is_far = edge.light->weight == 0;
+  const bool blocked = is_far ? occluder.first_hits(std::array{Ray{place, toward}})[0].has_value()
+                              : occluder.occluded(std::array{Segment{place, edge.light->at}})[0] != 0;
+  if (blocked) return no_polygon;
+  const auto hit = occluder.first_hits(std::array{Ray{place, -toward}})[0];
+  if (!hit || hit->distance <= touch) return no_polygon;
+  const auto& sides = hit->side == Side::front ? kept.front : kept.back;
+  const double sine = std::abs(front_normal(scene, hit->polygon).dot(toward));
+  return sides[hit->polygon] != 0 && sine > grazing ? hit->polygon : no_polygon;
 }
 
 // Where the shadow of a place of the edge lies in the plane of a polygon.
@@ -130,17 +133,18 @@ std::optional<Point> ShadowSearch::shadow_of(const Silhouette& edge, double t, P
   const Vector way = edge.light->way_from(edge.at(t));
   const double height = normal.dot(edge.at(t) - scene.vertices[scene.polygons[ground].corners[0]]);
   const double climb = normal.dot(way);
-  if (std::abs(climb) <= grazing * way.norm()) return std::nullopt;
+  const bool is_past_light = height * climb < 0 && std::abs(height) > touch;
+  if (std::abs(climb) <= grazing * way.norm() || is_past_light) return std::nullopt;
   return edge.at(t) - height / climb * way;
 }
 
-// Where between two places of the edge its shadow leaves a polygon.
+// Where between two places of the edge its shadow leaves a polygon: just beyond, unless it has no end there.
 double ShadowSearch::border(const Silhouette& edge, PolygonIndex ground, double inside, double outside) const {
   for (int k = 0; k < bisections; ++k) {
     const double middle = (inside + outside) / 2;
     (ground_below(edge, middle) == ground ? inside : outside) = middle;
   }
-  return outside;
+  return shadow_of(edge, outside, ground) ? outside : inside;
 }
 
 // The polygons on which the shadows of evenly spread places of the edge fall.
@@ -221,9 +225,11 @@ void tie_loose_ends(std::vector<ShadowLine>& lines, const std::vector<Point>& co
 bool is_along_outline(const ContactLine& line, const std::vector<Point>& corners, double near) {
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const Vector edge = corners[(c + 1) % corners.size()] - corners[c];
-    if (edge.cross(line.from - corners[c]).norm() <= near * edge.norm() &&
-        edge.cross(line.to - corners[c]).norm() <= near * edge.norm())
-      return true;
+    const auto is_on_edge = [&](const Point& point) {
+      const double t = std::clamp((point - corners[c]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      return (point - corners[c] - t * edge).norm() <= near;
+    };
+    if (is_on_edge(line.from) && is_on_edge(line.to)) return true;
   }
   return false;
 }

@@ -60,7 +60,6 @@ LitFloor lit_floor(const Scene& scene, Request request) {
     const double lit = irradiance(i, 0) / unshadowed(i, 0);
     floor.area += lit * mesh.area[i];
     if (lit > rounding && lit < 1 - rounding) floor.partly += mesh.area[i];
-    ++floor.patches;
   }
   return floor;
 }
@@ -98,7 +97,7 @@ TEST(ShadowLines, AreThrownBySilhouettesAlone) {
   EXPECT_NEAR(length_of(lines_on_floor(scene)), 2 * std::numbers::sqrt2 + 2, 1e-4);
 }
 
-// Without lines a tenth and more of the floor has patches in half shadow.
+// Without lines a twentieth and more of the floor has patches in half shadow.
 TEST(ShadowLines, LeaveNoPatchInHalfShadow) {
   const Scene scene = with_block(sunny_floor({-1, -0.6, 1.1}), Point(1, 1, 0), Point(2, 2, 1));
   const double shadow = 1.0 + 1 / 1.1 * (1 + 0.6);  // the block's foot, and what its top sweeps
@@ -126,6 +125,45 @@ TEST(ShadowLines, AreThoseOfALuminaireWithoutExtentToo) {
   bulb.light = PointLight{Spectrum::Constant(1, 1)};
   scene.luminaires = {bulb};
   EXPECT_EQ(lit_floor(scene, patches(400)).partly, 0);
+}
+
+// The shadow of a post at the inner corner of an L goes on where an edge of the floor ends.
+TEST(ShadowLines, GoOnBeyondAnEdgeOfTheFloor) {
+  Scene scene = with_polygon(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 2, 0), Point(2, 2, 0),
+                                                        Point(2, 4, 0), Point(0, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(2, 2, 0), Point(4, 2, 0), Point(4, 2, 1), Point(2, 2, 1)});
+  scene.sun = Sun{Vector(0, 1, 1).normalized(), Spectrum::Constant(1, 1)};
+  const std::vector<ContactLine> lines = lines_on_floor(scene);
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const ContactLine& line) {
+    return std::abs(line.from.x() - 2) < 1e-9 && std::abs(line.to.x() - 2) < 1e-9 &&
+           std::abs(std::abs(line.from.y() - line.to.y()) - 1) < 1e-3;
+  }));
+}
+
+// An edge that rises past the light throws its shadow without end there.
+TEST(ShadowLines, EndAtTheHeightOfTheLight) {
+  Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(1.1, 1.1, 3));
+  const std::size_t count = scene.polygons.size();
+  const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
+  const auto lines = find_shadow_lines(scene, front, {{Point(0.5, 0.9, 2), 1}})[0];
+  EXPECT_FALSE(lines.empty());
+  for (const ContactLine& line : lines) {
+    EXPECT_GE(std::min(line.from.x(), line.to.x()), 0.99) << "to the far side of the light";
+    EXPECT_GT(std::max(line.from.x(), line.to.x()), 3) << "out to the floor's edge";
+  }
+}
+
+// A luminaire flush with the ceiling is not hidden by it.
+TEST(ShadowLines, AreThrownByALightInThePlaneOfTheCeiling) {
+  Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(2, 2, 0.5));
+  scene = with_quad(std::move(scene), {Point(0, 0, 2.3), Point(0, 4, 2.3), Point(4, 4, 2.3), Point(4, 0, 2.3)});
+  const std::size_t count = scene.polygons.size();
+  const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
+  const auto lines = find_shadow_lines(scene, front, {{Point(0.3, 0.4, 2.3), 1}})[0];
+  // Two edges of the top, of 1 m each, are as much longer as they are nearer to the light.
+  double longest = 0;
+  for (const ContactLine& line : lines) longest = std::max(longest, (line.to - line.from).norm());
+  EXPECT_NEAR(longest, 2.3 / 1.8, 1e-4);
 }
 
 // Of what is left out, of a sun that has set, and of many luminaires there are no lines; nor in a mesh to which form
