@@ -21,7 +21,8 @@ struct MeshOptions {
   std::optional<std::size_t> patches = {};  ///< or the number of kept patches; left open default_patches, and where
                                             ///< patches are refined first_patches
   Sides sides = Sides::automatic;
-  bool contact_lines = true;                 ///< patches end where faces touch, cross or end close before them
+  bool contact_lines = true;                 ///< patches end where faces touch, cross or end close before them, and at
+                                             ///< the edges of hard shadows
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
 };
 
