@@ -53,6 +53,7 @@ struct FormFactorInfo {
   double max_edge = 0;               ///< metres
   Sides sides = Sides::automatic;
   bool contact_lines = true;  ///< MeshOptions::contact_lines
+  bool graded_edges = false;  ///< MeshOptions::graded_edges
   int samples = 8;
   std::uint64_t seed = 1;
   int lost_share_rays = 256;

@@ -341,12 +341,19 @@ double followed_detail(const ContactLines& contacts, double max_edge) {
 
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      double max_edge) {
+  return cut_again({}, scene, loose, contacts, max_edge);
+}
+
+std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
+                                  const ContactLines& contacts, double max_edge) {
   const bool any = !contacts.on.empty();
   const double grid = any ? grid_of_extent * extent_of(scene) : 0;
   const double detail = any ? followed_detail(contacts, max_edge) : 0;
   static const std::vector<ContactLine> none;
-  std::vector<CutPolygon> polygons(scene.polygons.size());
+  const bool all = polygons.empty();
+  polygons.resize(scene.polygons.size());
   parallel_for(polygons.size(), [&](std::size_t p) {
+    if (!all && (loose.empty() || loose[p].empty())) return;
     const auto polygon = static_cast<PolygonIndex>(p);
     polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon),
                               any ? contacts.on[p] : none, detail, grid);

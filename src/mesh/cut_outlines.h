@@ -46,6 +46,11 @@ double followed_detail(const ContactLines& contacts, double max_edge);
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      double max_edge);
 
+/// What cut_polygons() gives, from what it gave for an edge with the same followed_detail(): those without loose
+/// corners stay as they are.
+std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
+                                  const ContactLines& contacts, double max_edge);
+
 /// Their outlines. Where a line ends on an outline there is a corner, also of a neighbour in about the same plane that
 /// shares the edge.
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge);

@@ -5,9 +5,9 @@
 #include "base/parallel.h"
 #include "mesh/boundary_vertices.h"
 #include "mesh/cut_outlines.h"
+#include "mesh/graded_edges.h"
 #include "mesh/outline.h"
 #include "mesh/refine_polygon.h"
-#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cassert>
@@ -28,9 +28,7 @@ Pattern pattern_of(const Outline& outline) {
   if (!outline.lines.empty()) return Pattern::delaunay;
   const auto& parts = outline.parts;
   if (parts.size() == 3 && parts[0] == parts[1] && parts[1] == parts[2]) return Pattern::triangle_grid;
-  if (parts.size() == 4 && parts[0] == parts[2] && parts[1] == parts[3] && is_convex(outline.corners)) {
-    return Pattern::quad_grid;
-  }
+  if (is_quad_grid(outline)) return Pattern::quad_grid;
   return Pattern::delaunay;
 }
 
@@ -41,8 +39,8 @@ PolygonMesh quad_grid(const Outline& outline) {
   PolygonMesh mesh;
   for (std::uint32_t j = 1; j < m; ++j) {
     for (std::uint32_t i = 1; i < n; ++i) {
-      const double u = static_cast<double>(i) / n;
-      const double v = static_cast<double>(j) / m;
+      const double u = share_of_edge(i, n, grading_of_edge(outline, 0));
+      const double v = share_of_edge(j, m, grading_of_edge(outline, 1));
       const auto& p = outline.corners;
       mesh.inner.push_back(p[0] + u * (p[1] - p[0]) + v * (p[3] - p[0]) + u * v * (p[0] - p[1] + p[2] - p[3]));
     }
@@ -136,12 +134,14 @@ struct Pieces {
 
 bool is_kept(const KeptSides& sides, std::size_t slot) { return (slot % 2 == 0 ? sides.front : sides.back)[slot / 2]; }
 
-Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts) {
+Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts,
+                   bool grade) {
   const std::size_t count = scene.polygons.size();
   Pieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, max_edge), max_edge),
                 .meshes = std::vector<PolygonMesh>(count),
                 .first_inner = {},
                 .boundary = {}};
+  if (grade) pieces.outlines = graded(std::move(pieces.outlines), sides);
   parallel_for(count, [&](std::size_t p) {
     if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], max_edge);
   });
@@ -212,13 +212,14 @@ double diameter(const Scene& scene) { return bounds(scene).diagonal().norm(); }
 
 }  // namespace
 
-PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts) {
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts,
+                     bool graded_edges) {
   assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
   // A patch is never larger than max_edge squared.
   const double at_least = std::max(kept_area(scene, sides) / max_edge, diameter(scene)) / max_edge;
   if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 
-  Pieces pieces = make_pieces(scene, sides, max_edge, contacts);
+  Pieces pieces = make_pieces(scene, sides, max_edge, contacts, graded_edges);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);
   const auto& [front, back] = pieces.boundary;
@@ -254,13 +255,14 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
   const LooseCorners loose = find_loose_corners(scene);
-  // Without loose corners edges of about one length have the same polygons.
+  // Edges of about one length have the same polygons but for loose corners.
   std::map<double, std::vector<CutPolygon>> known;
   const auto count = [&](double edge) {
-    if (!loose.empty() || contacts.on.empty())
+    if (contacts.on.empty())
       return static_cast<double>(count_patches(cut_polygons(scene, loose, contacts, edge), sides, edge));
     const auto [found, is_new] = known.try_emplace(followed_detail(contacts, edge));
-    if (is_new) found->second = cut_polygons(scene, loose, contacts, edge);
+    found->second =
+        cut_again(is_new ? std::vector<CutPolygon>() : std::move(found->second), scene, loose, contacts, edge);
     return static_cast<double>(count_patches(found->second, sides, edge));
   };
 

@@ -1,7 +1,11 @@
 #include "mesh/outline.h"
 
+#include "scene/triangulate.h"
+
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace patchlight {
@@ -28,11 +32,33 @@ Outline make_outline(std::vector<Point> corners, const Vector& normal, double ma
   return outline;
 }
 
-Point edge_point(const Point& from, const Point& to, std::uint32_t index, std::uint32_t parts) {
+bool is_quad_grid(const Outline& outline) {
+  const auto& parts = outline.parts;
+  return outline.lines.empty() && parts.size() == 4 && parts[0] == parts[2] && parts[1] == parts[3] &&
+         is_convex(outline.corners);
+}
+
+Grading grading_of_edge(const Outline& outline, std::size_t edge) {
+  if (outline.is_graded.empty()) return {};
+  assert(outline.is_graded.size() == 4);
+  return {outline.is_graded[(edge + 3) % 4] != 0, outline.is_graded[(edge + 1) % 4] != 0};
+}
+
+double share_of_edge(std::uint32_t index, std::uint32_t parts, Grading grading) {
+  // From the nearer end, so that both halves have the same parts.
+  if (grading.at_from && grading.at_to && 2 * index > parts) return 1 - share_of_edge(parts - index, parts, grading);
+  const double t = static_cast<double>(index) / parts;
+  if (grading.at_from && grading.at_to) return (1 - std::cos(std::numbers::pi * t)) / 2;
+  if (grading.at_from) return 1 - std::cos(std::numbers::pi / 2 * t);
+  if (grading.at_to) return std::sin(std::numbers::pi / 2 * t);
+  return t;
+}
+
+Point edge_point(const Point& from, const Point& to, std::uint32_t index, std::uint32_t parts, Grading grading) {
   if (index == 0) return from;
   if (index == parts) return to;
-  if (comes_before(to, from)) return edge_point(to, from, parts - index, parts);
-  return from + static_cast<double>(index) / parts * (to - from);
+  if (comes_before(to, from)) return edge_point(to, from, parts - index, parts, {grading.at_to, grading.at_from});
+  return from + share_of_edge(index, parts, grading) * (to - from);
 }
 
 std::vector<Point> boundary_points(const Outline& outline) {
@@ -40,7 +66,8 @@ std::vector<Point> boundary_points(const Outline& outline) {
   const std::size_t n = outline.corners.size();
   for (std::size_t k = 0; k < n; ++k) {
     for (std::uint32_t i = 0; i < outline.parts[k]; ++i) {
-      points.push_back(edge_point(outline.corners[k], outline.corners[(k + 1) % n], i, outline.parts[k]));
+      points.push_back(edge_point(outline.corners[k], outline.corners[(k + 1) % n], i, outline.parts[k],
+                                  grading_of_edge(outline, k)));
     }
   }
   return points;

@@ -42,6 +42,7 @@ Json request_part(const Request& request) {
   part["patches"] = json_of(request.mesh.patches);
   part["sides"] = name_of(request.mesh.sides);
   part["contact_lines"] = request.mesh.contact_lines;
+  part["graded_edges"] = request.mesh.graded_edges;
   part["solver"] = name_of(request.solver.solver);
   part["relaxation"] = json_of(request.solver.relaxation);
   part["tolerance"] = tolerance_of(request.solver);

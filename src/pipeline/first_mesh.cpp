@@ -28,7 +28,7 @@ NestedMesh nested_as_planned(const Plan& plan, const auto& patches_with_edge) {
 }  // namespace
 
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, const Occluder& occluder) {
-  PatchMesh mesh = tessellate(scene, plan.sides, max_edge, plan.contacts);
+  PatchMesh mesh = tessellate(scene, plan.sides, max_edge, plan.contacts, plan.graded_edges);
   if (plan.contacts.on.empty()) return mesh;
   // Only where faces touch can others be covered. The rest counts as known: open.
   LostShare open;
@@ -50,7 +50,7 @@ PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, co
 }
 
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge) {
-  if (plan.contacts.on.empty()) return tessellate(scene, plan.sides, max_edge);
+  if (plan.contacts.on.empty()) return tessellate(scene, plan.sides, max_edge, {}, plan.graded_edges);
   const Tracing tracing(scene, find_coverings(scene, plan.sides), blockers_of(plan));
   return open_patches(scene, plan, max_edge, tracing.between_patches());
 }

@@ -203,6 +203,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const auto left_out = [&] { return notes_on_left_out_sides(scene, *asked.mesh.kept_sides, asked.mesh.sides); };
   return {.sides = std::move(sides),
           .contacts = std::move(contacts),
+          .graded_edges = asked.mesh.graded_edges,
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
           .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage),
@@ -223,6 +224,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
                      !contains(request.effects.skip, Effect::closure);
   return {.sides = std::move(sides),
           .contacts = std::move(contacts),
+          .graded_edges = request.mesh.graded_edges,
           .max_edge = size.max_edge,
           .assembly = decided(request.assembly, request, close),
           .solver = decided(request.solver),

@@ -2,11 +2,12 @@
 
 #include "mesh/mesher.h"
 #include "plan/shadow_lines.h"
-#include "scene/extent.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -34,26 +35,60 @@ void set_detail(ContactLines& contacts, const Scene& scene, const Request& reque
   contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
 }
 
+// The longest of the lines, so many of them; of equal ones the first.
+ContactLines longest_of(const ContactLines& all, std::size_t number) {
+  if (number >= number_of(all)) return all;
+  struct Place {
+    double square;  // of the length
+    std::size_t polygon, line;
+  };
+  std::vector<Place> places;
+  for (std::size_t p = 0; p < all.on.size(); ++p) {
+    for (std::size_t k = 0; k < all.on[p].size(); ++k)
+      places.push_back({(all.on[p][k].to - all.on[p][k].from).squaredNorm(), p, k});
+  }
+  std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(number), places.end(),
+                   [](const Place& a, const Place& b) {
+                     return std::tuple(-a.square, a.polygon, a.line) < std::tuple(-b.square, b.polygon, b.line);
+                   });
+  places.resize(number);
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tuple(a.polygon, a.line) < std::tuple(b.polygon, b.line);
+  });
+  ContactLines some = all;
+  some.on.assign(all.on.size(), {});
+  for (const Place& place : places) some.on[place.polygon].push_back(all.on[place.polygon][place.line]);
+  return some;
+}
+
+std::vector<std::string> note_on_bent_faces(const std::vector<std::uint8_t>& is_bent) {
+  const auto number = std::count(is_bent.begin(), is_bent.end(), 1);
+  if (number == 0) return {};
+  return {std::to_string(number) +
+          " faces are bent by rounding, more than touching faces may be apart; on these patches follow the outline "
+          "alone, wherever others touch them"};
+}
+
+// The long lines are those on which much light depends: where all are too many, these are followed alone.
 PlannedLines contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
   if (!request.mesh.contact_lines) return {};
-  if (largest_bend(scene) > weld_distance(scene))
-    return {{},
-            {"faces are bent by rounding, more than touching faces may be apart; patches follow the outlines of faces "
-             "alone, wherever others touch them"}};
-  ContactLines contacts = find_contact_lines(scene, sides);
-  if (contacts.on.empty()) return {};
-  if (const std::size_t lines = number_of(contacts); lines > most_lines)
-    return {{},
-            {std::to_string(lines) +
-             " lines where faces touch, cross or end close before one are too many to cut faces at; patches follow the "
-             "outlines of faces alone"}};
-  set_detail(contacts, scene, request, sides);
-  const std::size_t with_lines = least_patches(scene, sides, contacts);
-  if (are_too_many(with_lines, least_patches(scene, sides)))
-    return {{},
-            {"patches that end where faces touch or cross would be " + std::to_string(with_lines) +
-             " at least; they follow the outlines of faces alone"}};
-  return {std::move(contacts), {}};
+  PlannedLines planned{{}, note_on_bent_faces(bent_faces(scene))};
+  const ContactLines all = find_contact_lines(scene, sides);
+  if (all.on.empty()) return planned;
+  ContactLines followed = longest_of(all, most_lines);
+  set_detail(followed, scene, request, sides);
+  const std::size_t with_lines = least_patches(scene, sides, followed);
+  if (are_too_many(with_lines, least_patches(scene, sides))) {
+    planned.notes.push_back("patches that end where faces touch or cross would be " + std::to_string(with_lines) +
+                            " at least; they follow the outlines of faces alone");
+    return planned;
+  }
+  if (const std::size_t found = number_of(all); found > most_lines)
+    planned.notes.push_back("of " + std::to_string(found) +
+                            " lines where faces touch, cross or end close before one, patches end at the " +
+                            std::to_string(most_lines) + " longest");
+  planned.lines = std::move(followed);
+  return planned;
 }
 
 // The sun above the horizon, and luminaires without extent. Where these are many the shadow of one is faint.
@@ -82,14 +117,15 @@ double area_of_faces(const Scene& scene) {
 PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const Request& request,
                                const KeptSides& sides) {
   const std::vector<LightPlace> lights = lights_with_hard_shadows(scene, request.effects.skip);
-  const bool is_bent = largest_bend(scene) > weld_distance(scene);
-  if (!request.mesh.contact_lines || lights.empty() || is_bent) return planned;
+  if (!request.mesh.contact_lines || lights.empty()) return planned;
+  const std::vector<std::uint8_t> is_bent = bent_faces(scene);
   const auto shadows = find_shadow_lines(scene, sides, lights);
   ContactLines all = planned.lines;
   all.on.resize(scene.polygons.size());
   if (all.size == 0) all.size = std::sqrt(area_of_faces(scene));
   std::size_t number = 0;
   for (std::size_t p = 0; p < shadows.size(); ++p) {
+    if (is_bent[p]) continue;
     all.on[p].insert(all.on[p].end(), shadows[p].begin(), shadows[p].end());
     number += shadows[p].size();
   }

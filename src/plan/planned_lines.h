@@ -16,8 +16,8 @@ struct PlannedLines {
 };
 
 /// Lines of contact, and the edges of hard shadows where the mesh may know of lights. What is worth a line where an
-/// accuracy is asked for is what it can feel, as a share of the area of all kept sides. None where they would be too
-/// many, or where bent faces leave open which of them touch.
+/// accuracy is asked for is what it can feel, as a share of the area of all kept sides. Where they would be too
+/// many the longest alone, and on bent faces none.
 PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides, bool knows_lights);
 
 }  // namespace patchlight

@@ -6,9 +6,11 @@
 #include "scene/triangulate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -229,22 +231,42 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   return lines;
 }
 
+// Each line once, where it comes first, with the smallest of its gaps: of two solids that touch both have the edges.
+std::vector<ContactLine> each_once(const std::vector<ContactLine>& lines) {
+  const auto ends = [](const ContactLine& line) {
+    const std::array from{line.from.x(), line.from.y(), line.from.z()};
+    const std::array to{line.to.x(), line.to.y(), line.to.z()};
+    return to < from ? std::array{to, from} : std::array{from, to};
+  };
+  std::map<std::array<std::array<double, 3>, 2>, std::size_t> places;
+  std::vector<ContactLine> once;
+  for (const ContactLine& line : lines) {
+    const auto [place, is_new] = places.try_emplace(ends(line), once.size());
+    if (is_new) once.push_back(line);
+    double& gap = once[place->second].gap;
+    gap = std::min(gap, line.gap);
+  }
+  return once;
+}
+
 }  // namespace
 
-double largest_bend(const Scene& scene) {
-  double largest = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const Vector normal = front_normal(scene, p);
+std::vector<std::uint8_t> bent_faces(const Scene& scene) {
+  const double touch = weld_distance(scene);
+  std::vector<std::uint8_t> is_bent(scene.polygons.size(), 0);
+  parallel_for(is_bent.size(), [&](std::size_t p) {
+    const auto polygon = static_cast<PolygonIndex>(p);
+    const Vector normal = front_normal(scene, polygon);
     double lowest = 0;
     double highest = 0;
-    for (const Point& corner : corner_points(scene, p)) {
+    for (const Point& corner : corner_points(scene, polygon)) {
       const double height = normal.dot(corner - scene.vertices[scene.polygons[p].corners[0]]);
       lowest = std::min(lowest, height);
       highest = std::max(highest, height);
     }
-    largest = std::max(largest, highest - lowest);
-  }
-  return largest;
+    is_bent[p] = highest - lowest > touch ? 1 : 0;
+  });
+  return is_bent;
 }
 
 std::size_t number_of(const ContactLines& contacts) {
@@ -260,14 +282,20 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   const ContactSearch search{
       scene, kept, std::move(tree), edges_of(scene), weld_distance(scene), largest_gap_of_scene * std::sqrt(area)};
   std::vector<LinesOnFaces> found(scene.polygons.size());
-  parallel_for(found.size(), [&](std::size_t p) { found[p] = search.on(static_cast<PolygonIndex>(p)); });
+  const std::vector<std::uint8_t> is_bent = bent_faces(scene);
+  parallel_for(found.size(), [&](std::size_t p) {
+    if (!is_bent[p]) found[p] = search.on(static_cast<PolygonIndex>(p));
+  });
   ContactLines lines;
   lines.size = std::sqrt(area);
   if (std::all_of(found.begin(), found.end(), [](const LinesOnFaces& some) { return some.empty(); })) return {};
   lines.on.resize(scene.polygons.size());
   for (const LinesOnFaces& some : found) {
-    for (const auto& [polygon, line] : some) lines.on[polygon].push_back(line);
+    for (const auto& [polygon, line] : some) {
+      if (!is_bent[polygon]) lines.on[polygon].push_back(line);
+    }
   }
+  parallel_for(lines.on.size(), [&](std::size_t p) { lines.on[p] = each_once(lines.on[p]); });
   return lines;
 }
 

@@ -223,6 +223,14 @@ class FormFactorsTest(ToolTest):
                                  "--no-contact-lines")
             self.assertEqual(done.returncode, INPUT if lines else GOOD, done.stderr)
 
+    def test_they_tell_whether_patches_are_graded(self):
+        """The box is known again by its faces alone, with the patches that it was cut into then."""
+        self.find("-o", "room.ff", "--patches", "300", "--graded-edges")
+        info = json.loads((self.folder / "room.ff" / "info.json").read_text())
+        self.assertEqual(info["options"]["graded_edges"], True)
+        done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+
     def test_those_of_a_far_smaller_model_are_refused_before_it_is_cut(self):
         """A room a thousand times as large would take 60 million patches with these edges."""
         self.find("-o", "room.ff", "--patches", "60")

@@ -23,6 +23,7 @@ struct MeshOptions {
   Sides sides = Sides::automatic;
   bool contact_lines = true;                 ///< patches end where faces touch, cross or end close before them, and at
                                              ///< the edges of hard shadows
+  bool graded_edges = false;                 ///< patches of grids shrink towards edges where lit faces meet
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
 };
 
@@ -62,10 +63,11 @@ struct Request {
 struct Plan {
   KeptSides sides;
   ContactLines contacts;  ///< where patches end besides the outlines of their polygons; none where there are too many
-  double max_edge = 0;    ///< metres
-  AssemblyOptions assembly;  ///< stored as asked for, else as pairs, rays or rows of the lamps
-  SolverOptions solver;      ///< of a mesh on the way to an accuracy: its own relative error
-  AccuracyOptions accuracy;  ///< with error bars where patches are refined
+  bool graded_edges = false;  ///< as asked for
+  double max_edge = 0;        ///< metres
+  AssemblyOptions assembly;   ///< stored as asked for, else as pairs, rays or rows of the lamps
+  SolverOptions solver;       ///< of a mesh on the way to an accuracy: its own relative error
+  AccuracyOptions accuracy;   ///< with error bars where patches are refined
   Resources resources;
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else

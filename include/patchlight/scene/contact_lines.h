@@ -4,6 +4,7 @@
 #include "patchlight/scene/sides.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -27,18 +28,18 @@ struct ContactLines {
                        ///< be cut in four
 };
 
-/// How far corners of a polygon are from lying in one plane, of that where it is most, metres. Where that is more than
-/// weld_distance(), as coordinates far from the origin in single precision have it, nobody knows which faces touch.
-double largest_bend(const Scene& scene);
+/// Per polygon 1 where its corners are farther from lying in one plane than touching faces may be apart,
+/// weld_distance(), as coordinates far from the origin in single precision have it: nobody knows what touches it.
+std::vector<std::uint8_t> bent_faces(const Scene& scene);
 
 /// How many there are on all polygons.
 std::size_t number_of(const ContactLines& contacts);
 
-/// The lines of contact on every polygon with a kept side. Faces touch where they are within weld_distance(). Edges
-/// close before a polygon count as far as a fiftieth of the root of the area of all faces and a tenth of that of the
-/// polygon, and only where the face before it ends, not where it goes on; such an edge is a line of its own face too.
-/// Lines may reach beyond a polygon that is not convex, may cross and may be there twice. O(n log n + k) for n polygons
-/// of which k pairs are near each other.
+/// The lines of contact on every polygon with a kept side that is not bent. Faces touch where they are within
+/// weld_distance(). Edges close before a polygon count as far as a fiftieth of the root of the area of all faces and a
+/// tenth of that of the polygon, and only where the face before it ends, not where it goes on; such an edge is a line
+/// of its own face too. Lines may reach beyond a polygon that is not convex, may cross and may lie on each other in
+/// part. O(n log n + k) for n polygons of which k pairs are near each other.
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept);
 
 }  // namespace patchlight

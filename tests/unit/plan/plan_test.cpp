@@ -248,20 +248,51 @@ TEST(MakePlan, KeepsFormFactorsThatAreGiven) {
   EXPECT_EQ(make_plan(furnished_room(0), {}, {.form_factors = true}).assembly.storage, Storage::tiles);
 }
 
-// Where the corners of a face lie farther from one plane than touching faces may be apart no lines are looked for, and
-// the plan says so.
-TEST(Plan, LooksForNoLinesOfContactBetweenBentFaces) {
-  const auto notes_of = [](double bend) {
-    Scene scene = furnished_room(0.5);
-    scene.vertices[0].z() += bend;
-    const Plan plan = make_plan(scene, Request());
-    const bool told = std::any_of(plan.notes.begin(), plan.notes.end(),
-                                  [](const std::string& note) { return note.find("bent") != std::string::npos; });
-    EXPECT_EQ(told, plan.contacts.on.empty());
-    return told;
+// On a face whose corners lie farther from one plane than touching faces may be apart no lines are looked for, and the
+// plan says so; the others keep theirs.
+TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
+  Scene scene = furnished_room(0.5);
+  scene = with_box(std::move(scene), Point(3, 0.5, 0), Point(3.5, 1, 0.5), false);
+  const auto told = [](const Plan& plan) {
+    return std::any_of(plan.notes.begin(), plan.notes.end(),
+                       [](const std::string& note) { return note.find("bent") != std::string::npos; });
   };
-  EXPECT_FALSE(notes_of(0));
-  EXPECT_TRUE(notes_of(1e-4));
+  const Plan flat = make_plan(scene, Request());
+  EXPECT_FALSE(told(flat));
+  const auto on_floor = std::find_if(flat.contacts.on.begin(), flat.contacts.on.end(),
+                                     [](const auto& lines) { return lines.size() >= 4; });
+  ASSERT_NE(on_floor, flat.contacts.on.end());
+  const auto floor = static_cast<std::size_t>(on_floor - flat.contacts.on.begin());
+  // The ceiling has the lines of the lamp.
+  const std::size_t elsewhere = number_of(flat.contacts) - on_floor->size();
+  ASSERT_GT(elsewhere, 0U);
+
+  scene.vertices[scene.polygons[floor].corners[0]].z() += 1e-4;
+  const Plan bent = make_plan(scene, Request());
+  EXPECT_TRUE(told(bent));
+  EXPECT_TRUE(bent.contacts.on[floor].empty());
+  EXPECT_GT(number_of(bent.contacts), 0U);
+}
+
+// 80 x 80 small boxes on a floor have 25,600 lines there, and a wall on it two long ones: the long ones are followed.
+TEST(Plan, FollowsTheLongestOfTooManyLines) {
+  Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 1)}),
+                          {Point(0, 0, 0), Point(40, 0, 0), Point(40, 40, 0), Point(0, 40, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 5), Point(0, 40, 5), Point(40, 40, 5), Point(40, 0, 5)}, 1);
+  for (int i = 0; i < 80; ++i) {
+    for (int j = 0; j < 80; ++j) {
+      const Point low(0.2 + 0.49 * i, 0.2 + 0.49 * j, 0);
+      scene = with_box(std::move(scene), low, low + Vector(0.1, 0.1, 0.1), false);
+    }
+  }
+  scene = with_box(std::move(scene), Point(1, 39.6, 0), Point(39, 39.8, 2), false);
+  const Plan plan = make_plan(scene, Request());
+  const bool told = std::any_of(plan.notes.begin(), plan.notes.end(),
+                                [](const std::string& note) { return note.find("longest") != std::string::npos; });
+  EXPECT_TRUE(told);
+  const auto is_long = [](const ContactLine& line) { return (line.to - line.from).norm() > 30; };
+  EXPECT_GE(std::count_if(plan.contacts.on[0].begin(), plan.contacts.on[0].end(), is_long), 2);
+  EXPECT_LE(number_of(plan.contacts), 20'000U);
 }
 
 }  // namespace
