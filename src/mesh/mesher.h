@@ -9,6 +9,9 @@
 
 namespace patchlight {
 
+/// Patches have 32-bit indices.
+inline constexpr double max_patches = 0x1p31;
+
 /// Subdivides the kept sides of every polygon into patches no edge of which is longer than `max_edge` metres.
 ///
 /// An edge is cut into ceil(length / max_edge) equal parts, whichever polygon it belongs to, so neighbours that share

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -14,6 +15,11 @@ Triangulation::Triangulation(const Outline& outline, const OutlinePlane& plane, 
     : max_square_(max_edge * max_edge) {
   const std::vector<Point> boundary = boundary_points(outline);
   boundary_count_ = boundary.size();
+  for (const Point& corner : outline.corners) {
+    constexpr double roundings = 8;  // of the coordinates and of the plane's axes
+    const double of_corner = roundings * std::numeric_limits<double>::epsilon() * corner.cwiseAbs().maxCoeff();
+    rounding_ = std::max(rounding_, of_corner);
+  }
   for (const Point& point : boundary) {
     const FlatPoint flat = plane.flat(point);
     mesh_.add_vertex({flat.x(), flat.y(), 0});
@@ -226,14 +232,16 @@ void Triangulation::split_long_edges() {
   }
 }
 
-// Is the triangle no more than a line? It then covers nothing: a corner of the polygon that lies on an edge.
+// Is the triangle no more than a line, or turned over, but for rounding? It then covers nothing: a corner of the
+// polygon that lies on an edge, or the end of a line beside one.
 bool Triangulation::is_flat(FaceHandle face) const {
   constexpr double rounding = 1e-12;
   std::array<Workbench::Point, 3> corners;
   std::size_t k = 0;
   for (const auto vertex : mesh_.fv_range(face)) corners[k++] = mesh_.point(vertex);
   const auto& [a, b, c] = corners;
-  return std::abs(turn(a, b, c)) <= rounding * (dot(a, b, b) + dot(b, c, c) + dot(c, a, a));
+  const double squares = dot(a, b, b) + dot(b, c, c) + dot(c, a, a);
+  return turn(a, b, c) <= rounding * squares + rounding_ * std::sqrt(squares);
 }
 
 // The halfedges that begin at a vertex, counter-clockwise from the boundary or, inside, from a line on.

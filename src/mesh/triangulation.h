@@ -87,6 +87,7 @@ class Triangulation {
   Workbench mesh_;
   double max_square_;
   std::size_t boundary_count_;
+  double rounding_ = 0;                // of points, metres
   std::vector<std::uint8_t> is_line_;  // per edge, shorter where the last ones are none: part of a line, never flipped
   std::vector<EdgeHandle> suspects_;   // edges that may violate the Delaunay condition
   std::priority_queue<LongEdge> long_edges_;

@@ -17,11 +17,12 @@ namespace {
 // To cut faces at more lines takes longer than light through them.
 constexpr std::size_t most_lines = 20'000;
 
-// Where there are so many times the patches that there are without lines faces cross anywhere.
-bool are_too_many(std::size_t patches, std::size_t without_lines) {
-  constexpr std::size_t many = 3;
+// How many patches there may be when nothing but lines cuts faces: half of those that are asked for, so that the rest
+// goes where faces are large, and half as many again as without lines.
+std::size_t most_patches_with_lines(const Request& request, std::size_t without_lines) {
   constexpr std::size_t few = 1000;
-  return patches > std::max(few, many * without_lines);
+  const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
+  return std::max({few, asked / 2, without_lines + without_lines / 2});
 }
 
 // A mesh that is refined begins with patches that tell nothing of the size of details.
@@ -69,25 +70,28 @@ std::vector<std::string> note_on_bent_faces(const std::vector<std::uint8_t>& is_
           "alone, wherever others touch them"};
 }
 
-// The long lines are those on which much light depends: where all are too many, these are followed alone.
+// The long lines are those on which much light depends: where all are too many, half of them are followed, or half of
+// these, until they leave patches for the faces. A line cuts off one patch at least.
+ContactLines followed_of(const ContactLines& all, const Scene& scene, const Request& request, const KeptSides& sides) {
+  const std::size_t most = most_patches_with_lines(request, least_patches(scene, sides));
+  for (std::size_t number = std::min({number_of(all), most_lines, most}); number > 0; number /= 2) {
+    ContactLines followed = longest_of(all, number);
+    set_detail(followed, scene, request, sides);
+    if (least_patches(scene, sides, followed) <= most) return followed;
+  }
+  return {};
+}
+
 PlannedLines contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
   if (!request.mesh.contact_lines) return {};
   PlannedLines planned{{}, note_on_bent_faces(bent_faces(scene))};
   const ContactLines all = find_contact_lines(scene, sides);
   if (all.on.empty()) return planned;
-  ContactLines followed = longest_of(all, most_lines);
-  set_detail(followed, scene, request, sides);
-  const std::size_t with_lines = least_patches(scene, sides, followed);
-  if (are_too_many(with_lines, least_patches(scene, sides))) {
-    planned.notes.push_back("patches that end where faces touch or cross would be " + std::to_string(with_lines) +
-                            " at least; they follow the outlines of faces alone");
-    return planned;
-  }
-  if (const std::size_t found = number_of(all); found > most_lines)
-    planned.notes.push_back("of " + std::to_string(found) +
+  planned.lines = followed_of(all, scene, request, sides);
+  if (const std::size_t number = number_of(planned.lines); number < number_of(all))
+    planned.notes.push_back("of " + std::to_string(number_of(all)) +
                             " lines where faces touch, cross or end close before one, patches end at the " +
-                            std::to_string(most_lines) + " longest");
-  planned.lines = std::move(followed);
+                            std::to_string(number) + " longest");
   return planned;
 }
 
@@ -132,7 +136,8 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
   if (number == 0) return planned;
   set_detail(all, scene, request, sides);
   const bool fits =
-      number_of(all) <= most_lines && !are_too_many(least_patches(scene, sides, all), least_patches(scene, sides));
+      number_of(all) <= most_lines &&
+      least_patches(scene, sides, all) <= 2 * most_patches_with_lines(request, least_patches(scene, sides));
   planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
                           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
   if (fits) planned.lines = std::move(all);

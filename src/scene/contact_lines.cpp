@@ -68,6 +68,7 @@ struct ContactSearch {
   const KeptSides& kept;
   FaceTree tree;
   std::vector<SharedEdge> edges;
+  const std::vector<std::uint8_t>& is_bent;
   double touch;        // metres
   double largest_gap;  // metres
 
@@ -209,7 +210,8 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   tree.for_each(query, [&](PolygonIndex face) {
     const Box& other = tree.face(face).box;
     const double half = ground.normal.cwiseAbs().dot(other.sizes()) / 2;
-    if (face != polygon && std::abs(ground.height(other.center())) <= half + margin.x()) near.push_back(face);
+    if (face != polygon && is_bent[face] == 0 && std::abs(ground.height(other.center())) <= half + margin.x())
+      near.push_back(face);
   });
   std::sort(near.begin(), near.end());
 
@@ -249,23 +251,36 @@ std::vector<ContactLine> each_once(const std::vector<ContactLine>& lines) {
   return once;
 }
 
+// How far the corners of a polygon are from lying in one plane, metres.
+double bend_of(const Scene& scene, PolygonIndex polygon) {
+  const Vector normal = front_normal(scene, polygon);
+  double lowest = 0;
+  double highest = 0;
+  for (const Point& corner : corner_points(scene, polygon)) {
+    const double height = normal.dot(corner - scene.vertices[scene.polygons[polygon].corners[0]]);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  return highest - lowest;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> bent_faces(const Scene& scene) {
   const double touch = weld_distance(scene);
   std::vector<std::uint8_t> is_bent(scene.polygons.size(), 0);
-  parallel_for(is_bent.size(), [&](std::size_t p) {
-    const auto polygon = static_cast<PolygonIndex>(p);
-    const Vector normal = front_normal(scene, polygon);
-    double lowest = 0;
-    double highest = 0;
-    for (const Point& corner : corner_points(scene, polygon)) {
-      const double height = normal.dot(corner - scene.vertices[scene.polygons[p].corners[0]]);
-      lowest = std::min(lowest, height);
-      highest = std::max(highest, height);
-    }
-    is_bent[p] = highest - lowest > touch ? 1 : 0;
-  });
+  parallel_for(is_bent.size(),
+               [&](std::size_t p) { is_bent[p] = bend_of(scene, static_cast<PolygonIndex>(p)) > touch ? 1 : 0; });
+  std::vector<std::uint8_t> is_rounded(scene.vertices.size(), 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_bent[p] == 0) continue;
+    for (const std::uint32_t corner : scene.polygons[p].corners) is_rounded[corner] = 1;
+  }
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const auto& corners = scene.polygons[p].corners;
+    if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) { return is_rounded[corner] != 0; }))
+      is_bent[p] = 1;
+  }
   return is_bent;
 }
 
@@ -279,21 +294,24 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   FaceTree tree = tree_of_faces(scene);
   double area = 0;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) area += tree.face(p).area;
-  const ContactSearch search{
-      scene, kept, std::move(tree), edges_of(scene), weld_distance(scene), largest_gap_of_scene * std::sqrt(area)};
-  std::vector<LinesOnFaces> found(scene.polygons.size());
   const std::vector<std::uint8_t> is_bent = bent_faces(scene);
+  const ContactSearch search{scene,
+                             kept,
+                             std::move(tree),
+                             edges_of(scene),
+                             is_bent,
+                             weld_distance(scene),
+                             largest_gap_of_scene * std::sqrt(area)};
+  std::vector<LinesOnFaces> found(scene.polygons.size());
   parallel_for(found.size(), [&](std::size_t p) {
-    if (!is_bent[p]) found[p] = search.on(static_cast<PolygonIndex>(p));
+    if (is_bent[p] == 0) found[p] = search.on(static_cast<PolygonIndex>(p));
   });
   ContactLines lines;
   lines.size = std::sqrt(area);
   if (std::all_of(found.begin(), found.end(), [](const LinesOnFaces& some) { return some.empty(); })) return {};
   lines.on.resize(scene.polygons.size());
   for (const LinesOnFaces& some : found) {
-    for (const auto& [polygon, line] : some) {
-      if (!is_bent[polygon]) lines.on[polygon].push_back(line);
-    }
+    for (const auto& [polygon, line] : some) lines.on[polygon].push_back(line);
   }
   parallel_for(lines.on.size(), [&](std::size_t p) { lines.on[p] = each_once(lines.on[p]); });
   return lines;

@@ -56,7 +56,7 @@ Flux flux_beside_the_wall(const Simulation& simulation, const Eigen::Affine3d& m
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
     const double x = (motion.inverse() * simulation.mesh.centroid[i]).x();
     const double normal_x = (motion.linear().transpose() * simulation.mesh.normal[i]).x();
-    const bool is_wall = std::abs(x - 1) < 1e-4;
+    const bool is_wall = std::abs(x - 1) < 0.1 && std::abs(normal_x) > 0.5;
     const bool behind = is_wall ? normal_x > 0 : x > 1;
     (behind ? flux.dark : flux.lit) += simulation.mesh.area[i] * simulation.solution.irradiance(i, 0);
   }
