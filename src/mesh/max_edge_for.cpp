@@ -69,8 +69,13 @@ class PatchNumber {
 
 }  // namespace
 
+std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
+                              const ContactLines& contacts) {
+  return static_cast<std::size_t>(PatchNumber(scene, sides, contacts).with_edge(max_edge));
+}
+
 std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts) {
-  return static_cast<std::size_t>(PatchNumber(scene, sides, contacts).with_edge(diameter(scene)));
+  return number_of_patches(scene, sides, diameter(scene), contacts);
 }
 
 std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge) {
@@ -90,8 +95,8 @@ double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patc
   constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
   if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
-  PatchNumber number_of_patches(scene, sides, contacts);
-  const auto count = [&](double edge) { return number_of_patches.with_edge(edge); };
+  PatchNumber patch_number(scene, sides, contacts);
+  const auto count = [&](double edge) { return patch_number.with_edge(edge); };
 
   // 1. No number below that of the uncut scene.
   double too_long = diameter(scene);

@@ -31,6 +31,10 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 /// The number of patches when no edge is cut: the least there can be.
 std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts = {});
 
+/// The number of patches with edges of `max_edge` at most.
+std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
+                              const ContactLines& contacts = {});
+
 /// Per polygon how many corners of its outline patches do without, see coarse_outline().
 std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 

@@ -14,15 +14,22 @@
 namespace patchlight {
 namespace {
 
-// To cut faces at more lines takes longer than light through them.
+// To cut faces at more lines takes longer than light through them; so few are followed however short they are.
 constexpr std::size_t most_lines = 20'000;
+constexpr std::size_t many_lines = 5'000;
 
-// How many patches there may be when nothing but lines cuts faces: half of those that are asked for, so that the rest
-// goes where faces are large, and half as many again as without lines.
-std::size_t most_patches_with_lines(const Request& request, std::size_t without_lines) {
-  constexpr std::size_t few = 1000;
-  const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  return std::max({few, asked / 2, without_lines + without_lines / 2});
+// How long patches are that follow no lines, as parents twice as large as patches, and how many there may be of as long
+// ones that do: twice as many, and at least as many as light through them takes no time.
+struct Room {
+  double max_edge;   // metres
+  std::size_t most;  // patches
+};
+
+Room room_for_lines(const Scene& scene, const Request& request, const KeptSides& sides) {
+  constexpr std::size_t few = 5000;
+  const double edge =
+      request.mesh.max_edge ? 2 * *request.mesh.max_edge : max_edge_for(scene, sides, patches_asked(request) / 4);
+  return {edge, 2 * std::max(few, number_of_patches(scene, sides, edge))};
 }
 
 // A mesh that is refined begins with patches that tell nothing of the size of details.
@@ -70,14 +77,25 @@ std::vector<std::string> note_on_bent_faces(const std::vector<std::uint8_t>& is_
           "alone, wherever others touch them"};
 }
 
-// The long lines are those on which much light depends: where all are too many, half of them are followed, or half of
-// these, until they leave patches for the faces. A line cuts off one patch at least.
+std::size_t number_longer_than(double length, const ContactLines& lines) {
+  const auto is_longer = [&](const ContactLine& line) { return (line.to - line.from).norm() > length; };
+  std::size_t number = 0;
+  for (const auto& on_face : lines.on)
+    number += static_cast<std::size_t>(std::count_if(on_face.begin(), on_face.end(), is_longer));
+  return number;
+}
+
+// The long lines are those on which much light depends: where there are many, those are left out that are far shorter
+// than patches are long, and where all are too many, half of them are followed, or half of these, until they leave
+// room.
 ContactLines followed_of(const ContactLines& all, const Scene& scene, const Request& request, const KeptSides& sides) {
-  const std::size_t most = most_patches_with_lines(request, least_patches(scene, sides));
-  for (std::size_t number = std::min({number_of(all), most_lines, most}); number > 0; number /= 2) {
+  constexpr double far_shorter = 0.125;  // of the edge of parents
+  const Room room = room_for_lines(scene, request, sides);
+  const std::size_t worth_it = std::max(many_lines, number_longer_than(far_shorter * room.max_edge, all));
+  for (std::size_t number = std::min({number_of(all), most_lines, worth_it}); number > 0; number /= 2) {
     ContactLines followed = longest_of(all, number);
     set_detail(followed, scene, request, sides);
-    if (least_patches(scene, sides, followed) <= most) return followed;
+    if (number_of_patches(scene, sides, room.max_edge, followed) <= room.most) return followed;
   }
   return {};
 }
@@ -135,9 +153,9 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
   }
   if (number == 0) return planned;
   set_detail(all, scene, request, sides);
+  const Room room = room_for_lines(scene, request, sides);
   const bool fits =
-      number_of(all) <= most_lines &&
-      least_patches(scene, sides, all) <= 2 * most_patches_with_lines(request, least_patches(scene, sides));
+      number_of(all) <= most_lines && number_of_patches(scene, sides, room.max_edge, all) <= 2 * room.most;
   planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
                           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
   if (fits) planned.lines = std::move(all);
