@@ -18,13 +18,21 @@ print(f"{100 * last['"'total'"']:.2f} %, {last['"'patches'"']:,}, {last['"'cpu_s
 grep -m1 'model name' /proc/cpuinfo | sed 's/.*: /machine: /'
 echo "| scene | asked | without: stated, patches, CPU s | with: stated, patches, CPU s |"
 echo "|---|---|---|---|"
+row() {  # NAME ACCURACY MODEL
+  echo "| $1 | $2 | $(figures "$3" --accuracy "$2" --no-contact-lines) | $(figures "$3" --accuracy "$2") |"
+}
 for run in "two_rooms 5%" "two_rooms 3%" "two_rooms 1%" "cornell_box 0.5%"; do
   read -r scene accuracy <<<"$run"
-  echo "| $scene | $accuracy | $(figures "$meshes/$scene.obj" --accuracy "$accuracy" --no-contact-lines) | $(figures "$meshes/$scene.obj" --accuracy "$accuracy") |"
+  row "$scene" "$accuracy" "$meshes/$scene.obj"
 done
+# Varied rooms; louvres takes minutes.
+python3 "$(dirname "${BASH_SOURCE[0]}")/make_varied_rooms.py" "$folder/rooms" >/dev/null
+for room in blocks bright colours contact corridor door_ajar empty open_side slits thin_walls tiny_lamp; do
+  row "$room" 1% "$folder/rooms/$room.obj"
+done
+echo
 
 # The irradiance of 200 patches of 2,000 against paths, in rooms in which faces touch, cross, or end close before others.
-echo
 echo "| room | patches | chi-square of 200 | mean difference | stated error |"
 echo "|---|---|---|---|---|"
 python3 "$(dirname "${BASH_SOURCE[0]}")/make_contact_rooms.py" "$folder" >/dev/null

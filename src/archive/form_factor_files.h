@@ -52,8 +52,9 @@ struct FormFactorInfo {
   std::string closure;               ///< the method that closed them; empty if none did
   double max_edge = 0;               ///< metres
   Sides sides = Sides::automatic;
-  bool contact_lines = true;  ///< MeshOptions::contact_lines
-  bool graded_edges = false;  ///< MeshOptions::graded_edges
+  bool contact_lines = true;                      ///< MeshOptions::contact_lines
+  std::optional<std::size_t> contact_line_count;  ///< how many were followed; open where it was not stored
+  bool graded_edges = false;                      ///< MeshOptions::graded_edges
   int samples = 8;
   std::uint64_t seed = 1;
   int lost_share_rays = 256;

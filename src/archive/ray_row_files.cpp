@@ -109,6 +109,7 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   json["options"] = {{"max_edge_m", found.plan.max_edge},
                      {"sides", name_of(found.request.mesh.sides)},
                      {"contact_lines", found.request.mesh.contact_lines},
+                     {"contact_line_count", number_of(found.plan.contacts)},
                      {"graded_edges", found.request.mesh.graded_edges},
                      {"rays", found.plan.assembly.rays},
                      {"seed", found.plan.assembly.seed},

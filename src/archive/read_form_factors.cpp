@@ -64,6 +64,8 @@ FormFactorInfo info_of_any(const nlohmann::json& json) {
   info.sides = sides_of(options.at("sides").get<std::string>());
   // Nor this: their patches follow the outlines of faces alone.
   info.contact_lines = options.value("contact_lines", false);
+  if (options.contains("contact_line_count"))
+    info.contact_line_count = options.at("contact_line_count").get<std::size_t>();
   info.graded_edges = options.value("graded_edges", false);
   info.seed = options.at("seed").get<std::uint64_t>();
   info.lost_share_rays = options.at("lost_share_rays").get<int>();

@@ -157,6 +157,7 @@ std::string info_json(const FormFactorResult& result) {
   json["options"] = {{"max_edge_m", plan.max_edge},
                      {"sides", name_of(request.mesh.sides)},
                      {"contact_lines", request.mesh.contact_lines},
+                     {"contact_line_count", number_of(plan.contacts)},
                      {"graded_edges", request.mesh.graded_edges},
                      {"samples", plan.assembly.samples},
                      {"estimator", name_of(plan.assembly.estimator)},

@@ -74,6 +74,7 @@ std::shared_ptr<CompareCommandOptions> add_compare(CLI::App& tool) {
   add_effect_options(command, to.request, effects_but({Effect::interreflection}));
   add_compare_options(command, to);
   add_patch_options(command, to.request);
+  add_graded_option(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");

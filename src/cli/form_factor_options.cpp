@@ -95,6 +95,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   add_without(command, to.request.assembly.short_cuts);
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
   add_patch_options(command, to.request);
+  add_graded_option(command, to.request);
   add_stored_options(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);

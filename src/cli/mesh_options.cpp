@@ -32,10 +32,14 @@ void add_patch_options(CLI::App& command, Request& request) {
       "--no-contact-lines", [&request] { request.mesh.contact_lines = false; },
       "patches follow the outlines of faces alone; default: they also end\nwhere other faces touch, cross or end close "
       "before a face and at the\nedges of hard shadows, and none is left under what stands on a face");
+}
+
+void add_graded_option(CLI::App& command, Request& request) {
   command.add_flag_callback(
       "--graded-edges", [&request] { request.mesh.graded_edges = true; },
-      "patches of four-sided faces that nothing touches inside shrink towards\nthe edges where lit faces meet, and are "
-      "longer in the middle, by up to\na half of the longest edge that was asked for; default: even patches");
+      "patches of convex four-sided faces that nothing touches inside shrink\ntowards the edges where lit faces meet, "
+      "and "
+      "are longer in the middle, by\nup to .57 of the longest edge that was asked for; default: even patches");
 }
 
 void add_closure_option(CLI::App& command, Request& request) {

@@ -16,6 +16,9 @@ Sides sides_named(const std::string& text);
 /// Adds --max-edge, in model units, and --patches.
 void add_patch_options(CLI::App& command, Request& request);
 
+/// --graded-edges: not where meshes are halved from one to the next.
+void add_graded_option(CLI::App& command, Request& request);
+
 /// Adds --no-closure.
 void add_closure_option(CLI::App& command, Request& request);
 

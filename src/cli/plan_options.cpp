@@ -33,6 +33,7 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
     to.json = text;
   });
   add_patch_options(command, to.request);
+  add_graded_option(command, to.request);
   add_accuracy_options(command, to.request);
   add_storage_options(command, to.request);
   add_effect_options(command, to.request);

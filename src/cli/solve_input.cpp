@@ -72,6 +72,11 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
         "found patches that end where faces touch, with --no-contact-lines; leave that out, or make the form "
         "factors anew with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
   request.mesh.contact_lines = info.contact_lines;
+  request.mesh.contact_line_count = info.contact_line_count;
+  if (request.mesh.graded_edges && !info.graded_edges)
+    throw InputError(arguments.form_factors.string(),
+                     "found even patches, with --graded-edges; leave that out, or make the form factors anew with it: "
+                     "patchlight form-factors MODEL --graded-edges -o FOLDER");
   request.mesh.graded_edges = info.graded_edges;
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {

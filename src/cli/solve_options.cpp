@@ -55,6 +55,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   add_sides_option(command, to.request);
   add_output_options(command, to.solution);
   add_patch_options(command, to.request);
+  add_graded_option(command, to.request);
   add_accuracy_options(command, to.request);
   add(command, "--form-factors", "FOLDER",
       "what patchlight form-factors has written for this model:\ntaken from there, with the options of then; "

@@ -65,6 +65,7 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   add_effect_options(command, to.request);
   add_verify_options(command, to);
   add_patch_options(command, to.request);
+  add_graded_option(command, to.request);
   add_refinement_options(command, to.request);
   add_sampling_options(command, to.request);
   add_storage_options(command, to.request);

@@ -63,8 +63,9 @@ bool sees(const PlacedEdge& a, const PlacedEdge& b, std::span<const Outline> out
   const Vector into_one = way_in(one, a);
   const Vector into_other = way_in(other, b);
   if (into_one.dot(into_other) < -smooth_cosine) return false;
+  constexpr double flat = 1e-3;  // the sine of an angle at which two faces lie on each other
   const auto is_kept = [&](std::uint32_t polygon, double height) {
-    return height > 0 ? sides.front[polygon] != 0 : height < 0 && sides.back[polygon] != 0;
+    return height > flat ? sides.front[polygon] != 0 : height < -flat && sides.back[polygon] != 0;
   };
   return is_kept(a.polygon, one.normal.dot(into_other)) && is_kept(b.polygon, other.normal.dot(into_one));
 }

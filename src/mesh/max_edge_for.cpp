@@ -43,7 +43,7 @@ class PatchNumber {
     std::vector<std::size_t> counts(outlines.size(), 0);
     parallel_for(counts.size(), [&](std::size_t p) {
       const std::size_t kept = sides_.front[p] + sides_.back[p];
-      if (kept > 0) counts[p] = kept * on_polygon(outlines[p], edge, is_loose(p), known.whole[p]);
+      if (kept > 0) counts[p] = kept * number_on(outlines[p], edge, is_loose(p), known.whole[p]);
     });
     return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
   }
@@ -52,8 +52,8 @@ class PatchNumber {
   bool is_loose(std::size_t polygon) const { return !loose_.empty() && !loose_[polygon].empty(); }
 
   // Beyond twice its size neither lattice nor outline of a polygon depend on the longest edge (lattice_spacing() in
-  // refine_polygon.cpp).
-  static std::size_t on_polygon(const Outline& outline, double edge, bool is_loose, std::optional<std::size_t>& whole) {
+  // refine_polygon.cpp): then its number is remembered.
+  static std::size_t number_on(const Outline& outline, double edge, bool is_loose, std::optional<std::size_t>& whole) {
     constexpr double far_smaller = 2;
     if (is_loose || edge < far_smaller * diameter(outline.corners)) return count_patches(outline, edge);
     if (!whole) whole = count_patches(outline, edge);
@@ -71,6 +71,7 @@ class PatchNumber {
 
 std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
                               const ContactLines& contacts) {
+  require_so_many_patches(scene, sides, max_edge);
   return static_cast<std::size_t>(PatchNumber(scene, sides, contacts).with_edge(max_edge));
 }
 

@@ -102,13 +102,16 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::s
 
 }  // namespace
 
+void require_so_many_patches(const Scene& scene, const KeptSides& sides, double max_edge) {
+  // Patches are in the mean no larger than max_edge squared.
+  const double at_least = std::max(kept_area(scene, sides) / max_edge, bounds(scene).diagonal().norm()) / max_edge;
+  if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
+}
+
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts,
                      bool graded_edges) {
   assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
-  // A patch is never larger than max_edge squared.
-  const double at_least = std::max(kept_area(scene, sides) / max_edge, bounds(scene).diagonal().norm()) / max_edge;
-  if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
-
+  require_so_many_patches(scene, sides, max_edge);
   Pieces pieces = make_pieces(scene, sides, max_edge, contacts, graded_edges);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);

@@ -12,6 +12,9 @@ namespace patchlight {
 /// Patches have 32-bit indices.
 inline constexpr double max_patches = 0x1p31;
 
+/// \throws MemoryError when more than 2^31 patches would be needed.
+void require_so_many_patches(const Scene& scene, const KeptSides& sides, double max_edge);
+
 /// Subdivides the kept sides of every polygon into patches no edge of which is longer than `max_edge` metres.
 ///
 /// An edge is cut into ceil(length / max_edge) equal parts, whichever polygon it belongs to, so neighbours that share
@@ -31,7 +34,7 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
 /// The number of patches when no edge is cut: the least there can be.
 std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts = {});
 
-/// The number of patches with edges of `max_edge` at most.
+/// The number of patches with edges of `max_edge` at most. \throws MemoryError for more than 2^31 patches.
 std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
                               const ContactLines& contacts = {});
 

@@ -2,6 +2,7 @@
 
 #include "mesh/mesher.h"
 #include "plan/shadow_lines.h"
+#include "scene/bent_faces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,22 +15,31 @@
 namespace patchlight {
 namespace {
 
-// To cut faces at more lines takes longer than light through them; so few are followed however short they are.
-constexpr std::size_t most_lines = 20'000;
-constexpr std::size_t many_lines = 5'000;
+// So many are followed at most: of the lines of a house in IFC the longest 10,000 halved the error, and with twice as
+// many its walls had to stay whole.
+constexpr std::size_t most_lines = 10'000;
 
-// How long patches are that follow no lines, as parents twice as large as patches, and how many there may be of as long
-// ones that do: twice as many, and at least as many as light through them takes no time.
+// Patches of this length and as many as these are cut off by lines at most.
 struct Room {
   double max_edge;   // metres
   std::size_t most;  // patches
 };
 
+// Three times as many as without lines, of parents twice as large as patches: where there are more, faces of a damaged
+// model cross anywhere. Patches that no memory holds are refused later, and not counted.
 Room room_for_lines(const Scene& scene, const Request& request, const KeptSides& sides) {
-  constexpr std::size_t few = 5000;
-  const double edge =
-      request.mesh.max_edge ? 2 * *request.mesh.max_edge : max_edge_for(scene, sides, patches_asked(request) / 4);
-  return {edge, 2 * std::max(few, number_of_patches(scene, sides, edge))};
+  constexpr std::size_t few = 1000;
+  constexpr std::size_t many = 3;
+  constexpr double beyond_memory = 1e7;
+  double edge = 0;
+  if (request.mesh.max_edge) {
+    edge = 2 * *request.mesh.max_edge;
+  } else {
+    const std::size_t least = least_patches(scene, sides);
+    edge = max_edge_for(scene, sides, std::max(patches_asked(request) / 4, least + least / 4));
+  }
+  if (kept_area(scene, sides) > beyond_memory * edge * edge) return {edge, 0};
+  return {edge, std::max(few, many * number_of_patches(scene, sides, edge))};
 }
 
 // A mesh that is refined begins with patches that tell nothing of the size of details.
@@ -43,21 +53,24 @@ void set_detail(ContactLines& contacts, const Scene& scene, const Request& reque
   contacts.detail = detail_of_accuracy * accuracy * std::sqrt(kept_area(scene, sides));
 }
 
+std::int64_t rounded_length(const ContactLine& line) {
+  return std::llround(std::log2((line.to - line.from).squaredNorm()) * 0x1p20);
+}
+
 // The longest of the lines, so many of them; of equal ones the first.
 ContactLines longest_of(const ContactLines& all, std::size_t number) {
   if (number >= number_of(all)) return all;
   struct Place {
-    double square;  // of the length
+    std::int64_t length;  // 2^20 log2 of its square: lengths that differ by rounding alone are equal
     std::size_t polygon, line;
   };
   std::vector<Place> places;
   for (std::size_t p = 0; p < all.on.size(); ++p) {
-    for (std::size_t k = 0; k < all.on[p].size(); ++k)
-      places.push_back({(all.on[p][k].to - all.on[p][k].from).squaredNorm(), p, k});
+    for (std::size_t k = 0; k < all.on[p].size(); ++k) places.push_back({rounded_length(all.on[p][k]), p, k});
   }
   std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(number), places.end(),
                    [](const Place& a, const Place& b) {
-                     return std::tuple(-a.square, a.polygon, a.line) < std::tuple(-b.square, b.polygon, b.line);
+                     return std::tuple(-a.length, a.polygon, a.line) < std::tuple(-b.length, b.polygon, b.line);
                    });
   places.resize(number);
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
@@ -73,31 +86,33 @@ std::vector<std::string> note_on_bent_faces(const std::vector<std::uint8_t>& is_
   const auto number = std::count(is_bent.begin(), is_bent.end(), 1);
   if (number == 0) return {};
   return {std::to_string(number) +
-          " faces are bent by rounding, more than touching faces may be apart; on these patches follow the outline "
+          " faces are bent by rounding, or beside such faces, by more than touching faces may be apart; on these "
+          "patches follow the outline "
           "alone, wherever others touch them"};
 }
 
-std::size_t number_longer_than(double length, const ContactLines& lines) {
-  const auto is_longer = [&](const ContactLine& line) { return (line.to - line.from).norm() > length; };
-  std::size_t number = 0;
-  for (const auto& on_face : lines.on)
-    number += static_cast<std::size_t>(std::count_if(on_face.begin(), on_face.end(), is_longer));
-  return number;
-}
-
-// The long lines are those on which much light depends: where there are many, those are left out that are far shorter
-// than patches are long, and where all are too many, half of them are followed, or half of these, until they leave
-// room.
+// The long lines are those on which much light depends: where all are too many, half of them are followed, or half of
+// these, until they leave room.
 ContactLines followed_of(const ContactLines& all, const Scene& scene, const Request& request, const KeptSides& sides) {
-  constexpr double far_shorter = 0.125;  // of the edge of parents
-  const Room room = room_for_lines(scene, request, sides);
-  const std::size_t worth_it = std::max(many_lines, number_longer_than(far_shorter * room.max_edge, all));
-  for (std::size_t number = std::min({number_of(all), most_lines, worth_it}); number > 0; number /= 2) {
+  const auto longest = [&](std::size_t number) {
     ContactLines followed = longest_of(all, number);
     set_detail(followed, scene, request, sides);
+    return followed;
+  };
+  if (request.mesh.contact_line_count) return longest(*request.mesh.contact_line_count);
+  const Room room = room_for_lines(scene, request, sides);
+  if (room.most == 0) return {};
+  for (std::size_t number = std::min(number_of(all), most_lines); number > 0; number /= 2) {
+    ContactLines followed = longest(number);
     if (number_of_patches(scene, sides, room.max_edge, followed) <= room.most) return followed;
   }
   return {};
+}
+
+std::string note_on_lines(std::size_t all, std::size_t followed) {
+  const std::string found = "of " + std::to_string(all) + " lines where faces touch, cross or end close before one, ";
+  return found + (followed == 0 ? "all cut off too many patches; patches follow the outlines of faces alone"
+                                : "patches end at the " + std::to_string(followed) + " longest");
 }
 
 PlannedLines contacts_for(const Scene& scene, const Request& request, const KeptSides& sides) {
@@ -107,9 +122,7 @@ PlannedLines contacts_for(const Scene& scene, const Request& request, const Kept
   if (all.on.empty()) return planned;
   planned.lines = followed_of(all, scene, request, sides);
   if (const std::size_t number = number_of(planned.lines); number < number_of(all))
-    planned.notes.push_back("of " + std::to_string(number_of(all)) +
-                            " lines where faces touch, cross or end close before one, patches end at the " +
-                            std::to_string(number) + " longest");
+    planned.notes.push_back(note_on_lines(number_of(all), number));
   return planned;
 }
 
@@ -153,9 +166,9 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
   }
   if (number == 0) return planned;
   set_detail(all, scene, request, sides);
+  // Shadows may take as much room again as contacts.
   const Room room = room_for_lines(scene, request, sides);
-  const bool fits =
-      number_of(all) <= most_lines && number_of_patches(scene, sides, room.max_edge, all) <= 2 * room.most;
+  const bool fits = number <= most_lines && number_of_patches(scene, sides, room.max_edge, all) <= 2 * room.most;
   planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
                           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
   if (fits) planned.lines = std::move(all);

@@ -1,16 +1,15 @@
 #include "patchlight/scene/contact_lines.h"
 
 #include "base/parallel.h"
+#include "scene/bent_faces.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -233,56 +232,7 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   return lines;
 }
 
-// Each line once, where it comes first, with the smallest of its gaps: of two solids that touch both have the edges.
-std::vector<ContactLine> each_once(const std::vector<ContactLine>& lines) {
-  const auto ends = [](const ContactLine& line) {
-    const std::array from{line.from.x(), line.from.y(), line.from.z()};
-    const std::array to{line.to.x(), line.to.y(), line.to.z()};
-    return to < from ? std::array{to, from} : std::array{from, to};
-  };
-  std::map<std::array<std::array<double, 3>, 2>, std::size_t> places;
-  std::vector<ContactLine> once;
-  for (const ContactLine& line : lines) {
-    const auto [place, is_new] = places.try_emplace(ends(line), once.size());
-    if (is_new) once.push_back(line);
-    double& gap = once[place->second].gap;
-    gap = std::min(gap, line.gap);
-  }
-  return once;
-}
-
-// How far the corners of a polygon are from lying in one plane, metres.
-double bend_of(const Scene& scene, PolygonIndex polygon) {
-  const Vector normal = front_normal(scene, polygon);
-  double lowest = 0;
-  double highest = 0;
-  for (const Point& corner : corner_points(scene, polygon)) {
-    const double height = normal.dot(corner - scene.vertices[scene.polygons[polygon].corners[0]]);
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
-  }
-  return highest - lowest;
-}
-
 }  // namespace
-
-std::vector<std::uint8_t> bent_faces(const Scene& scene) {
-  const double touch = weld_distance(scene);
-  std::vector<std::uint8_t> is_bent(scene.polygons.size(), 0);
-  parallel_for(is_bent.size(),
-               [&](std::size_t p) { is_bent[p] = bend_of(scene, static_cast<PolygonIndex>(p)) > touch ? 1 : 0; });
-  std::vector<std::uint8_t> is_rounded(scene.vertices.size(), 0);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_bent[p] == 0) continue;
-    for (const std::uint32_t corner : scene.polygons[p].corners) is_rounded[corner] = 1;
-  }
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const auto& corners = scene.polygons[p].corners;
-    if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) { return is_rounded[corner] != 0; }))
-      is_bent[p] = 1;
-  }
-  return is_bent;
-}
 
 std::size_t number_of(const ContactLines& contacts) {
   std::size_t number = 0;
@@ -313,7 +263,6 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   for (const LinesOnFaces& some : found) {
     for (const auto& [polygon, line] : some) lines.on[polygon].push_back(line);
   }
-  parallel_for(lines.on.size(), [&](std::size_t p) { lines.on[p] = each_once(lines.on[p]); });
   return lines;
 }
 

@@ -21,9 +21,10 @@ struct MeshOptions {
   std::optional<std::size_t> patches = {};  ///< or the number of kept patches; left open default_patches, and where
                                             ///< patches are refined first_patches
   Sides sides = Sides::automatic;
-  bool contact_lines = true;                 ///< patches end where faces touch, cross or end close before them, and at
-                                             ///< the edges of hard shadows
-  bool graded_edges = false;                 ///< patches of grids shrink towards edges where lit faces meet
+  bool contact_lines = true;  ///< patches end where faces touch, cross or end close before them, and at
+                              ///< the edges of hard shadows
+  std::optional<std::size_t> contact_line_count = {};  ///< so many of the longest; left open those that fit
+  bool graded_edges = false;                           ///< patches of grids shrink towards edges where lit faces meet
   std::optional<KeptSides> kept_sides = {};  ///< those that known form factors are of: they are taken, not chosen anew
 };
 
@@ -62,7 +63,7 @@ struct Request {
 /// mesh and effects.
 struct Plan {
   KeptSides sides;
-  ContactLines contacts;  ///< where patches end besides the outlines of their polygons; none where there are too many
+  ContactLines contacts;      ///< where patches end besides the outlines of their polygons
   bool graded_edges = false;  ///< as asked for
   double max_edge = 0;        ///< metres
   AssemblyOptions assembly;   ///< stored as asked for, else as pairs, rays or rows of the lamps

@@ -4,7 +4,6 @@
 #include "patchlight/scene/sides.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -28,19 +27,14 @@ struct ContactLines {
                        ///< be cut in four
 };
 
-/// Per polygon 1 where its corners, or those of a polygon that it shares one with, are farther from lying in one plane
-/// than touching faces may be apart, weld_distance(), as coordinates far from the origin in single precision have it:
-/// nobody knows what touches it.
-std::vector<std::uint8_t> bent_faces(const Scene& scene);
-
 /// How many there are on all polygons.
 std::size_t number_of(const ContactLines& contacts);
 
-/// The lines of contact on every polygon with a kept side, between those that are not bent. Faces touch where they are within
-/// weld_distance(). Edges close before a polygon count as far as a fiftieth of the root of the area of all faces and a
-/// tenth of that of the polygon, and only where the face before it ends, not where it goes on; such an edge is a line
-/// of its own face too. Lines may reach beyond a polygon that is not convex, may cross and may lie on each other in
-/// part. O(n log n + k) for n polygons of which k pairs are near each other.
+/// The lines of contact on every polygon with a kept side, between those that are not bent by rounding. Faces touch where
+/// they are within weld_distance(). Edges close before a polygon count as far as a fiftieth of the root of the area of
+/// all faces and a tenth of that of the polygon, and only where the face before it ends, not where it goes on; such an
+/// edge is a line of its own face too. Lines may reach beyond a polygon that is not convex, may cross and may be there
+/// twice. O(n log n + k) for n polygons of which k pairs are near each other.
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept);
 
 }  // namespace patchlight

@@ -271,11 +271,19 @@ TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
   const Plan bent = make_plan(scene, Request());
   EXPECT_TRUE(told(bent));
   EXPECT_TRUE(bent.contacts.on[floor].empty());
+  // Nor on walls, whose corners are rounded as those of the floor are.
+  const auto& corners = scene.polygons[floor].corners;
+  for (std::size_t p = 0; p < scene.polygons.size(); ++p) {
+    const auto& others = scene.polygons[p].corners;
+    const bool touches =
+        std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
+    EXPECT_TRUE(!touches || bent.contacts.on[p].empty()) << p;
+  }
   EXPECT_GT(number_of(bent.contacts), 0U);
 }
 
-// 80 x 80 small boxes on a floor have 25,600 lines there, and a wall on it two long ones: the long ones are followed.
-TEST(Plan, FollowsTheLongestOfTooManyLines) {
+// 80 x 80 small boxes on a floor have 51,200 lines there, each twice, and a wall on it two long ones.
+Scene floor_with_many_boxes() {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 1)}),
                           {Point(0, 0, 0), Point(40, 0, 0), Point(40, 40, 0), Point(0, 40, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 5), Point(0, 40, 5), Point(40, 40, 5), Point(40, 0, 5)}, 1);
@@ -286,13 +294,39 @@ TEST(Plan, FollowsTheLongestOfTooManyLines) {
     }
   }
   scene = with_box(std::move(scene), Point(1, 39.6, 0), Point(39, 39.8, 2), false);
-  const Plan plan = make_plan(scene, Request());
+  return scene;
+}
+
+bool is_long(const ContactLine& line) { return (line.to - line.from).norm() > 30; }
+
+// The long ones are followed.
+TEST(Plan, FollowsTheLongestOfTooManyLines) {
+  const Plan plan = make_plan(floor_with_many_boxes(), Request());
   const bool told = std::any_of(plan.notes.begin(), plan.notes.end(),
                                 [](const std::string& note) { return note.find("longest") != std::string::npos; });
   EXPECT_TRUE(told);
-  const auto is_long = [](const ContactLine& line) { return (line.to - line.from).norm() > 30; };
   EXPECT_GE(std::count_if(plan.contacts.on[0].begin(), plan.contacts.on[0].end(), is_long), 2);
-  EXPECT_LE(number_of(plan.contacts), 20'000U);
+  EXPECT_LE(number_of(plan.contacts), 10'000U);
+}
+
+// As form factors in a folder tell: the same lines whichever edge or number of patches is asked for then.
+TEST(Plan, FollowsAsManyLinesAsItIsTold) {
+  const Scene scene = floor_with_many_boxes();
+  Request request;
+  request.mesh.contact_line_count = 100;
+  for (const double edge : {0.5, 20.0}) {
+    request.mesh.max_edge = edge;
+    const Plan plan = make_plan(scene, request);
+    EXPECT_EQ(number_of(plan.contacts), 100U);
+    EXPECT_GE(std::count_if(plan.contacts.on[0].begin(), plan.contacts.on[0].end(), is_long), 2);
+  }
+}
+
+// Patches that no memory holds are not counted on the way.
+TEST(Plan, DoesNotMeshWhatItRefuses) {
+  Request request;
+  request.mesh.max_edge = 1e-6;
+  EXPECT_EQ(number_of(make_plan(furnished_room(0.5), request).contacts), 0U);
 }
 
 }  // namespace
