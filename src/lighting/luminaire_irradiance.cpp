@@ -1,6 +1,5 @@
 #include "lighting/luminaire_irradiance.h"
 
-#include "base/sampling.h"
 #include "form_factor/solid_angle.h"
 #include "lighting/shades.h"
 
@@ -79,7 +78,7 @@ Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std
   const auto at = [&](const Point& point) {
     return from_luminaire(luminaire, lighting.up, {point, normal, no_polygon}, {0.5, 0.5}).irradiance;
   };
-  const double middle = at(square_to_quad(corners, 0.5, 0.5));
+  const double middle = at((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
   double lowest = middle, highest = middle, sum = 0;
   for (const Point& corner : corners) {
     const double E = at(corner);
