@@ -131,7 +131,7 @@ std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Lum
     const Kernel kernel = kernel_of(lighting, luminaire, part.corners, normal);
     all += part.exposed * kernel.mean;
     lit += part.lit * kernel.mean;
-    error += part.lit.min(part.exposed - part.lit).max(0.0) * kernel.scatter + part.lit * kernel.error;
+    error += part.uneven * kernel.scatter + part.lit * kernel.error + part.doubt * kernel.mean;
   }
   // A beam narrower than the parts falls between their points: it may be in the light or in the shadow.
   if (!(all > 0)) return LeftByShadows{*whole, whole->min(1 - *whole).max(0.0)};
