@@ -120,7 +120,8 @@ std::array<std::vector<Ray>, 4> Gather::hemisphere_rays(PatchIndex patch) const 
     const PatchCorners quarter = quarter_of(corners, static_cast<int>(q));
     for (const auto& sample : samples)
       rays[q].push_back({square_to_quad(quarter.points, sample[0], sample[1]),
-                         frame * square_to_cosine_hemisphere(sample[2], sample[3]), mesh_.polygon[patch]});
+                         frame * occluder_.held_direction(mesh_.polygon[patch], sample[2], sample[3]),
+                         mesh_.polygon[patch]});
   }
   return rays;
 }

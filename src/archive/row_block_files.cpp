@@ -7,7 +7,7 @@
 #include "archive/npy.h"
 #include "files/sha256.h"
 #include "output/append_bytes.h"
-#include "scene/transmittance.h"
+#include "scene/clear_faces.h"
 
 #include <array>
 #include <system_error>
@@ -20,8 +20,10 @@ constexpr std::uint32_t way_of_finding = 1;
 
 std::string bytes_of_faces(const Scene& scene) {
   std::string bytes;
+  const ClearFaces clear(scene);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    append_bytes(bytes, mean_transmittance(scene, p));
+    append_bytes(bytes, clear.held(p));
+    append_bytes(bytes, clear.transmittance(p, front_normal(scene, p)));
     append_bytes(bytes, scene.polygons[p].corners.size());
     for (const Point& corner : corner_points(scene, p)) {
       for (const double coordinate : corner) append_bytes(bytes, coordinate);

@@ -61,7 +61,8 @@ Json materials_part(const Scene& scene) {
     part.push_back({{"name", json_of(material.name)},
                     {"reflectance", json_of(material.reflectance)},
                     {"exitance", json_of(material.exitance)},
-                    {"transmittance", json_of(material.transmittance)}});
+                    {"transmittance", json_of(material.transmittance)},
+                    {"index", material.index}});
   }
   return part;
 }
@@ -156,7 +157,8 @@ std::vector<Material> materials_of(const Json& json) {
   std::vector<Material> materials;
   for (const Json& entry : json) {
     Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
-                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance"))};
+                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance")),
+                      entry.value("index", usual_index)};
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
                 (material.transmittance.size() == 0 || material.transmittance.size() == bands),

@@ -64,7 +64,8 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
       .add_option(
           "--set", settings,
           "changes a material (* and ? in its name stand for any\nletters): reflectance or transmittance (0 to 1), "
-          "exitance\n(W/m^2) or radiance (W/(m^2 sr)); may be repeated; default:\nas in the model")
+          "exitance\n(W/m^2), radiance (W/(m^2 sr)) or index (of refraction, 1 or\nmore, one value); may be repeated; "
+          "default: as in the model")
       ->allow_extra_args(false)
       ->option_text("MATERIAL.QUANTITY=R,G,B");
 }

@@ -6,7 +6,7 @@
 #include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
 #include "plan/choose_storage.h"
-#include "scene/transmittance.h"
+#include "scene/clear_faces.h"
 
 #include <cmath>
 #include <sstream>
@@ -40,8 +40,9 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
 
 // The share of light that each polygon holds back.
 std::vector<double> held_shares(const Scene& scene) {
+  const ClearFaces clear(scene);
   std::vector<double> held;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) held.push_back(held_of(mean_transmittance(scene, p)));
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) held.push_back(clear.held(p));
   return held;
 }
 
@@ -54,9 +55,9 @@ void require_same_panes(const std::filesystem::path& folder, const StoredShares&
     const double now = held[mesh.polygon[i]];
     if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
     std::ostringstream text;
-    text << "found form factors with a face that lets the share " << 1 - then << " of light through; now it lets "
-         << 1 - now << " through. Set the transmittance of then, or make them anew: patchlight form-factors MODEL "
-         << "-o FOLDER";
+    text << "found form factors with a face that lets the share " << 1 - then << " of an even sky's light through; now "
+         << "it lets " << 1 - now << " through. Set the transmittance and index of then, or make them anew: patchlight "
+         << "form-factors MODEL -o FOLDER";
     throw InputError(folder.string(), text.str());
   }
 }

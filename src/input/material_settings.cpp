@@ -22,7 +22,9 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "exitance") return Quantity::exitance;
   if (name == "radiance") return Quantity::radiance;
   if (name == "transmittance") return Quantity::transmittance;
-  refuse_setting(text, "'" + name + "' cannot be set; expected reflectance, exitance, radiance or transmittance");
+  if (name == "index") return Quantity::index;
+  refuse_setting(text,
+                 "'" + name + "' cannot be set; expected reflectance, exitance, radiance, transmittance or index");
 }
 
 Spectrum comma_separated(const std::string& list, const std::string& text) {
@@ -66,6 +68,9 @@ Material changed(Material material, const MaterialSetting& setting) {
     case Quantity::transmittance:
       material.transmittance = value;
       break;
+    case Quantity::index:
+      material.index = setting.value[0];
+      break;
   }
   return material;
 }
@@ -86,6 +91,8 @@ std::vector<std::size_t> chosen(const std::vector<Material>& materials, const Ma
 }
 
 }  // namespace
+
+bool is_index(const Spectrum& value) { return value.size() == 1 && value[0] >= 1; }
 
 bool matches(std::string_view name, std::string_view pattern) {
   // Where the pattern's last star stands, and how much of the name it has taken: tried again with one letter more.
@@ -121,7 +128,9 @@ MaterialSetting parse_material_setting(const std::string& text) {
   const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
   if (dot == std::string::npos || dot == 0) {
     refuse_setting(
-        text, "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, exitance, radiance, transmittance");
+        text,
+        "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, exitance, radiance, transmittance, "
+        "index");
   }
   MaterialSetting setting;
   setting.material = text.substr(0, dot);
@@ -132,6 +141,8 @@ MaterialSetting parse_material_setting(const std::string& text) {
   if (is_share && (setting.value > 1).any()) {
     refuse_setting(text, "a reflectance or transmittance is above 1; expected 0 to 1");
   }
+  if (setting.quantity == Quantity::index && !is_index(setting.value))
+    refuse_setting(text, std::string("an index of refraction is ") + expected_index);
   return setting;
 }
 

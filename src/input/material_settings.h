@@ -11,6 +11,12 @@ namespace patchlight {
 /// at MaterialSetting::where when no material matches.
 Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings);
 
+/// True when a setting of an index of refraction may have this value.
+bool is_index(const Spectrum& value);
+
+/// What is expected of it.
+inline constexpr const char* expected_index = "one number of 1 or more";
+
 /// True when the whole name matches the pattern.
 bool matches(std::string_view name, std::string_view pattern);
 

@@ -12,7 +12,7 @@ namespace {
 bool same_values(const Material& a, const Material& b) {
   return a.reflectance.size() == b.reflectance.size() && (a.reflectance == b.reflectance).all() &&
          (a.exitance == b.exitance).all() && a.transmittance.size() == b.transmittance.size() &&
-         (a.transmittance == b.transmittance).all();
+         (a.transmittance == b.transmittance).all() && a.index == b.index;
 }
 
 std::vector<Material>::const_iterator find(const std::vector<Material>& materials, const std::string& name) {

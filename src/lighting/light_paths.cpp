@@ -7,11 +7,8 @@
 namespace patchlight {
 namespace {
 
-Spectrum transmittance_of(const Scene& scene, PolygonIndex polygon, Side side) {
-  const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
-  if (material.transmittance.size() > 0) return material.transmittance;
-  return Spectrum::Zero(material.reflectance.size());
-}
+// A straight line crosses no more openings than this.
+constexpr std::size_t most_crossings = 1 << 16;
 
 }  // namespace
 
@@ -19,11 +16,8 @@ LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
     : bounds_(bounds(scene)),
       opaque_(tracing.opaque_faces(scene)),
       clear_(tracing.clear_faces(scene)),
-      bands_(number_of_bands(scene)) {
-  if (!clear_) return;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    openings_.push_back({transmittance_of(scene, p, Side::front), transmittance_of(scene, p, Side::back)});
-}
+      panes_(scene),
+      bands_(number_of_bands(scene)) {}
 
 Field LightPaths::transmittance(std::span<const Segment> segments) const {
   Field share(static_cast<Eigen::Index>(segments.size()), bands_);
@@ -53,11 +47,11 @@ Passage LightPaths::through_openings(const Segment& segment) const {
   const double length = way.norm();
   double gone = 0;
   Ray ray{segment.from, way / length, segment.from_polygon};
-  for (std::size_t k = 0; k < openings_.size(); ++k) {
+  for (std::size_t k = 0; k < most_crossings; ++k) {
     const std::optional<Hit> hit = clear_->first_hits({&ray, 1}).front();
     if (!hit || gone + hit->distance >= length || hit->polygon == segment.to_polygon) break;
     gone += hit->distance;
-    passage.transmittance *= openings_[hit->polygon][hit->side == Side::front ? 0 : 1];
+    passage.transmittance *= panes_.transmittance(hit->polygon, ray.direction);
     passage.crossings.push_back({hit->polygon, gone});
     ray.origin = hit->point;
     ray.from_polygon = hit->polygon;

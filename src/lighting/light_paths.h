@@ -2,6 +2,7 @@
 
 #include "patchlight/base/field.h"
 
+#include "lighting/pane_sides.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
@@ -25,8 +26,8 @@ struct Passage {
 };
 
 /// How much light gets straight from one point to another: nothing where an opaque polygon stands between them, else
-/// the product of the transmittances of the clear openings on the way, each face of which counts once. Points may lie
-/// outside the scene.
+/// the product of the transmittances of the clear openings on the way at the angle at which they are met, each face of
+/// which counts once. Points may lie outside the scene.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const Tracing& tracing);
@@ -60,8 +61,8 @@ class LightPaths {
 
   Box bounds_;
   std::shared_ptr<const Occluder> opaque_;
-  std::shared_ptr<const Occluder> clear_;          // null where there are no openings
-  std::vector<std::array<Spectrum, 2>> openings_;  // per polygon and side, where there are any
+  std::shared_ptr<const Occluder> clear_;  // null where there are no openings
+  PaneSides panes_;
   Eigen::Index bands_;
 };
 

@@ -1,6 +1,5 @@
 #include "lighting/luminaire_irradiance.h"
 
-#include "base/sampling.h"
 #include "form_factor/solid_angle.h"
 #include "lighting/shades.h"
 
@@ -79,7 +78,7 @@ Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std
   const auto at = [&](const Point& point) {
     return from_luminaire(luminaire, lighting.up, {point, normal, no_polygon}, {0.5, 0.5}).irradiance;
   };
-  const double middle = at(square_to_quad(corners, 0.5, 0.5));
+  const double middle = at((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
   double lowest = middle, highest = middle, sum = 0;
   for (const Point& corner : corners) {
     const double E = at(corner);
@@ -132,7 +131,7 @@ std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Lum
     const Kernel kernel = kernel_of(lighting, luminaire, part.corners, normal);
     all += part.exposed * kernel.mean;
     lit += part.lit * kernel.mean;
-    error += part.lit.min(part.exposed - part.lit).max(0.0) * kernel.scatter + part.lit * kernel.error;
+    error += part.uneven * kernel.scatter + part.lit * kernel.error + part.doubt * kernel.mean;
   }
   // A beam narrower than the parts falls between their points: it may be in the light or in the shadow.
   if (!(all > 0)) return LeftByShadows{*whole, whole->min(1 - *whole).max(0.0)};

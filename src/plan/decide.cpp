@@ -163,7 +163,9 @@ std::vector<Decision> not_simulated(const EffectFacts& facts) {
   };
   add(Effect::sheets, facts.openings,
       counted(facts.openings, "clear face") +
-          " let the same share through at every angle, of light between patches in every band");
+          " absorb what they would reflect as mirrors do, and let the same share through in every band of light "
+          "between "
+          "patches");
   add(Effect::mirrors, facts.mirrors, counted(facts.mirrors, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;

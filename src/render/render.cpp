@@ -106,8 +106,9 @@ std::vector<Seen> seen_patches(const Occluder& occluder, const PatchLookup& look
       if (!hit) continue;
       double share = shares[k];
       if (const std::optional<PatchIndex> patch = lookup.patch_at(hit->polygon, hit->side, hit->point)) {
-        seen.push_back({under_way[k], *patch, hit->point, share});
-        share *= occluder.transmittance(hit->polygon);
+        const Vector& direction = rays[k].direction;
+        seen.push_back({under_way[k], *patch, hit->point, share * occluder.relative_held(hit->polygon, direction)});
+        share *= occluder.transmittance(hit->polygon, direction);
         if (!(share > 0)) continue;
       }
       rays[left] = {hit->point, rays[k].direction, hit->polygon};

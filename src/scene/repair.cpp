@@ -6,6 +6,7 @@
 #include "scene/pieces.h"
 #include "scene/problem_face.h"
 #include "scene/shells.h"
+#include "scene/solid_panes.h"
 #include "scene/weld.h"
 
 #include <algorithm>
@@ -240,6 +241,7 @@ Scene repair(Scene scene) {
   scene = make_simple(std::move(scene));
   scene = merge_coincident(std::move(scene));
   scene = with_openings_cut(std::move(scene));
+  scene = with_solid_panes_as_one(std::move(scene));
   scene = report_shells(std::move(scene));
   scene.problems = worst_first(std::move(scene.problems));
   return scene;

@@ -13,6 +13,7 @@ namespace patchlight {
 /// - faces that are not planar are cut into triangles, as are those that do not come out right otherwise;
 /// - of faces with the same corners the first stays; one that faces the other way gives it its Polygon::back_material;
 /// - an opaque face under a clear one of the same plane, or with the same corners, is opened there;
+/// - of the two faces of a solid pane the second becomes clear in full;
 /// - faces turned against the majority of those they are connected to and edges of three faces or more are counted.
 /// Polygon::face is set to the index in the given scene, so that every polygon tells which face it comes from.
 /// Pure; O(n log n) for n corners. \throws InputError when a corner names no vertex or a vertex is not finite.

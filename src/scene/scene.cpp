@@ -55,6 +55,11 @@ void check_material(const Scene& scene, const Material& material) {
             << ".reflectance=R,G,B";
     throw InputError(scene.file, message.str());
   }
+  if (!(material.index >= 1 && std::isfinite(material.index))) {
+    throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
+                                     "; expected a number of 1 or more. Use read.settings " + material.name +
+                                     ".index=1.52");
+  }
   for (const double exitance : material.exitance) {
     if (!(exitance >= 0 && std::isfinite(exitance))) {
       std::ostringstream message;

@@ -1,23 +1,42 @@
 #include "scene/transmittance.h"
 
-#include "light/photometry.h"
-
 #include <algorithm>
+#include <cmath>
 
 namespace patchlight {
 
-double mean_transmittance(const Scene& scene, PolygonIndex polygon) {
-  double sum = 0;
-  for (const Side side : {Side::front, Side::back}) {
-    const Spectrum& share = scene.materials[material_on(scene.polygons[polygon], side)].transmittance;
-    if (share.size() > 0) sum += luminance(share, bands_of(scene)) / luminous_efficacy;
-  }
-  return sum / 2;
+std::vector<Pane> panes_of(const Material& material) {
+  std::vector<Pane> panes;
+  for (const double share : material.transmittance) panes.push_back(pane_of(material.index, share));
+  return panes;
 }
 
-double held_of(double mean_transmittance) {
+Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = transmittance(panes[band], cosine);
+  return share;
+}
+
+double cosine_between(const Vector& normal, const Vector& direction) {
+  return std::min(1.0, std::abs(normal.dot(direction)));
+}
+
+double held_of(double transmittance) {
   constexpr double least = 1e-6;
-  return std::max(least, 1 - mean_transmittance);
+  return std::max(least, 1 - transmittance);
+}
+
+double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.5) / cosine_steps; }
+
+// That up to a cosine is its square.
+double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
+
+Spectrum hemispherical_held(const std::vector<Pane>& panes) {
+  Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t k = 0; k < cosine_steps; ++k)
+    held += irradiance_of_step(k) * transmittance(panes, cosine_of_step(k)).unaryExpr(&held_of);
+  return held;
 }
 
 }  // namespace patchlight

@@ -30,7 +30,7 @@ ClusterHull hull_of(const PatchCluster& cluster, const std::vector<PatchShape>& 
     const std::span<const Point> patch = shapes[cluster.patches[static_cast<std::size_t>(lane)]].corners;
     corners.insert(corners.end(), patch.begin(), patch.end());
   }
-  ClusterHull hull{culler.slabs(corners), {}, {}, false, {}};
+  ClusterHull hull{culler.slabs(corners), {}, {}, false, false, {}};
   const PatchShape& first = shapes[cluster.patches[0]];
   const Vector& normal = first.normal;
   if (cluster.is_planar) {

@@ -14,6 +14,7 @@ struct ClusterHull {
   std::optional<HalfSpace> behind;     ///< of a planar cluster
   std::vector<Point> corners;          ///< points whose convex hull holds all patches
   bool is_covered = false;             ///< in part, by polygons that lie on those of its patches
+  bool is_clear = false;               ///< some patch is one of a clear polygon
   std::vector<PolygonIndex> polygons;  ///< of the patches
 };
 

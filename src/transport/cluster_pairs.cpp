@@ -12,6 +12,11 @@ bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occlud
                      [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
 }
 
+bool is_clear(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
+  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
+                     [&](PatchIndex i) { return occluder.held_share(mesh.polygon[i]) < 1; });
+}
+
 std::vector<PolygonIndex> polygons_of(const PatchMesh& mesh, const PatchCluster& cluster) {
   std::vector<PolygonIndex> polygons;
   for (int lane = 0; lane < cluster.size; ++lane)
@@ -33,6 +38,7 @@ ClusterPairs::ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, cons
   for (const PatchCluster& cluster : clusters_) {
     hulls_.push_back(hull_of(cluster, shapes_, occluder.shafts()));
     hulls_.back().is_covered = is_covered(mesh, cluster, occluder);
+    hulls_.back().is_clear = is_clear(mesh, cluster, occluder);
     hulls_.back().polygons = polygons_of(mesh, cluster);
   }
 }
@@ -49,7 +55,8 @@ PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
 }
 
 bool ClusterPairs::is_free(const ClusterHull& a, const ClusterHull& b) const {
-  if (a.is_covered || b.is_covered) return false;
+  // What a clear polygon holds back depends on the angle, which no closed form knows.
+  if (a.is_covered || b.is_covered || a.is_clear || b.is_clear) return false;
   return !occluder_.can_occlude() || occluder_.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
 }
 

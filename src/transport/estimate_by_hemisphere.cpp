@@ -36,7 +36,7 @@ Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<doub
     const auto& [u, v, s, t] = points[k];
     const Point start = square_to_quad(corners.points, u, v);
     if (!occluder.is_covered(mesh.polygon[from], mesh.side[from], start)) {
-      rays.push_back({start, frame * square_to_cosine_hemisphere(s, t), mesh.polygon[from]});
+      rays.push_back({start, frame * occluder.held_direction(mesh.polygon[from], s, t), mesh.polygon[from]});
     }
     if (rays.size() < rays_at_once && k + 1 < points.size()) continue;
     for (const auto& hit : occluder.first_held_hits(rays, hash({seed, k}))) {

@@ -40,7 +40,7 @@ struct LampRays {
   std::uint32_t all = 0;
 
   double visible_share() const { return weighted > 0 ? static_cast<double>(seen) / weighted : 0; }
-  bool is_partial() const { return seen > 0 && seen < static_cast<float>(weighted); }
+  bool is_partial() const { return seen > 0 && seen != static_cast<float>(weighted); }
 };
 
 // Errors pooled over pairs by their visible share: none, seven parts between, and all.
@@ -118,8 +118,8 @@ void LampSampler::trace(LampRays& rays, const SampledPatch& patch, const LampPie
 }
 
 // docs/theory.md, formula (5), as PairSampler::exchange_area(); U is the form factor without occluders, w_k = A G_k
-// with the area of the lamp's piece.
-double form_factor_by(const LampRays& rays, double U, double area) {
+// with the area of the lamp's piece. It is at most `most`.
+double form_factor_by(const LampRays& rays, double U, double area, double most) {
   const double share = rays.visible_share();
   if (share == 0) return 0;
   const double n = rays.all;
@@ -128,7 +128,7 @@ double form_factor_by(const LampRays& rays, double U, double area) {
   const double free = area * static_cast<double>(rays.seen_weight);
   const double weight = area * static_cast<double>(rays.weight);
   const double by_others = (static_cast<double>(rays.seen) * ((m - 1) * U - weight) + free) / (m - 1);
-  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U);
+  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, most);
 }
 
 LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const LampPiece& piece,
@@ -155,8 +155,10 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
 
   // 2. The form factor without occluders is not worth its time where nothing is seen.
   if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
+  // Clear ones may hold all of what comes at an angle.
+  const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i]));
   for (std::size_t half = 0; half < 2; ++half) {
-    pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area);
+    pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area, most);
     pair.bin[half] = Pool::bin(rays[half].visible_share());
   }
   return pair;

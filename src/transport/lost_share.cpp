@@ -37,13 +37,14 @@ struct HemisphereSampler {
   const Occluder& occluder;
   Sights sights;
 
+  std::vector<Ray> hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const;
   std::vector<Seen> look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
 // `groups` starting points, each with `size` directions.
-std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int groups, int size, std::uint32_t seed) {
+std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const {
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), seed);
   const PatchCorners corners = mesh.corner_points(patch);
   const Eigen::Matrix3d frame = patch_frame(mesh, patch);
@@ -53,7 +54,8 @@ std::vector<Ray> hemisphere_rays(const PatchMesh& mesh, PatchIndex patch, int gr
     // The first points of the sequence, as every eighth alone would lie in an eighth of the patch.
     const auto& start = samples[k / static_cast<std::size_t>(size)];
     rays.push_back({square_to_quad(corners.points, start[0], start[1]),
-                    frame * square_to_cosine_hemisphere(samples[k][2], samples[k][3]), mesh.polygon[patch]});
+                    frame * occluder.held_direction(mesh.polygon[patch], samples[k][2], samples[k][3]),
+                    mesh.polygon[patch]});
   }
   return rays;
 }
@@ -117,10 +119,10 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
 
 Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Seen> seen = sights.of_rays(patch, hemisphere_rays(mesh, patch, rays, 1, seed), seed);
+  const std::vector<Seen> seen = sights.of_rays(patch, hemisphere_rays(patch, rays, 1, seed), seed);
   if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
-  return measure_groups(patch, hemisphere_rays(mesh, patch, rays, rays_per_point, seed), seed);
+  return measure_groups(patch, hemisphere_rays(patch, rays, rays_per_point, seed), seed);
 }
 
 }  // namespace

@@ -211,11 +211,12 @@ double PairSampler::exchange_area(const Pair& pair) const {
   if (share == 1 || m < 2) return share * U;
   // U less the mean weight has the expectation 0. Times the visible share of the other samples, which it does not
   // depend on, it takes away what the weights scatter; without those other samples it would be a bias.
-  const double areas =
-      static_cast<double>(held(pair.first, pair.second)) * shapes_[pair.first].area * shapes_[pair.second].area;
+  const auto held_by_both = static_cast<double>(held(pair.first, pair.second));
+  const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
   const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
-  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U);
+  // Clear patches may hold all of what comes at an angle.
+  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / held_by_both);
 }
 
 }  // namespace patchlight

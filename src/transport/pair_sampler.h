@@ -20,7 +20,7 @@ struct Pair {
   SampleSet set;
   float unoccluded = 0;             ///< exchange area without occluders, m^2; -1 when not yet computed
   float weight = 0;                 ///< summed weights of its samples: geometry terms, 1/m^2
-  float seen_weight = 0;            ///< the same, each times what its shadow ray lets through, 0 to 1
+  float seen_weight = 0;            ///< the same, each times what its shadow ray lets through (Occluder::transmittance)
   float seen = 0;                   ///< summed shares that the rays of samples with a weight let through
   float idle_seen = 0;              ///< of samples without: one end lies behind the other patch
   std::uint32_t weighted_rays = 0;  ///< of samples with a weight

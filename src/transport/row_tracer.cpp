@@ -83,7 +83,8 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
   for (const std::uint32_t half : {0U, 1U}) {
     const SampleSet set = samples(patch, Purpose::hemisphere, half);
     for (std::size_t k = 0; k < counts_[patch]; ++k) {
-      const Vector direction = square_to_cosine_hemisphere(coordinate(set, 0, k), coordinate(set, 1, k));
+      const Vector direction =
+          occluder_.held_direction(mesh_.polygon[patch], coordinate(set, 0, k), coordinate(set, 1, k));
       rays.push_back({square_to_quad(corners.points, coordinate(set, 2, k), coordinate(set, 3, k)), frame * direction,
                       mesh_.polygon[patch]});
     }

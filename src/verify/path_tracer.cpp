@@ -129,13 +129,16 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
   for (const Vertex& vertex : vertices) {
     const LampPoint lamp = sample(lamps, samples[vertex.path][0], samples[vertex.path][1]);
     const Surface& there = surfaces.at(lamp.polygon, lamp.side);
+    const Surface& here = surfaces.at(vertex.polygon, vertex.side);
     const Vector toward = lamp.point - vertex.point;
-    const double cosine = surfaces.at(vertex.polygon, vertex.side).normal.dot(toward);  // times |x - y|
-    const double cosine_there = -there.normal.dot(toward);                              // times |x - y|
+    const double cosine = here.normal.dot(toward);          // times |x - y|
+    const double cosine_there = -there.normal.dot(toward);  // times |x - y|
     if (!(cosine > 0 && cosine_there > 0)) continue;
     const double g = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
     segments.push_back({vertex.point, lamp.point, vertex.polygon, lamp.polygon});
     unoccluded.emplace_back(vertex.throughput * there.exitance * g / (sampling_density(lamps, there) + g));
+    if (clear[vertex.polygon] != 0) unoccluded.back() *= relative_held(here, cosine / toward.norm());
+    if (clear[lamp.polygon] != 0) unoccluded.back() *= relative_held(there, cosine_there / toward.norm());
   }
   const Field transmittance = straight.transmittance(segments);
   for (std::size_t k = 0; k < segments.size(); ++k)
@@ -179,20 +182,23 @@ Spectrum PathTracer::light_from_outside(const std::vector<Vertex>& vertices, con
   return sum;
 }
 
-// Where a ray ends that goes through each clear face with the probability of its mean transmittance, and by how much
-// what it carries changes: by the transmittance over that probability, or by one over what is left.
+// Where a ray ends that goes through each clear face with the probability of its mean transmittance at this angle, and
+// by how much what it carries changes: by the transmittance over that probability, or by what the face sends out in the
+// ray's direction over what is left.
 PathTracer::End PathTracer::end_of(const Ray& ray, std::optional<Hit> hit, std::uint32_t seed) const {
   Spectrum factor = Spectrum::Ones(bands);
   double gone = 0;
   for (std::uint64_t crossing = 0; hit; ++crossing) {
     hit->distance += gone;
-    const double passing = occluder.transmittance(hit->polygon);
-    if (!(passing > 0)) break;
+    if (clear[hit->polygon] == 0) break;
+    const Surface& met = surfaces.at(hit->polygon, hit->side);
+    const double passing = occluder.transmittance(hit->polygon, ray.direction);
+    const double cosine = met.normal.dot(ray.direction);
     if (uniform({seed, crossing, 6}) >= passing) {
-      factor /= 1 - passing;
+      factor *= relative_held(met, cosine) / (1 - passing);
       break;
     }
-    factor *= surfaces.at(hit->polygon, hit->side).transmittance / passing;
+    factor *= transmittance(met, cosine) / passing;
     gone = hit->distance;
     const Ray onward{hit->point, ray.direction, hit->polygon};
     hit = occluder.first_hits({&onward, 1}).front();
@@ -216,12 +222,14 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
     if (!end.hit || !surfaces.at(end.hit->polygon, end.hit->side).kept) continue;
     const Vertex& vertex = vertices[k];
     const Hit& hit = *end.hit;
-    const Spectrum throughput = vertex.throughput * end.factor;
+    const Surface& here = surfaces.at(vertex.polygon, vertex.side);
+    Spectrum throughput = vertex.throughput * end.factor;
+    if (clear[vertex.polygon] != 0) throughput *= relative_held(here, here.normal.dot(rays[k].direction));
     const Surface& there = surfaces.at(hit.polygon, hit.side);
 
     // 1. A lamp: E(y) with the weight G / (p + G)
     if ((there.exitance > 0).any()) {
-      const double cosine = surfaces.at(vertex.polygon, vertex.side).normal.dot(rays[k].direction);
+      const double cosine = here.normal.dot(rays[k].direction);
       const double cosine_there = -there.normal.dot(rays[k].direction);
       // G / (p + G) with G = a / distance^2, as a / (p distance^2 + a): finite where a ray hardly gets off.
       const double a = std::max(0.0, cosine * cosine_there) / std::numbers::pi;

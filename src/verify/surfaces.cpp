@@ -1,18 +1,42 @@
 #include "verify/surfaces.h"
 
+#include "scene/transmittance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace patchlight {
 namespace {
 
-Surface surface_of(const Scene& scene, PolygonIndex index, Side side, const KeptSides& kept) {
+// What clear materials are, each once.
+struct Panes {
+  std::vector<std::vector<Pane>> panes;
+  std::vector<Spectrum> held;
+};
+
+Panes panes_of_materials(const Scene& scene) {
+  Panes all;
+  for (const Material& material : scene.materials) {
+    all.panes.push_back(panes_of(material));
+    all.held.push_back(hemispherical_held(all.panes.back()));
+  }
+  return all;
+}
+
+Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<PolygonIndex, Side>& of,
+                   const KeptSides& kept) {
+  const auto [index, side] = of;
   const Polygon& polygon = scene.polygons[index];
-  const Material& material = scene.materials[material_on(polygon, side)];
+  const MaterialIndex of_material = material_on(polygon, side);
+  const Material& material = scene.materials[of_material];
   const bool is_front = side == Side::front;
   Surface surface;
   surface.kept = (is_front ? kept.front : kept.back)[index] != 0;
   surface.normal = is_front ? front_normal(scene, index) : Vector(-front_normal(scene, index));
   surface.reflectance = material.reflectance;
-  surface.transmittance = material.transmittance.size() > 0 ? material.transmittance
-                                                            : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  surface.panes = panes.panes[of_material];
+  surface.held = panes.held[of_material];
   const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
   surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
   return surface;
@@ -20,10 +44,22 @@ Surface surface_of(const Scene& scene, PolygonIndex index, Side side, const Kept
 
 }  // namespace
 
+Spectrum transmittance(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Zero(surface.reflectance.size());
+  return transmittance(surface.panes, std::min(1.0, std::abs(cosine)));
+}
+
+Spectrum relative_held(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
+  return transmittance(surface, cosine).unaryExpr(&held_of) / surface.held;
+}
+
 Surfaces surfaces_of(const Scene& scene, const KeptSides& kept) {
+  const Panes panes = panes_of_materials(scene);
   Surfaces surfaces;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const Side side : {Side::front, Side::back}) surfaces.sides.push_back(surface_of(scene, p, side, kept));
+    for (const Side side : {Side::front, Side::back})
+      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept));
   }
   return surfaces;
 }

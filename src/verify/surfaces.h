@@ -4,6 +4,8 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "light/pane.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -14,9 +16,17 @@ struct Surface {
   bool kept = false;  ///< false: it absorbs all light and emits none
   Vector normal;      ///< unit, out of this side
   Spectrum reflectance;
-  Spectrum transmittance;  ///< 0 for an opaque side
-  Spectrum exitance;       ///< W/m^2; 0 for a side that does not emit
+  std::vector<Pane> panes;  ///< per band; none of an opaque side
+  Spectrum held;            ///< of a clear one: the share of light from all directions alike that is kept, per band
+  Spectrum exitance;        ///< W/m^2; 0 for a side that does not emit
 };
+
+/// The share that a side lets straight through at an angle to its normal with this cosine, per band.
+Spectrum transmittance(const Surface& surface, double cosine);
+
+/// The share that it keeps there over that which it keeps of light from all directions alike. A pane sends out, and
+/// weighs what it reflects, by this: docs/theory.md section 11.
+Spectrum relative_held(const Surface& surface, double cosine);
 
 /// The sides of a scene's polygons.
 struct Surfaces {

@@ -1,9 +1,6 @@
 #include "visibility/blockers.h"
 
-#include "scene/transmittance.h"
 #include "visibility/convex_hull.h"
-
-#include <algorithm>
 
 namespace patchlight {
 namespace {
@@ -16,17 +13,9 @@ bool lets_through(Occluder::Blockers which) {
   return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
 }
 
-std::vector<double> transmittances(const Scene& scene) {
-  std::vector<double> shares;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) shares.push_back(mean_transmittance(scene, p));
-  if (std::none_of(shares.begin(), shares.end(), [](double share) { return share > 0; })) return {};
-  return shares;
-}
-
-std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const std::vector<double>& transmittance,
-                                       bool clear) {
-  for (std::size_t p = 0; p < transmittance.size(); ++p)
-    if ((transmittance[p] > 0) == clear) left_out[p] = 1;
+std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const Scene& scene, bool clear) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    if (is_opening(scene, p) == clear) left_out[p] = 1;
   return left_out;
 }
 

@@ -14,15 +14,11 @@ namespace patchlight {
 /// Whether clear polygons let light through.
 bool lets_through(Occluder::Blockers which);
 
-/// The mean transmittances of all polygons; empty where no polygon is clear.
-std::vector<double> transmittances(const Scene& scene);
-
 /// The polygons that cannot stand in the way of a segment.
 std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene);
 
-/// With transmittances(): those left out, and besides all clear polygons, or all others.
-std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const std::vector<double>& transmittance,
-                                       bool clear);
+/// Those left out, and besides all clear polygons, or all others.
+std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const Scene& scene, bool clear);
 
 /// The polygons that rays do not meet: those of the other kind, where only one kind is asked for.
 std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene);

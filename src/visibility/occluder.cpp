@@ -1,7 +1,7 @@
 #include "visibility/occluder.h"
 
 #include "base/sampling.h"
-#include "scene/transmittance.h"
+#include "scene/clear_faces.h"
 #include "visibility/blockers.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
@@ -48,14 +48,14 @@ struct Occluder::Tracer {
   const TriangleScene* blockers = nullptr;  // those that can block a segment
   TriangleScene own_blockers;               // unless these are all faces
   TriangleScene panes;                      // those that can weaken it
-  std::vector<double> transmittance;        // per polygon; none where none is clear
+  ClearFaces clear;                         // where light is let through
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
 
   Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met);
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
-  float transmittance_of(Crossed crossed) const;
+  float arriving_along(const ExactRay& ray, Crossed crossed) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
@@ -63,26 +63,27 @@ struct Occluder::Tracer {
 Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const TracedFaces> met)
     : faces(std::move(met)),
       blockers(&faces->triangles),
-      transmittance(lets_through(which) ? transmittances(scene) : std::vector<double>()),
+      clear(lets_through(which) ? ClearFaces(scene) : ClearFaces()),
       left_out(left_out_by(which, scene)),
       shafts(scene, left_out) {
-  const std::vector<std::uint8_t> not_blocking = without_kind(left_out, transmittance, true);
+  const std::vector<std::uint8_t> not_blocking = clear.empty() ? left_out : without_kind(left_out, scene, true);
   if (not_blocking != never_met(which, scene)) {
     faces->build(own_blockers, scene, not_blocking);
     blockers = &own_blockers;
   }
-  if (!transmittance.empty()) faces->build(panes, scene, without_kind(left_out, transmittance, false), list_crossed);
+  if (!clear.empty()) faces->build(panes, scene, without_kind(left_out, scene, false), list_crossed);
 }
 
 // The product over the polygons in their order in the scene: the same bits in whichever order they were met.
-float Occluder::Tracer::transmittance_of(Crossed crossed) const {
+float Occluder::Tracer::arriving_along(const ExactRay& ray, Crossed crossed) const {
   std::sort(crossed.polygons.begin(), crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count));
-  double share = 1;
-  for (std::size_t k = 0; k < crossed.count; ++k) share *= transmittance[crossed.polygons[k]];
+  const Vector direction = (ray.to - ray.from).normalized();
+  double share = clear.relative_held(ray.from_polygon, direction) * clear.relative_held(ray.to_polygon, direction);
+  for (std::size_t k = 0; k < crossed.count; ++k) share *= clear.transmittance(crossed.polygons[k], direction);
   return static_cast<float>(share);
 }
 
-// What arrives along segments: 0 for one that is blocked, else the product of the transmittances on its way.
+// What arrives along segments: 0 for one that is blocked, else the product of the shares on its way.
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* arriving) const {
   const CoveredPlaces& covered_places = faces->covered_places;
   alignas(64) RTCRay16 rays = new_rays();
@@ -112,13 +113,13 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     arriving[k] = blocked ? 0.0F : 1.0F;
     valid[k] = blocked ? 0 : -1;
   }
-  if (panes.planes.empty()) return;
+  if (clear.empty()) return;
   std::array<Crossed, packet_size> crossed;
   context.crossed = crossed.data();
   context.covered_places = nullptr;
-  rtcOccluded16(valid, panes.scene, &context.embree, &rays);
+  if (!panes.planes.empty()) rtcOccluded16(valid, panes.scene, &context.embree, &rays);
   for (std::size_t k = 0; k < segments.size(); ++k)
-    if (valid[k] != 0) arriving[k] = transmittance_of(crossed[k]);
+    if (valid[k] != 0) arriving[k] = arriving_along(exact[k], crossed[k]);
 }
 
 std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
@@ -143,16 +144,16 @@ std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket
   const unsigned blocked = occluded(packet);
   std::array<float, ShadowPacket::size> arriving{};
   for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
-  if (tracer_->panes.planes.empty()) return arriving;
+  if (tracer_->clear.empty()) return arriving;
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
   for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = (blocked >> k & 1) != 0 ? 0 : -1;
   std::array<Crossed, ShadowPacket::size> crossed;
   Context context{new_context(), nullptr, &packet, nullptr, crossed.data()};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, tracer_->panes.scene, &context.embree, &rays);
+  if (!tracer_->panes.planes.empty()) rtcOccluded16(valid, tracer_->panes.scene, &context.embree, &rays);
   for (unsigned k = 0; k < ShadowPacket::size; ++k)
-    if (valid[k] != 0) arriving[k] = tracer_->transmittance_of(crossed[k]);
+    if (valid[k] != 0) arriving[k] = tracer_->arriving_along(exact_ray(packet, k), crossed[k]);
   return arriving;
 }
 
@@ -202,14 +203,22 @@ Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
 bool Occluder::can_occlude() const {
-  return !tracer_->blockers->planes.empty() || !tracer_->panes.planes.empty() || tracer_->faces->covered_places.any();
+  return !tracer_->blockers->planes.empty() || !tracer_->clear.empty() || tracer_->faces->covered_places.any();
 }
 
-double Occluder::transmittance(PolygonIndex polygon) const {
-  return tracer_->transmittance.empty() ? 0 : tracer_->transmittance[polygon];
+double Occluder::transmittance(PolygonIndex polygon, const Vector& direction) const {
+  return tracer_->clear.transmittance(polygon, direction);
 }
 
-double Occluder::held_share(PolygonIndex polygon) const { return held_of(transmittance(polygon)); }
+double Occluder::held_share(PolygonIndex polygon) const { return tracer_->clear.held(polygon); }
+
+double Occluder::relative_held(PolygonIndex polygon, const Vector& direction) const {
+  return tracer_->clear.relative_held(polygon, direction);
+}
+
+Vector Occluder::held_direction(PolygonIndex polygon, double u, double v) const {
+  return tracer_->clear.held_direction(polygon, u, v);
+}
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
   return tracer_->faces->covered_places.covers(polygon, side, tracer_->recentred(place));
@@ -266,10 +275,11 @@ std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> r
                                                           std::span<const std::size_t> keys) const {
   assert(keys.empty() || keys.size() == rays.size());
   std::vector<std::optional<Hit>> hits = first_hits(rays);
-  if (tracer_->transmittance.empty()) return hits;
+  if (tracer_->clear.empty()) return hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     for (std::uint64_t crossing = 0; hits[k] && crossing < Crossed::most; ++crossing) {
-      if (hash({seed, keys.empty() ? k : keys[k], crossing}) * 0x1p-32 >= transmittance(hits[k]->polygon)) break;
+      const double passing = transmittance(hits[k]->polygon, rays[k].direction);
+      if (hash({seed, keys.empty() ? k : keys[k], crossing}) * 0x1p-32 >= passing) break;
       const double before = hits[k]->distance;
       const Ray onward{hits[k]->point, rays[k].direction, hits[k]->polygon};
       hits[k] = first_hits({&onward, 1}).front();

@@ -55,8 +55,8 @@ struct Hit {
 };
 
 /// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides, but for clear
-/// ones, which let the share mean_transmittance() of the light through. Immutable and
-/// safe to use from several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
+/// ones, which let light through as a ClearFace does. Immutable and safe to use from
+/// several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
 /// extent in double; a hit counts only if the plane of the polygon separates the two ends of the ray in double, by more
 /// than 1e-9 of the extent at each end. So there is no offset to choose: a surface never shades itself or its neighbour
 /// at a shared edge, and a wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision,
@@ -84,18 +84,29 @@ class Occluder {
   Occluder& operator=(Occluder&&) noexcept;
 
   /// The share of the light along each segment that arrives: 0 where some polygon blocks it, else the product of the
-  /// transmittances of the clear polygons between its ends. Embree works in packets: pass hundreds at once.
+  /// transmittances, at the angle at which each is met, of the clear polygons between its ends. An end on a clear
+  /// polygon multiplies it by relative_held() there, so that times held_share() it is what goes from one polygon to the
+  /// other, docs/theory.md (15); it may be above 1. Embree works in packets: pass hundreds at once.
   std::vector<float> transmittance(std::span<const Segment> segments) const;
 
   /// The same of each ray of a packet. For speed: the ends are given in single precision, so that the rule above holds
   /// with 3e-7 of the extent instead of 1e-9.
   std::array<float, ShadowPacket::size> transmittance(const ShadowPacket& packet) const;
 
-  /// mean_transmittance() of a polygon; 0 where Blockers do not let light through clear polygons.
-  double transmittance(PolygonIndex polygon) const;
+  /// The share of light in a unit direction that a polygon lets straight through; 0 where it is opaque, or Blockers do
+  /// not let light through clear polygons.
+  double transmittance(PolygonIndex polygon, const Vector& direction) const;
 
-  /// The share of light that a polygon keeps: 1 less that, and 1e-6 at least.
+  /// The share of light from all directions alike that a polygon keeps: 1 if it is opaque.
   double held_share(PolygonIndex polygon) const;
+
+  /// The share of light in a unit direction that a polygon keeps, over held_share(): 1 if it is opaque.
+  double relative_held(PolygonIndex polygon, const Vector& direction) const;
+
+  /// The direction, in a frame whose third axis is the polygon's normal, that belongs to (u, v) of the unit square if
+  /// directions are distributed as what the polygon keeps of light from all directions alike: if it is opaque,
+  /// square_to_cosine_hemisphere().
+  Vector held_direction(PolygonIndex polygon, double u, double v) const;
 
   /// 1 for each segment along which nothing arrives, else 0.
   std::vector<std::uint8_t> occluded(std::span<const Segment> segments) const;
@@ -117,9 +128,9 @@ class Occluder {
   /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
-  /// The same, but a ray goes through a clear polygon with the probability of its transmittance, drawn for each: so in
-  /// the mean hits count as the polygons hold back light. Rays with the same key and seed go through alike; without
-  /// `keys` each has its place as its key.
+  /// The same, but a ray goes through a clear polygon with the probability of its transmittance at the ray's angle,
+  /// drawn for each: so in the mean hits count as the polygons hold back light. Rays with the same key and seed go
+  /// through alike; without `keys` each has its place as its key.
   std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                   std::span<const std::size_t> keys = {}) const;
 
@@ -129,8 +140,8 @@ class Occluder {
   /// True when another polygon lies over some place of this side.
   bool is_covered_in_part(PolygonIndex polygon, Side side) const;
 
-  /// False when no polygon, clear or not, can stand between two points of the scene's surfaces, because every polygon
-  /// lies on the scene's convex hull and none over another: then shadow rays are not needed.
+  /// True when a polygon is clear. Else false when none can stand between two points of the scene's surfaces, because
+  /// every polygon lies on the scene's convex hull and none over another: then shadow rays are not needed.
   bool can_occlude() const;
 
  private:

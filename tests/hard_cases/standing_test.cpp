@@ -3,6 +3,7 @@
 #include "patchlight/simulate.h"
 
 #include "accuracy/errors.h"
+#include "scene/clear_faces.h"
 #include "support/scenes.h"
 
 #include <cmath>
@@ -119,8 +120,9 @@ INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
                          testing::Combine(testing::Bool(), testing::Values(1.0, 1e-3),
                                           testing::Values(Storage::tiles, Storage::rays), testing::Bool()));
 
-// The same on a clear floor, which holds back half, with form factors that are known, as from a folder, where what is
-// of materials is not: 50 W for each m^2 beside the block, 100 on its top of 2.25 m^2.
+// The same on a clear floor, which holds back what a pane of 0.5 does, with form factors that are known, as from a
+// folder, where what is of materials is not: that share of 100 W for each m^2 beside the block, 100 on its top of 2.25
+// m^2.
 TEST(BlockOnAPane, IsLitAroundWithKnownFormFactors) {
   Scene scene = block_in_the_sun(true, 1, false);
   scene.materials.push_back(scene.materials[0]);
@@ -132,7 +134,8 @@ TEST(BlockOnAPane, IsLitAroundWithKnownFormFactors) {
   Exchange known = find_form_factors(scene, request).exchange;
   known.lost.clear = {};
   const Simulation lit = simulate(scene, request, {}, {.exchange = [&](const PatchMesh&) { return known; }});
-  EXPECT_NEAR(lit.balance.arriving[0], 50 * (16 - 2.25) + 225, 0.001 * 912.5);
+  const double expected = 100 * ClearFaces(scene).held(0) * (16 - 2.25) + 225;
+  EXPECT_NEAR(lit.balance.arriving[0], expected, 0.001 * expected);
 }
 
 }  // namespace

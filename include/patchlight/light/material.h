@@ -10,13 +10,18 @@ namespace patchlight {
 /// Place of a material in Scene::materials.
 using MaterialIndex = std::uint32_t;
 
+/// The index of refraction of window glass.
+inline constexpr double usual_index = 1.52;
+
 /// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.
 struct Material {
   std::string name;
   Spectrum reflectance;      ///< rho, in [0, 1]
   Spectrum exitance;         ///< self-emitted, W/m^2; pi times the emitted radiance
-  Spectrum transmittance{};  ///< tau, in [0, 1]: the share of light that goes straight through, as through the glass of
-                             ///< a window; empty or 0: opaque
+  Spectrum transmittance{};  ///< tau, in [0, 1]: the share of light that goes straight through at normal incidence, as
+                             ///< through the glass of a window; empty or 0: opaque
+  double index = usual_index;  ///< n, 1 or more: the index of refraction, by which a clear material lets less through
+                               ///< at an angle
 };
 
 }  // namespace patchlight

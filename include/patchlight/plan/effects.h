@@ -17,7 +17,8 @@ enum class Effect : std::uint8_t {
   sun,
   sky,
   closure,  ///< correction of form factors so that rows sum up to what is seen
-  sheets,   ///< what clear faces let through by angle and, of light between patches, by band; not simulated, so below
+  sheets,   ///< what clear faces reflect as mirrors do and, of light between patches, let through by band; not
+            ///< simulated, so below
   mirrors,
   glass
 };

@@ -92,9 +92,12 @@ TEST(RowBlockFiles, HaveAKeyOfAllThatRowsDependOn) {
   moved_away.vertices.back().z() += 1e-9;
   Scene clear = room;
   clear.materials[1].transmittance = Spectrum::Constant(1, 0.5);
+  Scene denser = clear;
+  denser.materials[1].index = 1.6;
   const std::set<std::string> keys{key(room, 0.5, {}, {}, 0),
                                    key(moved_away, 0.5, {}, {}, 0),
                                    key(clear, 0.5, {}, {}, 0),
+                                   key(denser, 0.5, {}, {}, 0),
                                    key(room, 0.4, {}, {}, 0),
                                    key(room, 0.5, {.rays = 128}, {}, 0),
                                    key(room, 0.5, {.toward_bright = 64}, {}, 0),
@@ -102,7 +105,7 @@ TEST(RowBlockFiles, HaveAKeyOfAllThatRowsDependOn) {
                                    key(room, 0.5, {}, {.skip = {Effect::occlusion}}, 0),
                                    key(room, 0.5, {}, {.force = {Effect::occlusion}}, 0),
                                    key(room, 0.5, {}, {}, 1)};
-  EXPECT_EQ(keys.size(), 10U);
+  EXPECT_EQ(keys.size(), 11U);
   EXPECT_EQ(key(room, 0.5, {}, {}, 0), key(furnished_room(0.8), 0.5, {}, {}, 0));
 }
 

@@ -36,6 +36,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same(a.materials[m].reflectance, b.materials[m].reflectance));
     EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
     EXPECT_TRUE(same(a.materials[m].transmittance, b.materials[m].transmittance));
+    EXPECT_EQ(a.materials[m].index, b.materials[m].index);
   }
   ASSERT_EQ(a.bands.size(), b.bands.size());
   for (std::size_t k = 0; k < a.bands.size(); ++k) {
@@ -88,6 +89,7 @@ Scene odd_scene() {
       "e";
   scene.materials[1].name = "\xff\x00\"\n";
   scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
+  scene.materials[1].index = 4.0 / 3;
   scene.bands = {{"650 nm", 1.0 / 3, {1, 0, 0}}};
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";
@@ -121,6 +123,18 @@ TEST(SceneFile, KeepsEveryBitOfAnOddScene) {
   EXPECT_TRUE(std::signbit(stored.scene.vertices.back().x()));
 }
 
+TEST(SceneFile, OfBeforeIndicesHasTheUsualOnes) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.json";
+  const Scene scene = odd_scene();
+  write_stored_scene(file, scene, kept_sides(scene, Sides::front));
+  nlohmann::json older = nlohmann::json::parse(content_of(file));
+  for (nlohmann::json& material : older.at("materials")) material.erase("index");
+  put(file, older.dump());
+  for (const Material& material : read_stored_scene(folder.path()).scene.materials)
+    EXPECT_EQ(material.index, usual_index);
+}
+
 // Each change makes the file one that cannot have been written.
 TEST(SceneFile, RefusesWhatIsDamaged) {
   const TemporaryFolder folder;
@@ -149,6 +163,7 @@ TEST(SceneFile, RefusesWhatIsDamaged) {
                                                             {"/materials/0/reflectance/0", 1.5},
                                                             {"/materials/0/reflectance", {0.5, 0.5}},
                                                             {"/materials/0/exitance", nlohmann::json::array()},
+                                                            {"/materials/0/index", 0.5},
                                                             {"/polygons/corners/0", 1000},
                                                             {"/polygons/corners/0", -1},
                                                             {"/polygons/corners/0", 0.5},

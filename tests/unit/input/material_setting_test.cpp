@@ -25,6 +25,12 @@ TEST(ParseMaterialSetting, OneValueStandsForAllBands) {
   EXPECT_EQ(setting.value[0], 0.25);
 }
 
+TEST(ParseMaterialSetting, ReadsAnIndexOfRefraction) {
+  const MaterialSetting setting = parse_material_setting("glass.index=1.6");
+  EXPECT_EQ(setting.quantity, Quantity::index);
+  EXPECT_EQ(setting.value[0], 1.6);
+}
+
 TEST(ParseMaterialSetting, NamesMayHoldDotsAndEqualSigns) {
   EXPECT_EQ(parse_material_setting("Material.001.exitance=1").material, "Material.001");
   EXPECT_EQ(parse_material_setting("a=b.c.exitance=1").material, "a=b.c");
@@ -34,7 +40,7 @@ TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
   for (const char* text : {"", "light", "light=1", "light.radiance", ".radiance=1", "light.colour=1",
                            "light.radiance=", "light.radiance=1,2", "light.radiance=1,2,3,4", "light.radiance=1,,2",
                            "light.radiance=1,2,x", "light.radiance=nan", "light.radiance=inf", "light.exitance=-1",
-                           "light.reflectance=0.5,0.5,1.01"}) {
+                           "light.reflectance=0.5,0.5,1.01", "glass.index=0.99", "glass.index=1.5,1.5,1.6"}) {
     SCOPED_TRACE(text);
     try {
       parse_material_setting(text);

@@ -86,6 +86,13 @@ TEST_F(SceneFile, PatternsNameMaterials) {
   EXPECT_TRUE((scene.materials[1].reflectance == rgb(0.1, 0.2, 0.3)).all());
 }
 
+TEST_F(SceneFile, MaterialsHaveAnIndexOfRefraction) {
+  const Scene scene = read(std::string(room) + "[[material]]\nname = \"lamp\"\ntransmittance = 0.8\nindex = 1.6\n");
+  EXPECT_EQ(scene.materials[0].index, usual_index);
+  EXPECT_EQ(scene.materials[1].index, 1.6);
+  EXPECT_TRUE((scene.materials[1].transmittance == 0.8).all());
+}
+
 // First the model's own unit and up axis, then scale, rotation and translation: (4, 0, 0) in the file.
 TEST_F(SceneFile, TransformsInTheStatedOrder) {
   const auto corner = [&](const std::string& keys) { return Point(read(room + keys).vertices[1]); };
@@ -178,6 +185,8 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
        {"scene.toml:5: material.reflectance: found 1.5", "0 to 1"}},
       {"[[material]]\nname = \"lamp\"\nreflectance = [1, 2]\n", {"scene.toml:5: ", "a list of 2 values"}},
       {"[[material]]\nname = \"lamp\"\nexitance = -1\n", {"scene.toml:5: material.exitance: found -1"}},
+      {"[[material]]\nname = \"lamp\"\nindex = 0.9\n", {"scene.toml:5: material.index: found 0.9", "1 or more"}},
+      {"[[material]]\nname = \"lamp\"\nindex = [1.5, 1.5, 1.6]\n", {"scene.toml:5: material.index: ", "one number"}},
       {"[[material]]\nname = \"lump\"\nexitance = 1\n", {"scene.toml:4: ", "'lump'", "did you mean 'lamp'?"}},
       {"[[material]]\nname = \"lamp\"\n", {"scene.toml:3: ", "changes nothing"}},
       {"[[material]]\nname = \"lamp\"\nexitance = 1\nradiance = 1\n", {"scene.toml:3: ", "exitance, radiance"}},

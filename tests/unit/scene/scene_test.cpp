@@ -106,6 +106,11 @@ TEST(CheckScene, NamesTheMaterialThatIsOutOfRange) {
     scene.materials[0].exitance[2] = exitance;
     EXPECT_TRUE(begins(refusal(scene), "room.obj: material 'wall' has exitance")) << exitance;
   }
+  for (const double index : {1 - 1e-9, -1.0, nan, infinity}) {
+    Scene scene = square_scene();
+    scene.materials[0].index = index;
+    EXPECT_TRUE(begins(refusal(scene), "room.obj: material 'wall' has the index of refraction")) << index;
+  }
 }
 
 TEST(CheckScene, WantsOneOfTheStatedBandsForEachValue) {

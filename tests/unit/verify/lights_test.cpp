@@ -1,3 +1,4 @@
+#include "light/pane.h"
 #include "support/daylight_office.h"
 #include "verify/path_tracer.h"
 
@@ -75,27 +76,44 @@ TEST(PathLights, OneOfManyLuminairesStandsForAll) {
 }
 
 TEST(PathLights, SunShinesThroughAClearFace) {
-  // Through a clear ceiling of transmittance t the sun at the zenith gives E t on all of the floor.
+  // Through a clear ceiling of transmittance t at normal incidence the sun at the zenith gives E t on all of the floor.
   Scene scene = cube_room(0, 0);
   scene.materials.push_back(named("glass", 0, 0.6));
   scene.polygons[1].material = 1;
   scene.sun = Sun{Vector::UnitZ(), watts(800)};
   expect_irradiance(scene, 0, 480, 1e-6);
-  // At tan = 1/2 from the zenith half of the floor lies in the shadow of a wall: E t cos / 2.
+  // At tan = 1/2 from the zenith half of the floor lies in the shadow of a wall: E T(cos) cos / 2.
   scene.sun = Sun{Vector(1, 0, 2).normalized(), watts(800)};
-  expect_irradiance(scene, 0, 480 * 2 / std::sqrt(5.0) / 2, 0.01);
+  const double cosine = 2 / std::sqrt(5.0);
+  expect_irradiance(scene, 0, 800 * transmittance(pane_of(1.52, 0.6), cosine) * cosine / 2, 0.01);
+}
+
+// The form factor of two opposed unit squares at the distance of 1, with what a pane between them lets through: the
+// integral over all differences of two places, by midpoints.
+double opposed_behind(const Pane& pane) {
+  constexpr int steps = 400;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    for (int j = 0; j < steps; ++j) {
+      const double x = (i + 0.5) / steps, y = (j + 0.5) / steps;
+      const double squared = 1 + x * x + y * y;
+      sum += 4 * (1 - x) * (1 - y) * transmittance(pane, 1 / std::sqrt(squared)) / (squared * squared);
+    }
+  }
+  return sum / (pi * steps * steps);
 }
 
 TEST(PathLights, SkyIsSeenThroughHolesAndClearFaces) {
-  // A uniform sky of radiance L over a black box whose ceiling is clear, or not there: pi L t F. Of 4,096 rays the
-  // share F leaves: they scatter by no more than sqrt((1 - F) / F / 4096) = .031.
+  // A uniform sky of radiance L over a black box whose ceiling is clear, or not there: pi L F, with T(cos) in the
+  // integral of F. Of 4,096 rays the share F leaves: they scatter by no more than sqrt((1 - F) / F / 4096) = .031.
   Scene scene = cube_room(0, 0);
   scene.materials.push_back(named("glass", 0, 0.7));
   scene.polygons[1].material = 1;
   Sky sky;
   sky.zenith_radiance = watts(3);
   scene.sky = sky;
-  expect_irradiance(scene, 0, pi * 3 * 0.7 * opposed, 0.032);
+  EXPECT_NEAR(opposed_behind(pane_of(1.52, 1)), opposed, 1e-5);
+  expect_irradiance(scene, 0, pi * 3 * opposed_behind(pane_of(1.52, 0.7)), 0.032);
   scene.polygons.erase(scene.polygons.begin() + 1);
   expect_irradiance(scene, 0, pi * 3 * opposed, 0.032);
 }

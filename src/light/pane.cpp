@@ -1,0 +1,68 @@
+#include "light/pane.h"
+
+#include <array>
+#include <cmath>
+
+namespace patchlight {
+namespace {
+
+// What one surface lets through, 1 - r, of light polarised across the plane of incidence and in it: Fresnel's equations
+// with Snell's law, cosine' being that inside.
+std::array<double, 2> through_surface(double index, double cosine, double cosine_inside) {
+  if (index == 1) return {1, 1};
+  const double across = cosine + index * cosine_inside;
+  const double along = index * cosine + cosine_inside;
+  const double product = 4 * index * cosine * cosine_inside;
+  return {product / (across * across), product / (along * along)};
+}
+
+// Of one polarisation.
+struct Shares {
+  double transmitted = 0;
+  double reflected = 0;
+};
+
+// The geometric series of the ways between both surfaces: T = t^2 a / (1 - r^2 a^2), R = r (1 + t^2 a^2 / (1 - r^2
+// a^2)), r = 1 - t being the reflectance of a surface and a the share that is left after one way across.
+Shares shares_of(double t, double a) {
+  const double r = 1 - t;
+  const double left = (t + r * (1 - a)) * (1 + r * a);  // 1 - r^2 a^2
+  if (!(left > 0)) return {0, 1};
+  const double once = t * t * a / left;
+  return {once, r * (1 + a * once)};
+}
+
+// The mean of both polarisations.
+Shares unpolarised(const Pane& pane, double cosine) {
+  const double sine_inside = std::sqrt(std::fmax(0, 1 - cosine * cosine)) / pane.index;
+  const double cosine_inside = pane.index == 1 ? cosine : std::sqrt(1 - sine_inside * sine_inside);
+  const double a = std::pow(pane.internal, 1 / cosine_inside);
+  Shares mean;
+  for (const double t : through_surface(pane.index, cosine, cosine_inside)) {
+    const Shares shares = shares_of(t, a);
+    mean.transmitted += shares.transmitted / 2;
+    mean.reflected += shares.reflected / 2;
+  }
+  return mean;
+}
+
+}  // namespace
+
+Pane pane_of(double index, double transmittance) {
+  const double ratio = (index - 1) / (index + 1);
+  const double r = ratio * ratio;
+  if (transmittance >= (1 - r) / (1 + r)) {
+    // T = (1 - r) / (1 + r) with r = ((n - 1) / (n + 1))^2
+    const double root = std::sqrt((1 - transmittance) / (1 + transmittance));
+    return {(1 + root) / (1 - root), 1};
+  }
+  // T r^2 a^2 + (1 - r)^2 a - T = 0
+  const double t = (1 - r) * (1 - r);
+  return {index, 2 * transmittance / (t + std::sqrt(t * t + 4 * r * r * transmittance * transmittance))};
+}
+
+double transmittance(const Pane& pane, double cosine) { return unpolarised(pane, cosine).transmitted; }
+
+double specular_reflectance(const Pane& pane, double cosine) { return unpolarised(pane, cosine).reflected; }
+
+}  // namespace patchlight

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "patchlight/light/spectrum.h"
+#include "patchlight/scene/scene.h"
+
+#include "light/pane.h"
+
+#include <array>
+#include <vector>
+
+namespace patchlight {
+
+/// What the clear polygons of a scene let straight through, per band: by the material of the side that is met.
+class PaneSides {
+ public:
+  explicit PaneSides(const Scene& scene);
+
+  /// False when no light goes through a polygon from either side.
+  bool is_clear(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_clear; }
+
+  /// The share that a clear polygon lets through of the light that one sees in a unit direction.
+  Spectrum transmittance(PolygonIndex polygon, const Vector& direction) const;
+
+ private:
+  struct Sides {
+    Vector normal = Vector::Zero();  // of the front
+    std::array<MaterialIndex, 2> materials{};
+    bool is_clear = false;
+  };
+  Eigen::Index bands_;
+  std::vector<std::vector<Pane>> panes_;  // per material and band; none of an opaque one
+  std::vector<Sides> sides_;              // per polygon; none where none is clear
+};
+
+}  // namespace patchlight

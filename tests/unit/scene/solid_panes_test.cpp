@@ -1,0 +1,80 @@
+#include "scene/solid_panes.h"
+
+#include "scene/repair.h"
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight::solid_panes_test {
+namespace {
+
+using namespace test;
+
+// A closed box of glass, 1.2 x 1 m, so thick, with its fronts outward.
+Scene glass_box(double thickness) {
+  Scene scene = empty_scene({grey(0.05)});
+  scene.materials[0].transmittance = Spectrum::Constant(1, 0.8);
+  return with_box(std::move(scene), Point(0, 0, 0), Point(1.2, 1, thickness), false);
+}
+
+Spectrum through(const Scene& scene, PolygonIndex polygon) {
+  return scene.materials[scene.polygons[polygon].material].transmittance;
+}
+
+TEST(SolidPanes, CountOnce) {
+  for (const double thickness : {0.004, 0.049}) {
+    for (const Eigen::Affine3d& placing :
+         {Eigen::Affine3d::Identity(), Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()))}) {
+      const Scene scene = repair(moved(glass_box(thickness), placing));
+      EXPECT_EQ(through(scene, 0)[0], 0.8);
+      EXPECT_EQ(through(scene, 1)[0], 1);
+      EXPECT_EQ(scene.materials[scene.polygons[1].material].reflectance[0], 0);
+      for (PolygonIndex p = 2; p < 6; ++p) EXPECT_EQ(through(scene, p)[0], 0.8) << "the rim is farther apart";
+      ASSERT_EQ(scene.notes.size(), 1U);
+      EXPECT_NE(scene.notes[0].find("1 pane of two parallel faces"), std::string::npos) << scene.notes[0];
+    }
+  }
+}
+
+TEST(SolidPanes, AreThinOfOneMaterialAndFaceOutward) {
+  const auto expect_as_it_was = [](const Scene& scene) {
+    const Scene found = with_solid_panes_as_one(scene);
+    EXPECT_TRUE(found.notes.empty());
+    EXPECT_EQ(found.materials.size(), scene.materials.size());
+    for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+      EXPECT_EQ(found.polygons[p].material, scene.polygons[p].material);
+  };
+  expect_as_it_was(glass_box(0.06));
+  // An aquarium: its faces look at each other.
+  Scene inward = empty_scene({glass_box(0.01).materials[0]});
+  expect_as_it_was(with_box(std::move(inward), Point(0, 0, 0), Point(1.2, 1, 0.01), true));
+  Scene two_materials = glass_box(0.01);
+  two_materials.materials.push_back(two_materials.materials[0]);
+  two_materials.polygons[1].material = 1;
+  expect_as_it_was(two_materials);
+  // Two panes of double glazing, one face each, that face the same way; and two beside each other.
+  Scene glazing = empty_scene({glass_box(0.01).materials[0]});
+  const Quad pane{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
+  for (const Vector& at : {Vector(0, 0, 0), Vector(0, 0, 0.016), Vector(1, 0, 0.001)}) {
+    Quad moved_pane = pane;
+    for (Point& corner : moved_pane) corner += at;
+    glazing = with_quad(std::move(glazing), moved_pane);
+  }
+  expect_as_it_was(glazing);
+  expect_as_it_was(cube_room(0.5, 1));
+}
+
+TEST(SolidPanes, OfSeveralAreTakenInPairs) {
+  // Three sheets of 6 mm, 10 mm apart: those that face away from each other across 6 mm, not across the gaps.
+  Scene scene = empty_scene({glass_box(0.01).materials[0]});
+  for (const double z : {0.0, 0.016, 0.032})
+    scene = with_box(std::move(scene), Point(0, 0, z), Point(1, 1, z + 0.006), false);
+  const Scene found = with_solid_panes_as_one(std::move(scene));
+  double product = 1;
+  for (PolygonIndex p = 0; p < found.polygons.size(); ++p)
+    if (p % 6 < 2) product *= through(found, p)[0];
+  EXPECT_NEAR(product, 0.8 * 0.8 * 0.8, 1e-15);
+}
+
+}  // namespace
+}  // namespace patchlight::solid_panes_test
