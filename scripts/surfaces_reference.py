@@ -7,7 +7,7 @@ FOLDER has scene files with sensors, NAME.toml, and NAME.csv with what their irr
 errors stderr_r,stderr_g,stderr_b, and exact_r,exact_g,exact_b where a closed form is known; lines whose flag is not `ok`
 are left out. Sensors are told apart by their names, of which a line each is printed: the median of what all bands are
 off, relative, and the root mean square of it, relative to the mean; the standard errors of the reference in the same
-way. Without FOLDER nothing is done.
+way. When there is no such folder nothing is done: it is not part of this repository.
 """
 import argparse
 import csv

@@ -121,10 +121,13 @@ struct Shades::Shadows {
     }
   }
 
-  // The same of panes that each let one half through, in a single band: where the same panes are before all of a region
-  // what is lit is a power of that.
-  void let_through_half() {
+  // The shadows of panes alone, of which each lets one half through, in a single band: where the same panes are before
+  // all of a region what is lit is a power of that.
+  std::vector<Shade> half_of_panes() {
     for (Spectrum& share : shares) share = Spectrum::Constant(1, 0.5);
+    std::vector<Shade> panes = covers;
+    for (const OfPane& pane : of_panes) panes.push_back(all[pane.shade]);
+    return panes;
   }
 };
 
@@ -204,8 +207,7 @@ std::optional<LitPart> Shades::lit_part(Shadows& shadows, const std::array<Point
   }
   part.lit = (2 * *middle + sum / 4) / 3;
   part.doubt = (highest - lowest) / std::sqrt(12.0);
-  shadows.let_through_half();
-  const auto by_half = lit_area(region, shadows.all, 1);
+  const auto by_half = lit_area(region, shadows.half_of_panes(), 1);
   if (!by_half || !is_power_of_half((*by_half)[0] / part.exposed)) return part;
   part.uneven.setZero();
   part.doubt = (part.lit - *middle).abs();

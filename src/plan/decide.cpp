@@ -163,9 +163,8 @@ std::vector<Decision> not_simulated(const EffectFacts& facts) {
   };
   add(Effect::sheets, facts.openings,
       counted(facts.openings, "clear face") +
-          " absorb what they would reflect as mirrors do, and let the same share through in every band of light "
-          "between "
-          "patches");
+          ": what they would reflect as mirrors do is absorbed, and all bands of light between patches have the same "
+          "share let through");
   add(Effect::mirrors, facts.mirrors, counted(facts.mirrors, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;

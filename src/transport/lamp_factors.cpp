@@ -43,16 +43,18 @@ struct LampRays {
   bool is_partial() const { return seen > 0 && seen != static_cast<float>(weighted); }
 };
 
-// Errors pooled over pairs by their visible share: none, seven parts between, and all.
+// Errors pooled over pairs by their visible share: none, seven parts between, all, and more than that, as clear faces
+// have at an angle.
 struct Pool {
-  static constexpr std::size_t bins = 9;
+  static constexpr std::size_t bins = 10;
   std::array<double, bins> squares{};  // summed variances of the mean of both halves
   std::array<double, bins> weights{};  // summed squares of the form factors without occluders
 
   static std::uint8_t bin(double share) {
     if (!(share > 0)) return 0;
-    if (share >= 1) return bins - 1;
-    return static_cast<std::uint8_t>(1 + static_cast<int>(share * (bins - 2)));
+    if (share > 1) return bins - 1;
+    if (share == 1) return bins - 2;
+    return static_cast<std::uint8_t>(1 + static_cast<int>(share * (bins - 3)));
   }
   void add(std::uint8_t at, double square, double weight) {
     squares[at] += square;

@@ -25,7 +25,10 @@ struct Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "row_blocks";
+  // Tests run side by side.
+  std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("row_blocks_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST(RowBlockFiles, GiveBackWhatWasKept) {

@@ -3,7 +3,10 @@
 #include "scene/repair.h"
 #include "support/scenes.h"
 
+#include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
+#include <utility>
 
 namespace patchlight::solid_panes_test {
 namespace {
@@ -74,6 +77,35 @@ TEST(SolidPanes, OfSeveralAreTakenInPairs) {
   for (PolygonIndex p = 0; p < found.polygons.size(); ++p)
     if (p % 6 < 2) product *= through(found, p)[0];
   EXPECT_NEAR(product, 0.8 * 0.8 * 0.8, 1e-15);
+}
+
+// Double glazing of two sheets of 6 mm, whichever of their faces come first: the nearest are pairs.
+TEST(SolidPanes, AreThoseWithTheNearestFaces) {
+  const auto face = [](double z, bool up) {
+    const Quad quad{Point(0, 0, z), Point(1, 0, z), Point(1, 1, z), Point(0, 1, z)};
+    return up ? quad : Quad{quad[3], quad[2], quad[1], quad[0]};
+  };
+  std::array<std::pair<double, bool>, 4> sheets{{{0, false}, {0.006, true}, {0.016, false}, {0.022, true}}};
+  do {
+    Scene scene = empty_scene({glass_box(0.01).materials[0]});
+    for (const auto& [z, up] : sheets) scene = with_quad(std::move(scene), face(z, up));
+    const Scene found = with_solid_panes_as_one(std::move(scene));
+    double product = 1;
+    for (PolygonIndex p = 0; p < 4; ++p) product *= through(found, p)[0];
+    EXPECT_NEAR(product, 0.8 * 0.8, 1e-15);
+  } while (std::next_permutation(sheets.begin(), sheets.end()));
+}
+
+// Two sheets without thickness, 1 cm apart, of which both sides are drawn: each is one already.
+TEST(SolidPanes, AreNotMadeOfSheetsWithTwoSides) {
+  Scene scene = empty_scene({glass_box(0.01).materials[0]});
+  for (const double z : {0.0, 0.01}) {
+    scene = with_quad(std::move(scene), {Point(0, 0, z), Point(1, 0, z), Point(1, 1, z), Point(0, 1, z)});
+    scene = with_quad(std::move(scene), {Point(0, 1, z), Point(1, 1, z), Point(1, 0, z), Point(0, 0, z)});
+  }
+  const Scene found = repair(std::move(scene));
+  ASSERT_EQ(found.polygons.size(), 2U);
+  for (PolygonIndex p = 0; p < 2; ++p) EXPECT_EQ(through(found, p)[0], 0.8);
 }
 
 }  // namespace
