@@ -119,6 +119,8 @@ PlannedLines contacts_for(const Scene& scene, const Request& request, const Kept
   if (!request.mesh.contact_lines) return {};
   PlannedLines planned{{}, note_on_bent_faces(bent_faces(scene))};
   const ContactLines all = find_contact_lines(scene, sides);
+  if (all.everywhere)
+    planned.notes.push_back("faces touch or cross nearly everywhere; patches follow the outlines of faces alone");
   if (all.on.empty()) return planned;
   planned.lines = followed_of(all, scene, request, sides);
   if (const std::size_t number = number_of(planned.lines); number < number_of(all))

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -232,6 +233,21 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   return lines;
 }
 
+// More are those of a damaged model whose faces cross anywhere: finding them takes minutes, and none is followed.
+constexpr double most_lines_found = 2e6;
+
+// How many lines there will be, as some polygons tell.
+double expected_lines(const ContactSearch& search, const std::vector<std::uint8_t>& is_bent) {
+  constexpr std::size_t looked_at = 512;
+  const std::size_t step = is_bent.size() / looked_at;
+  if (step < 2) return 0;
+  std::vector<std::size_t> found(looked_at, 0);
+  parallel_for(looked_at, [&](std::size_t k) {
+    if (is_bent[k * step] == 0) found[k] = search.on(static_cast<PolygonIndex>(k * step)).size();
+  });
+  return static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}) * step);
+}
+
 }  // namespace
 
 std::size_t number_of(const ContactLines& contacts) {
@@ -252,11 +268,13 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
                              is_bent,
                              weld_distance(scene),
                              largest_gap_of_scene * std::sqrt(area)};
+  ContactLines lines;
+  lines.everywhere = expected_lines(search, is_bent) > most_lines_found;
+  if (lines.everywhere) return lines;
   std::vector<LinesOnFaces> found(scene.polygons.size());
   parallel_for(found.size(), [&](std::size_t p) {
     if (is_bent[p] == 0) found[p] = search.on(static_cast<PolygonIndex>(p));
   });
-  ContactLines lines;
   lines.size = std::sqrt(area);
   if (std::all_of(found.begin(), found.end(), [](const LinesOnFaces& some) { return some.empty(); })) return {};
   lines.on.resize(scene.polygons.size());

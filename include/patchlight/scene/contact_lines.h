@@ -20,6 +20,7 @@ struct ContactLine {
 /// The lines of contact of a scene, and how fine these have to be.
 struct ContactLines {
   std::vector<std::vector<ContactLine>> on;  ///< at the index of each polygon; empty: there are none
+  bool everywhere = false;                   ///< faces cross so often that none was looked for
   double size = 0;                           ///< the root of the area of all faces, metres
   /// Metres. Patches with longer edges follow the lines as those of this length do.
   double detail = std::numeric_limits<double>::infinity();
@@ -34,7 +35,8 @@ std::size_t number_of(const ContactLines& contacts);
 /// where they are within weld_distance(). Edges close before a polygon count as far as a fiftieth of the root of the
 /// area of all faces and a tenth of that of the polygon, and only where the face before it ends, not where it goes on;
 /// such an edge is a line of its own face too. Lines may reach beyond a polygon that is not convex, may cross and may
-/// be there twice. O(n log n + k) for n polygons of which k pairs are near each other.
+/// be there twice. None, and `everywhere` set, where some 500 polygons tell that there are over two million, as in a
+/// damaged model. O(n log n + k) for n polygons of which k pairs are near each other.
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept);
 
 }  // namespace patchlight
