@@ -236,14 +236,16 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
 // More are those of a damaged model whose faces cross anywhere: finding them takes minutes, and none is followed.
 constexpr double most_lines_found = 2e6;
 
-// How many lines there will be, as some polygons tell.
+// How many lines there will be, as some polygons tell. A large one on which all others stand, as a floor, tells nothing
+// of these.
 double expected_lines(const ContactSearch& search, const std::vector<std::uint8_t>& is_bent) {
   constexpr std::size_t looked_at = 512;
+  constexpr std::size_t most_of_one = 1000;
   const std::size_t step = is_bent.size() / looked_at;
   if (step < 2) return 0;
   std::vector<std::size_t> found(looked_at, 0);
   parallel_for(looked_at, [&](std::size_t k) {
-    if (is_bent[k * step] == 0) found[k] = search.on(static_cast<PolygonIndex>(k * step)).size();
+    if (is_bent[k * step] == 0) found[k] = std::min(most_of_one, search.on(static_cast<PolygonIndex>(k * step)).size());
   });
   return static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}) * step);
 }
