@@ -15,8 +15,8 @@
 namespace patchlight {
 namespace {
 
-// So many are followed at most: of the lines of a house in IFC the longest 10,000 halved the error, and with twice as
-// many its walls had to stay whole.
+// So many are followed at most: with the longest 40,000 of a house in IFC and 100,000 patches its walls stay whole,
+// edges being 4.3 m long and not 1.7, and planning takes twice as long.
 constexpr std::size_t most_lines = 10'000;
 
 // Patches of this length and as many as these are cut off by lines at most.
