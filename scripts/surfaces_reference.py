@@ -19,10 +19,11 @@ import sys
 import tempfile
 
 CASES = ["pane_black_clear", "pane_black_coloured", "daylight_black_over", "daylight_overcast", "daylight_clear_dec",
-         "two_rooms_clear"]
+         "two_rooms_clear", "mirror_black"]
 BANDS = "rgb"
 # What the scene files do not set.
-SETTINGS = {"pane_black_coloured": ["--set", "pane.transmittance=0.9,0.5,0.2"]}
+SETTINGS = {"pane_black_coloured": ["--set", "pane.transmittance=0.9,0.5,0.2"],
+            "mirror_black": ["--set", "mirror.reflectance=0", "--set", "mirror.specular_reflectance=0.9"]}
 
 
 def rows_of(file):
@@ -54,6 +55,8 @@ class Group:
 
     def columns(self):
         mean = statistics.fmean(self.expected)
+        if mean == 0:
+            return f"{len(self.off) // len(BANDS)} | dark, off by {max(map(abs, self.off)):.2g} W/m² | | | | "
         lit = [k for k, value in enumerate(self.expected) if value > 0]
         relative = [100 * abs(values[k]) / self.expected[k] for values in (self.off, self.error) for k in lit]
         rms = [100 * math.sqrt(statistics.fmean(v * v for v in values)) / mean for values in (self.off, self.error)]

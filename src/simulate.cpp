@@ -49,7 +49,8 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   clock.finish(Stage::plan);
 
   // 3. What rays need: which polygons lie on others, and what stands between patches.
-  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan));
+  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan),
+                                                       reflections_of(plan));
   const std::vector<std::string> notes = notes_on_run(scene, *tracing, plan);
   const Run run{lit, request, plan, notes, tracing, with, observer};
 

@@ -140,7 +140,7 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::array<std::vector
       const auto [lamp, probability, u] = choice.at(samples[k][0]);
       const PatchCorners corners = mesh_.corner_points(lamp);
       const Point& from = of_quarter[k].origin;
-      const double held = occluder_.held_share(mesh_.polygon[lamp]);
+      const double held = occluder_.held_share(mesh_.polygon[lamp], mesh_.side[lamp]);
       const double factor = point_to_polygon(from, mesh_.normal[patch], corners);
       irradiance.row(static_cast<Eigen::Index>(segments.size())) = factor * held / probability * exitance_.row(lamp);
       const Point to = square_to_quad(corners.points, u, samples[k][1]);

@@ -7,7 +7,7 @@
 #include "archive/npy.h"
 #include "files/sha256.h"
 #include "output/append_bytes.h"
-#include "scene/clear_faces.h"
+#include "scene/specular_faces.h"
 
 #include <array>
 #include <system_error>
@@ -20,10 +20,12 @@ constexpr std::uint32_t way_of_finding = 1;
 
 std::string bytes_of_faces(const Scene& scene) {
   std::string bytes;
-  const ClearFaces clear(scene);
+  const SpecularFaces specular(scene, Reflections::followed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    append_bytes(bytes, clear.held(p));
-    append_bytes(bytes, clear.transmittance(p, front_normal(scene, p)));
+    const Vector normal = front_normal(scene, p);
+    for (const Side side : {Side::front, Side::back}) append_bytes(bytes, specular.held(p, side));
+    append_bytes(bytes, specular.transmittance(p, normal));
+    for (const Vector& direction : {normal, Vector(-normal)}) append_bytes(bytes, specular.reflectance(p, direction));
     append_bytes(bytes, scene.polygons[p].corners.size());
     for (const Point& corner : corner_points(scene, p)) {
       for (const double coordinate : corner) append_bytes(bytes, coordinate);

@@ -62,7 +62,8 @@ Json materials_part(const Scene& scene) {
                     {"reflectance", json_of(material.reflectance)},
                     {"exitance", json_of(material.exitance)},
                     {"transmittance", json_of(material.transmittance)},
-                    {"index", material.index}});
+                    {"index", material.index},
+                    {"specular_reflectance", json_of(material.specular_reflectance)}});
   }
   return part;
 }
@@ -156,12 +157,17 @@ Spectrum spectrum_of(const Json& json) {
 std::vector<Material> materials_of(const Json& json) {
   std::vector<Material> materials;
   for (const Json& entry : json) {
-    Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
-                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance")),
-                      entry.value("index", usual_index)};
+    Material material{
+        text_of(entry.at("name")),
+        spectrum_of(entry.at("reflectance")),
+        spectrum_of(entry.at("exitance")),
+        spectrum_of(entry.at("transmittance")),
+        entry.value("index", usual_index),
+        entry.contains("specular_reflectance") ? spectrum_of(entry.at("specular_reflectance")) : Spectrum()};
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
-                (material.transmittance.size() == 0 || material.transmittance.size() == bands),
+                (material.transmittance.size() == 0 || material.transmittance.size() == bands) &&
+                (material.specular_reflectance.size() == 0 || material.specular_reflectance.size() == bands),
             "the materials do not all have the same bands");
     materials.push_back(std::move(material));
   }

@@ -61,11 +61,12 @@ void add_up_option(CLI::App& command, std::optional<Vector>& up) {
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option(
-          "--set", settings,
-          "changes a material (* and ? in its name stand for any\nletters): reflectance or transmittance (0 to 1), "
-          "exitance\n(W/m^2), radiance (W/(m^2 sr)) or index (of refraction, 1 or\nmore, one value); may be repeated; "
-          "default: as in the model")
+      .add_option("--set", settings,
+                  "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "
+                  "specular_reflectance (as "
+                  "of a\nmirror) or transmittance (0 to 1), exitance (W/m^2),\nradiance (W/(m^2 sr)) or index (of "
+                  "refraction, 1 "
+                  "or more, one\nvalue); may be repeated; default: as in the model")
       ->allow_extra_args(false)
       ->option_text("MATERIAL.QUANTITY=R,G,B");
 }

@@ -6,7 +6,7 @@
 #include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
 #include "plan/choose_storage.h"
-#include "scene/clear_faces.h"
+#include "scene/specular_faces.h"
 
 #include <cmath>
 #include <sstream>
@@ -38,26 +38,30 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
   throw InputError(folder.string(), text.str());
 }
 
-// The share of light that each polygon holds back.
-std::vector<double> held_shares(const Scene& scene) {
-  const ClearFaces clear(scene);
-  std::vector<double> held;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) held.push_back(clear.held(p));
+// The share of light that the front (0) and the back (1) of each polygon holds back.
+using HeldShares = std::vector<std::array<double, 2>>;
+
+HeldShares held_shares(const Scene& scene, Reflections reflections) {
+  const SpecularFaces specular(scene, reflections);
+  HeldShares held;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    held.push_back({specular.held(p, Side::front), specular.held(p, Side::back)});
   return held;
 }
 
-// What clear faces let through is in the form factors, and in the area of their patches.
+// What clear faces and mirrors let go on is in the form factors, and in the area of their patches.
 void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
-                        const std::vector<double>& held) {
+                        const HeldShares& held) {
   constexpr double rounding = 1e-5;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const double then = stored.area[i] / mesh.area[i];
-    const double now = held[mesh.polygon[i]];
+    const double now = held[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
     if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
     std::ostringstream text;
-    text << "found form factors with a face that lets the share " << 1 - then << " of an even sky's light through; now "
-         << "it lets " << 1 - now << " through. Set the transmittance and index of then, or make them anew: patchlight "
-         << "form-factors MODEL -o FOLDER";
+    text << "found form factors with a face that lets the share " << 1 - then
+         << " of an even sky's light go on, through "
+         << "it or as from a mirror; now it lets " << 1 - now << " go on. Set the transmittance, index and specular "
+         << "reflectance of then, or make them anew: patchlight form-factors MODEL -o FOLDER";
     throw InputError(folder.string(), text.str());
   }
 }
@@ -123,14 +127,16 @@ SolveInput read_input(const SolveArguments& arguments) {
   input.request.mesh.kept_sides = std::move(sides);
   require_room_for(folder, info, input.scene, input.request);
   if (info.storage == Storage::rays) {
-    input.ray_exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
+    const Reflections reflections =
+        contains(input.request.effects.skip, Effect::mirrors) ? Reflections::kept : Reflections::followed;
+    input.ray_exchange = [folder, info, held = held_shares(input.scene, reflections)](const PatchMesh& mesh) {
       RayExchange exchange = read_ray_rows(folder, info, mesh);
       require_same_panes(folder, {exchange.rows.area, exchange.rows.lost}, mesh, held);
       return exchange;
     };
     return input;
   }
-  input.exchange = [folder, info, held = held_shares(input.scene)](const PatchMesh& mesh) {
+  input.exchange = [folder, info, held = held_shares(input.scene, Reflections::kept)](const PatchMesh& mesh) {
     Exchange exchange = read_exchange(folder, info, mesh);
     require_same_panes(folder, {exchange.area, exchange.lost}, mesh, held);
     return exchange;

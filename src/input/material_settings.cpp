@@ -23,8 +23,10 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "radiance") return Quantity::radiance;
   if (name == "transmittance") return Quantity::transmittance;
   if (name == "index") return Quantity::index;
-  refuse_setting(text,
-                 "'" + name + "' cannot be set; expected reflectance, exitance, radiance, transmittance or index");
+  if (name == "specular_reflectance") return Quantity::specular_reflectance;
+  refuse_setting(text, "'" + name +
+                           "' cannot be set; expected reflectance, specular_reflectance, exitance, radiance, "
+                           "transmittance or index");
 }
 
 Spectrum comma_separated(const std::string& list, const std::string& text) {
@@ -71,6 +73,9 @@ Material changed(Material material, const MaterialSetting& setting) {
     case Quantity::index:
       material.index = setting.value[0];
       break;
+    case Quantity::specular_reflectance:
+      material.specular_reflectance = value;
+      break;
   }
   return material;
 }
@@ -91,6 +96,11 @@ std::vector<std::size_t> chosen(const std::vector<Material>& materials, const Ma
 }
 
 }  // namespace
+
+bool is_share(MaterialSetting::Quantity quantity) {
+  return quantity == Quantity::reflectance || quantity == Quantity::specular_reflectance ||
+         quantity == Quantity::transmittance;
+}
 
 bool is_index(const Spectrum& value) { return value.size() == 1 && value[0] >= 1; }
 
@@ -129,16 +139,15 @@ MaterialSetting parse_material_setting(const std::string& text) {
   if (dot == std::string::npos || dot == 0) {
     refuse_setting(
         text,
-        "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, exitance, radiance, transmittance, "
-        "index");
+        "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, specular_reflectance, exitance, radiance, "
+        "transmittance, index");
   }
   MaterialSetting setting;
   setting.material = text.substr(0, dot);
   setting.quantity = quantity_named(text.substr(dot + 1, equals - dot - 1), text);
   setting.value = comma_separated(text.substr(equals + 1), text);
   if ((setting.value < 0).any()) refuse_setting(text, "a value is negative; expected 0 or more");
-  const bool is_share = setting.quantity == Quantity::reflectance || setting.quantity == Quantity::transmittance;
-  if (is_share && (setting.value > 1).any()) {
+  if (is_share(setting.quantity) && (setting.value > 1).any()) {
     refuse_setting(text, "a reflectance or transmittance is above 1; expected 0 to 1");
   }
   if (setting.quantity == Quantity::index && !is_index(setting.value))

@@ -11,6 +11,9 @@ namespace patchlight {
 /// at MaterialSetting::where when no material matches.
 Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings);
 
+/// True when no value of a setting may be above 1.
+bool is_share(MaterialSetting::Quantity quantity);
+
 /// True when a setting of an index of refraction may have this value.
 bool is_index(const Spectrum& value);
 

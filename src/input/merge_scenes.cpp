@@ -12,7 +12,9 @@ namespace {
 bool same_values(const Material& a, const Material& b) {
   return a.reflectance.size() == b.reflectance.size() && (a.reflectance == b.reflectance).all() &&
          (a.exitance == b.exitance).all() && a.transmittance.size() == b.transmittance.size() &&
-         (a.transmittance == b.transmittance).all() && a.index == b.index;
+         (a.transmittance == b.transmittance).all() && a.index == b.index &&
+         a.specular_reflectance.size() == b.specular_reflectance.size() &&
+         (a.specular_reflectance == b.specular_reflectance).all();
 }
 
 std::vector<Material>::const_iterator find(const std::vector<Material>& materials, const std::string& name) {

@@ -112,18 +112,18 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
 }
 
 std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
-  allow_keys(table, {"name", "reflectance", "transmittance", "index", "exitance", "radiance"});
+  allow_keys(table, {"name", "reflectance", "specular_reflectance", "transmittance", "index", "exitance", "radiance"});
   const TomlValue& name = required(table, "name", "the name of materials, or a pattern with * and ?");
   std::vector<MaterialSetting> settings;
   for (const auto& [key, quantity] :
-       {std::pair("reflectance", Quantity::reflectance), std::pair("transmittance", Quantity::transmittance),
-        std::pair("index", Quantity::index), std::pair("exitance", Quantity::exitance),
-        std::pair("radiance", Quantity::radiance)}) {
+       {std::pair("reflectance", Quantity::reflectance),
+        std::pair("specular_reflectance", Quantity::specular_reflectance),
+        std::pair("transmittance", Quantity::transmittance), std::pair("index", Quantity::index),
+        std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance)}) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
     settings.push_back({text(name), quantity, spectrum(*value), name.where});
-    const bool is_share = quantity == Quantity::reflectance || quantity == Quantity::transmittance;
-    if (is_share && (settings.back().value > 1).any()) refuse(*value, "0 to 1 in every band");
+    if (is_share(quantity) && (settings.back().value > 1).any()) refuse(*value, "0 to 1 in every band");
     if (quantity == Quantity::index && !is_index(settings.back().value)) refuse(*value, expected_index);
   }
   if (find(table, "exitance") && find(table, "radiance")) one_of(table, {"exitance", "radiance"});

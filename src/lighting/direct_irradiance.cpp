@@ -3,8 +3,9 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/luminaire_irradiance.h"
-#include "lighting/receiver.h"
+#include "lighting/receivers.h"
 #include "lighting/shades.h"
+#include "lighting/shifted_points.h"
 #include "lighting/sky_irradiance.h"
 #include "mesh/means_around.h"
 
@@ -185,20 +186,6 @@ Estimator estimator_for(const Lighting& lighting, const LightingOptions& options
   return estimator;
 }
 
-// A digital shift of the points, so that no two receivers and sources have the same: errors of several lamps add up as
-// independent ones do.
-std::vector<std::array<double, 4>> shifted(SamplePoints points, std::uint32_t key) {
-  constexpr double steps = 0x1p32;
-  std::array<std::uint32_t, 4> shift;
-  for (std::uint32_t d = 0; d < 4; ++d) shift[d] = hash({key, d});
-  std::vector<std::array<double, 4>> moved(points.begin(), points.end());
-  for (std::array<double, 4>& point : moved) {
-    for (std::size_t d = 0; d < 4; ++d)
-      point[d] = (static_cast<double>(static_cast<std::uint32_t>(point[d] * steps) ^ shift[d]) + 0.5) / steps;
-  }
-  return moved;
-}
-
 // What n rays that all let the same share through may have missed, squared: of what arrives without shadows. One row
 // for each replicate.
 Spectrum missed_variance(const Field& arriving, const Field& unshadowed, std::size_t n) {
@@ -280,17 +267,14 @@ DirectIrradiance at_receivers(const Estimator& estimator, const std::vector<Rece
 
 }  // namespace
 
+void add(DirectIrradiance& direct, const DirectIrradiance& more) {
+  direct.irradiance += more.irradiance;
+  direct.standard_error = (direct.standard_error.square() + more.standard_error.square()).sqrt();
+}
+
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
                                    const Observer& observer) {
-  std::vector<Receiver> receivers;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const auto place = [&mesh, i](double u, double v) {
-      return SurfacePoint{square_to_quad(mesh.corner_points(i).points, u, v), mesh.normal[i], mesh.polygon[i]};
-    };
-    const PatchCorners corners = mesh.corner_points(i);
-    receivers.push_back({place, mesh.side[i], {corners.points.begin(), corners.points.begin() + corners.count}});
-  }
-  return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
+  return at_receivers(estimator_for(lighting, options), receivers_of(mesh), options.seed, observer);
 }
 
 Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
@@ -300,11 +284,7 @@ Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
 
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
                                    const LightingOptions& options, const Observer& observer) {
-  std::vector<Receiver> receivers;
-  for (const SurfacePoint& point : points) {
-    receivers.push_back({[&point](double, double) { return point; }, Side::front, {}});
-  }
-  return at_receivers(estimator_for(lighting, options), receivers, options.seed, observer);
+  return at_receivers(estimator_for(lighting, options), receivers_of(points), options.seed, observer);
 }
 
 }  // namespace patchlight

@@ -29,6 +29,9 @@ struct DirectIrradiance {
                          ///< sky miss, a hole that is smaller than one ray's share of these, is not known
 };
 
+/// More light on the same patches or points, whose errors have nothing to do with each other.
+void add(DirectIrradiance& direct, const DirectIrradiance& more);
+
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
 /// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
 /// the patch. The share of a patch that these or the sun reach is exact up to rounding, from the outlines of all

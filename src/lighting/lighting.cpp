@@ -1,6 +1,7 @@
 #include "lighting/lighting.h"
 
 #include "base/sampling.h"
+#include "lighting/mirrored_irradiance.h"
 #include "lighting/shades.h"
 #include "scene/photometric_web.h"
 
@@ -80,7 +81,8 @@ Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
                     .up = scene.up,
                     .bands = number_of_bands(scene),
                     .paths = LightPaths(scene, tracing),
-                    .shades = {}};
+                    .shades = {},
+                    .mirrors = {}};
   if (scene.sun && scene.sun->direction.dot(scene.up) > 0) lighting.sun = scene.sun;
   if (lighting.sun || !scene.luminaires.empty())
     lighting.shades = std::make_shared<const Shades>(scene, tracing.coverings());
@@ -88,6 +90,8 @@ Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
     lighting.sky = sky_model(*scene.sky, scene.up);
     lighting.openings = sky_openings(scene, lighting.paths);
   }
+  if (tracing.reflections() == Reflections::followed && tracing.has_specular_faces())
+    lighting.mirrors = std::make_shared<const Mirrors>(scene, tracing);
   return lighting;
 }
 

@@ -13,6 +13,7 @@
 namespace patchlight {
 
 class Shades;
+struct Mirrors;
 
 /// What gives light in a scene and is no patch, ready for direct_irradiance(). Immutable and safe to use from several
 /// threads.
@@ -24,7 +25,8 @@ struct Lighting {
   Vector up;
   Eigen::Index bands = 0;
   LightPaths paths;
-  std::shared_ptr<const Shades> shades;  ///< of sun and luminaires; null without them
+  std::shared_ptr<const Shades> shades;    ///< of sun and luminaires; null without them
+  std::shared_ptr<const Mirrors> mirrors;  ///< null where there are none, or reflections are not followed
 };
 
 /// Of a scene that check() has passed. Places over which another polygon lies get no light.

@@ -43,11 +43,6 @@ Opening opening_of(PolygonIndex polygon, const Vector& normal, std::vector<std::
   return opening;
 }
 
-Opening pane_of(const Scene& scene, PolygonIndex polygon) {
-  const std::vector<Point> corners = corner_points(scene, polygon);
-  return opening_of(polygon, area_vector(corners).normalized(), triangles_of(corners));
-}
-
 // A hole, exactly in one plane.
 Opening hole_of(const Hole& hole) {
   const Vector normal = area_vector(hole.pieces[0]).normalized();
@@ -191,10 +186,15 @@ std::optional<double> distance_to(const Opening& opening, const Point& origin, c
   return distance;
 }
 
+Opening opening_at(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  return opening_of(polygon, area_vector(corners).normalized(), triangles_of(corners));
+}
+
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
   std::vector<Opening> openings = shining_holes(scene, paths);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_opening(scene, p)) openings.push_back(pane_of(scene, p));
+    if (is_opening(scene, p)) openings.push_back(opening_at(scene, p));
   }
   return openings;
 }

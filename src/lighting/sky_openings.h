@@ -20,6 +20,9 @@ struct Opening {
   std::vector<double> upto = {};                ///< per triangle: the area of it and all before, m^2
 };
 
+/// That of a polygon as a whole.
+Opening opening_at(const Scene& scene, PolygonIndex polygon);
+
 /// Places that see more than this share of the sky find it without aiming at openings.
 inline constexpr double much_sky = 0.25;
 

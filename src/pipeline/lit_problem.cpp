@@ -1,6 +1,6 @@
 #include "pipeline/lit_problem.h"
 
-#include "lighting/direct_irradiance.h"
+#include "lighting/mirrored_irradiance.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 
@@ -12,7 +12,10 @@ namespace {
 DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
                                               const LightingOptions& options) {
   const auto trace = [&](const Scene& scene) {
-    return direct_irradiance(lighting_of(scene, *run.tracing), mesh, options, run.observer);
+    const Lighting lighting = lighting_of(scene, *run.tracing);
+    DirectIrradiance direct = direct_irradiance(lighting, mesh, options, run.observer);
+    if (lighting.mirrors) add(direct, mirrored_irradiance(lighting, {}, mesh, options, run.observer));
+    return direct;
   };
   if (plan.lamp_colour.size() == 0) return trace(run.scene);
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
@@ -26,7 +29,7 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 }  // namespace
 
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
-  LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back), {}};
+  LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
   DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, {.seed = plan.assembly.seed});
   lit.problem.direct_irradiance = std::move(direct.irradiance);

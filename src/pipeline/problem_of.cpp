@@ -1,20 +1,20 @@
 #include "pipeline/problem_of.h"
 
-#include "scene/clear_faces.h"
+#include "plan/planned_scene.h"
 
 namespace patchlight {
 
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
-                            bool emit_from_back) {
+                            bool emit_from_back, Reflections reflections) {
   const Eigen::Index bands = number_of_bands(scene);
-  const ClearFaces clear(scene);
+  const SpecularFaces specular(scene, reflections);
   RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
     problem.scattering.reflectance.row(i) = material.reflectance;
     const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
     if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
-    const double held = clear.held(mesh.polygon[i]);
+    const double held = specular.held(mesh.polygon[i], mesh.side[i]);
     problem.scattering.reflectance.row(i) = (problem.scattering.reflectance.row(i) / held).min(1.0);
     problem.exitance.row(i) /= held;
   }
@@ -22,9 +22,9 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
 }
 
 Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
-  const ClearFaces clear(scene);
+  const SpecularFaces specular(scene, reflections_of(simulation.plan));
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
-    const double held = clear.held(simulation.mesh.polygon[i]);
+    const double held = specular.held(simulation.mesh.polygon[i], simulation.mesh.side[i]);
     if (held == 1) continue;
     RadiosityProblem& problem = simulation.problem;
     Solution& solution = simulation.solution;

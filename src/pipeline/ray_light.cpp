@@ -5,6 +5,7 @@
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/vectors.h"
+#include "lighting/mirrored_irradiance.h"
 #include "mesh/means_around.h"
 #include "pipeline/conserved_flux.h"
 #include "solve/scattering.h"
@@ -51,7 +52,9 @@ std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const 
   return lamps;
 }
 
-// The strongest of them, as many as most_pieces allow.
+}  // namespace
+
+// As many as most_pieces allow.
 std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
   std::vector<LampSide> apart;
   std::size_t pieces = 0;
@@ -62,6 +65,8 @@ std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, con
   }
   return apart;
 }
+
+namespace {
 
 // Half as many towards bright patches as over the hemisphere, in packets of both halves.
 RayOptions rays_as_planned(const AssemblyOptions& assembly) {
@@ -184,8 +189,32 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
 Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
   const Occluder& occluder = run.tracing->between_patches();
   Eigen::ArrayXd exposed = exposed_area.array();
-  for (PatchIndex i = 0; i < mesh.size(); ++i) exposed[i] /= mesh.area[i] * occluder.held_share(mesh.polygon[i]);
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    exposed[i] /= mesh.area[i] * occluder.held_share(mesh.polygon[i], mesh.side[i]);
   return exposed;
+}
+
+// What lamps that are apart send over mirrors, which their factors do not have.
+void add_lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh, const std::vector<PatchRange>& lamps,
+                          LitProblem& lit) {
+  Scene scene = run.scene;
+  scene.luminaires.clear();
+  scene.sun.reset();
+  scene.sky.reset();
+  const Lighting lighting = lighting_of(scene, *run.tracing);
+  if (!lighting.mirrors || lamps.empty()) return;
+  std::vector<LampFace> faces;
+  for (const PatchRange& patches : lamps) {
+    const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
+    faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
+  }
+  const DirectIrradiance more = mirrored_irradiance(lighting, faces, mesh, {.seed = plan.assembly.seed}, run.observer);
+  DirectIrradiance direct{std::move(lit.problem.direct_irradiance), std::move(lit.direct_standard_error)};
+  const Field none = Field::Zero(more.irradiance.rows(), more.irradiance.cols());
+  if (direct.irradiance.size() == 0) direct = {none, none};
+  add(direct, {more.irradiance, with_errors_around(mesh, more.standard_error)});
+  lit.problem.direct_irradiance = std::move(direct.irradiance);
+  lit.direct_standard_error = std::move(direct.standard_error);
 }
 
 struct ExchangeAndLight {
@@ -200,6 +229,7 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
                                   : traced_lamps(run, plan, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
+  add_lamps_in_mirrors(run, plan, mesh, exchange.lamps, light.lit);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light);
     return {std::move(exchange), std::move(light)};

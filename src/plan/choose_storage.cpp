@@ -46,6 +46,21 @@ Plan by_rays(Plan plan) {
   return plan;
 }
 
+namespace {
+
+// Rays of a patch where pairs would be taken but for mirrors: they are to be about as accurate.
+constexpr int rays_for_mirrors = 256;
+constexpr std::size_t most_patches_with_more_rays = 40000;
+
+std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
+  if (light.is_mirrored) return "as only they follow light that mirrors and clear faces reflect";
+  const bool fits = bytes <= usable_memory(request.resources);
+  return "as all pairs of " + std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
+         (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken");
+}
+
+}  // namespace
+
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
   const bool asks_for_rays = request.assembly.storage == Storage::rays;
@@ -54,14 +69,15 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   if (request.assembly.storage != Storage::automatic && !lacks_bars) return chosen;
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
-  const bool fits = bytes <= usable_memory(request.resources);
-  const bool too_many = light.patches > most_patches_in_pairs || !fits;
-  if (!too_many || !light.is_reflected || takes_pairs(request, given)) return chosen;
+  const bool too_many = light.patches > most_patches_in_pairs || bytes > usable_memory(request.resources);
+  const bool pays = light.is_reflected && (too_many || light.is_mirrored);
+  const bool has_to = light.is_mirrored && !has_error_bars(request.accuracy);
+  if (!(pays || has_to) || takes_pairs(request, given)) return chosen;
   chosen.request = by_rays(std::move(chosen.request));
-  chosen.request.accuracy.error_bars = true;
-  chosen.note = "form factors are rows of rays (assembly.storage=rays), as all pairs of " +
-                std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
-                (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken") +
+  chosen.request.accuracy.error_bars = light.is_reflected;
+  if (light.is_mirrored && light.patches <= most_patches_with_more_rays)
+    chosen.request.assembly.rays = rays_for_mirrors;
+  chosen.note = "form factors are rows of rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
                 "; assembly.storage=tiles takes pairs";
   return chosen;
 }

@@ -32,12 +32,14 @@ struct ChosenStorage {
 struct StoredLight {
   std::size_t patches = 0;
   bool is_reflected = true;  ///< between them, more than once
+  bool is_mirrored = false;  ///< also without being scattered, which is to be followed
 };
 
-/// Storage::automatic becomes rows of rays for more than most_patches_in_pairs, and where all pairs do not fit into the
-/// memory, unless something that is asked for takes_pairs() or no light is reflected. Another storage stays, but
-/// rays where error bars are wanted of light that is not reflected: that takes tiles. Rows of rays have error bars, and
-/// with these nested meshes.
+/// Storage::automatic becomes rows of rays where light is mirrored, for more than most_patches_in_pairs, and where all
+/// pairs do not fit into the memory, unless something that is asked for takes_pairs() or no light is reflected in
+/// either way. Another storage stays, but rays where error bars are wanted of light that is not reflected: that takes
+/// tiles. Rows of rays have error bars where light is reflected, and with these nested meshes. Small meshes that have
+/// rays because of mirrors get more of them.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

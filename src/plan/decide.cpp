@@ -155,17 +155,38 @@ Decision closure(const Request& request, bool interreflects) {
   return overruled(std::move(decision), asked);
 }
 
+std::string counted_specular(const EffectFacts& facts) {
+  std::string list;
+  if (facts.mirrors > 0) list = counted(facts.mirrors, "mirror");
+  if (facts.openings > 0) list += (list.empty() ? "" : " and ") + counted(facts.openings, "clear face");
+  return list;
+}
+
+// Shadow rays between pairs of patches do not see by way of mirrors.
+Decision mirrors(const EffectFacts& facts, const Request& request) {
+  if (facts.mirrors == 0 && facts.openings == 0)
+    return {Effect::mirrors, false, "no face reflects light without scattering it", "rays that go on from mirrors"};
+  const std::string what = counted_specular(facts);
+  if (request.assembly.storage != Storage::rays)
+    return {Effect::mirrors, false,
+            "form factors of pairs do not see by way of mirrors: what " + what +
+                " reflect counts as absorbed; assembly.storage=rays follows it",
+            "rows of rays instead of pairs"};
+  return overruled({Effect::mirrors, true, what + " reflect light without scattering it",
+                    "a ray more for each time that a ray is reflected"},
+                   request);
+}
+
 // What the scene has and no run simulates.
 std::vector<Decision> not_simulated(const EffectFacts& facts) {
   std::vector<Decision> decisions;
   const auto add = [&](Effect effect, std::size_t count, const std::string& reason) {
     if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
   };
-  add(Effect::sheets, facts.openings,
-      counted(facts.openings, "clear face") +
-          ": what they would reflect as mirrors do is absorbed, and all bands of light between patches have the same "
-          "share let through");
-  add(Effect::mirrors, facts.mirrors, counted(facts.mirrors, "material") + " with gloss or metal, taken for matt");
+  add(Effect::bands_of_panes, facts.coloured_specular,
+      counted(facts.coloured_specular, "clear or mirroring material") +
+          ": of light between patches the same share of all bands is let through or reflected");
+  add(Effect::gloss, facts.gloss, counted(facts.gloss, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;
 }
@@ -185,6 +206,8 @@ bool is_there(Effect effect, const EffectFacts& facts) {
       return !facts.dark_solids.empty();
     case Effect::backs:
       return facts.turned_away > 0;
+    case Effect::mirrors:
+      return facts.mirrors > 0 || facts.openings > 0;
     default:
       return true;
   }
@@ -208,6 +231,7 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
   for (Decision& decision : decisions) {
     if (is_there(decision.effect, facts)) decision = overruled(std::move(decision), request);
   }
+  decisions.push_back(mirrors(facts, request));
   decisions.push_back(closure(request, decisions[1].simulate));
   for (Decision& decision : not_simulated(facts)) decisions.push_back(std::move(decision));
   return decisions;

@@ -28,12 +28,17 @@ std::vector<const Material*> materials_in_use(const Scene& scene, const KeptSide
 
 bool is_constant(const Spectrum& spectrum) { return spectrum.size() == 0 || (spectrum == spectrum[0]).all(); }
 
+// What goes through or is mirrored keeps its colour.
+bool has_grey_passage(const Material& material) {
+  return is_constant(material.transmittance) && is_constant(material.specular_reflectance);
+}
+
 // A place behind which there is no light stays as it is: transmittances of faces that take no part colour daylight,
 // too.
 bool is_grey(const Scene& scene, const std::vector<const Material*>& in_use) {
   return std::all_of(in_use.begin(), in_use.end(), [](const Material* m) { return is_constant(m->reflectance); }) &&
          std::all_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return is_constant(m.transmittance); });
+                     [](const Material& m) { return has_grey_passage(m); });
 }
 
 const Spectrum& spectrum_of(const Luminaire& luminaire) {
@@ -104,6 +109,7 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
     facts.openings += is_opening(scene, p);
+    facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
   }
   facts.luminaires = scene.luminaires.size();
   facts.sky = scene.sky.has_value();
@@ -128,6 +134,8 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
     facts.highest_reflectance = std::max(facts.highest_reflectance, material->reflectance.maxCoeff());
   facts.bands = number_of_bands(scene);
   facts.grey = is_grey(scene, in_use);
+  facts.coloured_specular = static_cast<std::size_t>(
+      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
   const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
   facts.lamp_colour = common_colour(spectra);
   facts.dark_bands = bands_without_light(spectra, facts.bands);
@@ -137,7 +145,7 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   facts.turned_away = kept.turned_away;
   facts = with_lights(std::move(facts), scene, kept);
   for (const UnsimulatedMaterials& found : scene.unsimulated)
-    (found.property == UnsimulatedProperty::mirror ? facts.mirrors : facts.glass) += found.materials;
+    (found.property == UnsimulatedProperty::mirror ? facts.gloss : facts.glass) += found.materials;
   return facts;
 }
 

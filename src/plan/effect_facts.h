@@ -26,10 +26,12 @@ struct EffectFacts {
   std::size_t luminaires = 0;
   std::optional<double> sun_altitude;  ///< degrees above the horizon; nothing where there is no sun
   bool sky = false;
-  std::size_t openings = 0;  ///< clear faces
-  bool sees_out = true;      ///< some kept side does not face the inside of a closed solid
-  std::size_t mirrors = 0;   ///< materials
-  std::size_t glass = 0;     ///< materials
+  std::size_t openings = 0;           ///< clear faces
+  bool sees_out = true;               ///< some kept side does not face the inside of a closed solid
+  std::size_t mirrors = 0;            ///< polygons of which a side is a mirror
+  std::size_t coloured_specular = 0;  ///< materials whose transmittance or specular reflectance differs by band
+  std::size_t gloss = 0;              ///< materials that a file says are partly mirrors
+  std::size_t glass = 0;              ///< materials that a file says are transparent, taken for opaque
 };
 
 /// Looks at a scene of which these sides are kept. Pure. O(n log n) for n corners, and what on_convex_hull() takes.

@@ -15,7 +15,7 @@ const char* word_for(const Decision& decision) {
 std::vector<Effect> simulated_effects() {
   return {Effect::occlusion, Effect::interreflection, Effect::colour, Effect::reach,
           Effect::backs,     Effect::luminaires,      Effect::sun,    Effect::sky,
-          Effect::closure};
+          Effect::mirrors,   Effect::closure};
 }
 
 const char* name_of(Effect effect) {
@@ -38,10 +38,12 @@ const char* name_of(Effect effect) {
       return "sky";
     case Effect::closure:
       return "closure";
-    case Effect::sheets:
-      return "sheets";
     case Effect::mirrors:
       return "mirrors";
+    case Effect::bands_of_panes:
+      return "colour of panes";
+    case Effect::gloss:
+      return "gloss";
     case Effect::glass:
       return "glass";
   }

@@ -191,7 +191,8 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   PatchSize size = patch_size(scene, asked, sides, contacts);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
-  const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects});
+  const bool mirrors = (facts.mirrors > 0 || facts.openings > 0) && !contains(asked.effects.skip, Effect::mirrors);
+  const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects, mirrors});
   if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides, contacts);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);

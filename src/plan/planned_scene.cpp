@@ -33,7 +33,9 @@ Scene with_spectra(Scene scene, const Change& change) {
     if (spectrum.size() > 0) spectrum = change(spectrum);
   };
   for (Material& material : scene.materials) {
-    for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.exitance}) apply(*s);
+    for (Spectrum* s :
+         {&material.reflectance, &material.transmittance, &material.specular_reflectance, &material.exitance})
+      apply(*s);
   }
   for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
   if (scene.sun) apply(scene.sun->normal_irradiance);
@@ -78,6 +80,11 @@ Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
 Occluder::Blockers blockers_of(const Plan& plan) {
   if (is_skipped_by_force(plan, Effect::occlusion)) return Occluder::Blockers::none;
   return is_forced(plan, Effect::occlusion) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
+}
+
+Reflections reflections_of(const Plan& plan) {
+  const bool follows = plan.assembly.storage == Storage::rays && simulates(plan, Effect::mirrors);
+  return follows ? Reflections::followed : Reflections::kept;
 }
 
 Scene scene_for_sensors(Scene scene, const Plan& plan) {

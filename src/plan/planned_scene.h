@@ -10,6 +10,9 @@ namespace patchlight {
 /// Which polygons can stand between two patches: those that may, all when occlusion is forced, none when it is skipped.
 Occluder::Blockers blockers_of(const Plan& plan);
 
+/// Whether light that mirrors and clear faces reflect goes on: only rows of rays follow it.
+Reflections reflections_of(const Plan& plan);
+
 /// The scene with the lights that the plan simulates; without differences of colour when these are skipped by force:
 /// every spectrum is replaced by its luminance (light/photometry.h), the same in all bands.
 Scene scene_as_planned(Scene scene, const Plan& plan);

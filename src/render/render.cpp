@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -91,33 +91,49 @@ struct Seen {
   double share = 1;  // of its light that gets through what is before it
 };
 
-// The patches that rays see: the first that each meets and, as long as that is clear, those behind it. Rays pass sides
-// without patches: they go on from there.
+// Of what a ray sees over several mirrors less than this is left out.
+constexpr double least_share = 0.01;
+
+// Rays that are still under way.
+struct UnderWay {
+  std::vector<Ray> rays;
+  std::vector<std::size_t> of_ray;  // where each has begun
+  std::vector<double> shares;
+
+  void add(const Ray& ray, std::size_t begun, double share) {
+    rays.push_back(ray);
+    of_ray.push_back(begun);
+    shares.push_back(share);
+  }
+};
+
+// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
+// in it. Rays pass sides without patches: they go on from there.
 std::vector<Seen> seen_patches(const Occluder& occluder, const PatchLookup& lookup, std::vector<Ray> rays) {
   std::vector<Seen> seen;
-  std::vector<std::size_t> under_way(rays.size());  // whose ray is rays[k]
-  std::iota(under_way.begin(), under_way.end(), std::size_t{0});
-  std::vector<double> shares(rays.size(), 1);
-  for (int crossing = 0; crossing <= most_crossings && !rays.empty(); ++crossing) {
-    const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < rays.size(); ++k) {
+  UnderWay now;
+  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1);
+  for (int crossing = 0; crossing <= most_crossings && !now.rays.empty(); ++crossing) {
+    const std::vector<std::optional<Hit>> hits = occluder.first_hits(now.rays);
+    UnderWay next;
+    for (std::size_t k = 0; k < now.rays.size(); ++k) {
       const std::optional<Hit>& hit = hits[k];
       if (!hit) continue;
-      double share = shares[k];
-      if (const std::optional<PatchIndex> patch = lookup.patch_at(hit->polygon, hit->side, hit->point)) {
-        const Vector& direction = rays[k].direction;
-        seen.push_back({under_way[k], *patch, hit->point, share * occluder.relative_held(hit->polygon, direction)});
-        share *= occluder.transmittance(hit->polygon, direction);
-        if (!(share > 0)) continue;
+      const auto patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
+      const Vector& direction = hit->direction;
+      if (!patch) {
+        next.add({hit->point, direction, hit->polygon}, now.of_ray[k], now.shares[k]);
+        continue;
       }
-      rays[left] = {hit->point, rays[k].direction, hit->polygon};
-      under_way[left] = under_way[k];
-      shares[left] = share;
-      ++left;
+      seen.push_back(
+          {now.of_ray[k], *patch, hit->point, now.shares[k] * occluder.relative_held(hit->polygon, direction)});
+      const double through = now.shares[k] * occluder.transmittance(hit->polygon, direction);
+      if (through > 0) next.add({hit->point, direction, hit->polygon}, now.of_ray[k], through);
+      const double reflected = now.shares[k] * occluder.specular_reflectance(hit->polygon, direction);
+      if (reflected > least_share)
+        next.add({hit->point, occluder.mirrored(hit->polygon, direction), hit->polygon}, now.of_ray[k], reflected);
     }
-    rays.resize(left);
-    under_way.resize(left);
+    now = std::move(next);
   }
   return seen;
 }

@@ -34,6 +34,23 @@ void check_bands(const Scene& scene) {
                                    "; expected as many");
 }
 
+// A mirror that lets light through would be a pane: what that reflects follows from its index.
+void check_specular_reflectance(const Scene& scene, const Material& material) {
+  for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band) {
+    const double share = material.specular_reflectance[band];
+    if (share >= 0 && share + material.reflectance[band] <= 1) continue;
+    throw InputError(scene.file, "material '" + material.name + "' has specular reflectance " + shortest(share) +
+                                     " and reflectance " + shortest(material.reflectance[band]) +
+                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     material.name + ".reflectance=R,G,B");
+  }
+  if ((material.specular_reflectance > 0).any() && (material.transmittance > 0).any())
+    throw InputError(scene.file, "material '" + material.name +
+                                     "' has both a specular reflectance and a transmittance; expected one of them, as "
+                                     "what a clear material reflects follows from its index. Use read.settings " +
+                                     material.name + ".specular_reflectance=0");
+}
+
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
@@ -55,6 +72,7 @@ void check_material(const Scene& scene, const Material& material) {
             << ".reflectance=R,G,B";
     throw InputError(scene.file, message.str());
   }
+  check_specular_reflectance(scene, material);
   if (!(material.index >= 1 && std::isfinite(material.index))) {
     throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
                                      "; expected a number of 1 or more. Use read.settings " + material.name +
@@ -137,6 +155,10 @@ bool is_lamp(const Scene& scene, PolygonIndex polygon) {
 }
 
 bool has_point_or_daylight(const Scene& scene) { return !scene.luminaires.empty() || scene.sun || scene.sky; }
+
+bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side) {
+  return (scene.materials[material_on(scene.polygons[polygon], side)].specular_reflectance > 0).any();
+}
 
 bool is_opening(const Scene& scene, PolygonIndex polygon) {
   const auto is_clear = [&](Side side) {

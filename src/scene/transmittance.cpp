@@ -18,6 +18,13 @@ Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
   return share;
 }
 
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = specular_reflectance(panes[band], cosine);
+  return share;
+}
+
 double cosine_between(const Vector& normal, const Vector& direction) {
   return std::min(1.0, std::abs(normal.dot(direction)));
 }
@@ -32,10 +39,13 @@ double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.
 // That up to a cosine is its square.
 double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
 
-Spectrum hemispherical_held(const std::vector<Pane>& panes) {
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on) {
   Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t k = 0; k < cosine_steps; ++k)
-    held += irradiance_of_step(k) * transmittance(panes, cosine_of_step(k)).unaryExpr(&held_of);
+  for (std::size_t k = 0; k < cosine_steps; ++k) {
+    Spectrum onward = transmittance(panes, cosine_of_step(k));
+    if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
+    held += irradiance_of_step(k) * onward.unaryExpr(&held_of);
+  }
   return held;
 }
 

@@ -15,6 +15,9 @@ std::vector<Pane> panes_of(const Material& material);
 /// What they let through at an angle of incidence with this cosine, per band.
 Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
 
+/// What they reflect as mirrors do.
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
+
 /// Of the angle between a unit normal and a unit direction, whichever way both look.
 double cosine_between(const Vector& normal, const Vector& direction);
 
@@ -31,7 +34,8 @@ double cosine_of_step(std::size_t step);
 /// The share of the irradiance that comes within a part; 1 in all.
 double irradiance_of_step(std::size_t step);
 
-/// The share of light from all directions alike, weighted as irradiance is, that panes keep, per band.
-Spectrum hemispherical_held(const std::vector<Pane>& panes);
+/// The share of light from all directions alike, weighted as irradiance is, that panes keep, per band; without what
+/// they reflect where that goes on.
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on = false);
 
 }  // namespace patchlight

@@ -192,7 +192,10 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
   result.bar = rows_of(bar, result.patches);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
   result.paths = trace_irradiance(seen, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
-                                  {.paths = options.paths, .seed = options.seed}, observer);
+                                  {.paths = options.paths,
+                                   .seed = options.seed,
+                                   .follows_reflections = reflections_of(simulation.plan) == Reflections::followed},
+                                  observer);
   const Spectrum mean = result.paths.irradiance.colwise().mean();
   result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, observer);
 

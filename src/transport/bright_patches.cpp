@@ -27,7 +27,7 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
     upto_[k] /= flux;
     density_[i] = static_cast<float>(expected[i] / flux);
     sampled_.push_back(sampled_patch(patch_shape(mesh, i), mesh.polygon[i], occluder.frame()));
-    held_.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i])));
+    held_.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i], mesh.side[i])));
   }
   if (!patches_.empty()) upto_.back() = 1;
 

@@ -14,7 +14,7 @@ bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occlud
 
 bool is_clear(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
   return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
-                     [&](PatchIndex i) { return occluder.held_share(mesh.polygon[i]) < 1; });
+                     [&](PatchIndex i) { return occluder.held_share(mesh.polygon[i], mesh.side[i]) < 1; });
 }
 
 std::vector<PolygonIndex> polygons_of(const PatchMesh& mesh, const PatchCluster& cluster) {

@@ -68,7 +68,7 @@ Assembly estimate_by_hemisphere(const PatchMesh& mesh, const Occluder& occluder,
     for (const auto& [j, count] : arrived[i]) {
       const double before = static_cast<double>(result.exchange_areas.at(i, j));
       result.counts.facing_pairs += before == 0 ? 1 : 0;
-      const double held = occluder.held_share(mesh.polygon[i]);
+      const double held = occluder.held_share(mesh.polygon[i], mesh.side[i]);
       const double area = before + held * mesh.area[i] * count / (2.0 * options.samples);
       result.exchange_areas.set(i, j, narrow_toward_zero(area));
     }

@@ -158,7 +158,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   // 2. The form factor without occluders is not worth its time where nothing is seen.
   if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
   // Clear ones may hold all of what comes at an angle.
-  const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i]));
+  const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i], mesh.side[i]));
   for (std::size_t half = 0; half < 2; ++half) {
     pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area, most);
     pair.bin[half] = Pool::bin(rays[half].visible_share());

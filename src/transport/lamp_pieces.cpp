@@ -55,7 +55,7 @@ std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, co
       const PatchShape shape = patch_shape(corners);
       key = hash(key);
       pieces.push_back(
-          {shape, sampled_patch(shape, polygon, occluder.frame()), occluder.held_share(polygon), key, lamp});
+          {shape, sampled_patch(shape, polygon, occluder.frame()), occluder.held_share(polygon, side), key, lamp});
     }
   }
   return pieces;

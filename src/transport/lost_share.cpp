@@ -129,7 +129,7 @@ Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed
 
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
   Eigen::VectorXd clear(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i]);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i], mesh.side[i]);
   return clear.isZero(0) ? Eigen::VectorXd() : clear;
 }
 

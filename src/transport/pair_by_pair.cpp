@@ -71,7 +71,8 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
     const auto count = static_cast<double>(pair.samples.size());
     const SampleMeans means{sums.visible / count, sums.blocked / count, sums.unoccluded / count};
     const auto [i, j] = pair.patches;
-    const double held = occluder.held_share(mesh.polygon[i]) * occluder.held_share(mesh.polygon[j]);
+    const double held =
+        occluder.held_share(mesh.polygon[i], mesh.side[i]) * occluder.held_share(mesh.polygon[j], mesh.side[j]);
     S.set(i, j, narrow_toward_zero(held * estimator.use(shapes[i], shapes[j], means)));
     counts.partial_pairs += sums.visible > 0 && sums.blocked > 0 ? 1 : 0;
     counts.blocked_pairs += sums.visible == 0 && sums.blocked > 0 ? 1 : 0;

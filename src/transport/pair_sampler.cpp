@@ -45,7 +45,8 @@ void for_groups(std::span<Pair> pairs, Use use) {
 std::vector<float> held_shares(const PatchMesh& mesh, const Occluder& occluder) {
   std::vector<float> held;
   held.reserve(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) held.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i])));
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    held.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i], mesh.side[i])));
   return held;
 }
 

@@ -93,7 +93,9 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
 }
 
 // The contribution of a ray over the hemisphere that meets a bright patch, by the balance heuristic: G / (n G + m p).
+// No shadow ray comes by way of a mirror: there it is 1 / n.
 float RowTracer::entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const {
+  if (hit.reflections > 0) return 1 / static_cast<float>(counts_[patch]);
   const double cosines = mesh_.normal[patch].dot(ray.direction) * std::abs(mesh_.normal[met].dot(ray.direction));
   const double density = toward_bright_ * static_cast<double>(bright_.density(met));
   const double squared = std::numbers::pi * hit.distance * hit.distance;

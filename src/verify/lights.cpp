@@ -1,5 +1,7 @@
 #include "verify/lights.h"
 
+#include "lighting/mirrored_irradiance.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -59,6 +61,30 @@ Field irradiance_by_lights(const Lighting& lighting, std::span<const LitPlace> p
   Field irradiance = Field::Zero(static_cast<Eigen::Index>(places.size()), lighting.bands);
   for (std::size_t k = 0; k < shadows.size(); ++k)
     irradiance.row(shadows[k].place) += shadows[k].irradiance * transmittance.row(static_cast<Eigen::Index>(k));
+  return irradiance;
+}
+
+Field irradiance_in_mirrors(const Lighting& lighting, std::span<const LitPlace> places) {
+  Field irradiance = Field::Zero(static_cast<Eigen::Index>(places.size()), lighting.bands);
+  if (!lighting.mirrors) return irradiance;
+  for (const MirrorChain& chain : lighting.mirrors->paths.chains()) {
+    std::vector<Shadow> shadows;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const SurfacePoint& at = places[k].at;
+      LitPlace image = places[k];
+      image.at = {chain.image * at.point, chain.image.linear() * at.normal, at.polygon};
+      const std::size_t before = shadows.size();
+      add_luminaire(shadows, lighting, k, image);
+      const Arrival of_sun = lighting.sun ? from_sun(lighting, image.at) : Arrival{};
+      if (of_sun.irradiance > 0) shadows.push_back(shadow_of(k, image.at, of_sun, 1));
+      for (std::size_t s = before; s < shadows.size(); ++s) shadows[s].segment.from = at.point;
+    }
+    std::vector<Segment> segments;
+    for (const Shadow& shadow : shadows) segments.push_back(shadow.segment);
+    const Field transmittance = lighting.mirrors->paths.transmittance(chain, lighting.paths, segments);
+    for (std::size_t k = 0; k < shadows.size(); ++k)
+      irradiance.row(shadows[k].place) += shadows[k].irradiance * transmittance.row(static_cast<Eigen::Index>(k));
+  }
   return irradiance;
 }
 

@@ -20,6 +20,9 @@ struct LitPlace {
 /// the way; the mean over `choice` and `uv` is what all of them give. Clear openings let their share through.
 Field irradiance_by_lights(const Lighting& lighting, std::span<const LitPlace> places);
 
+/// The same by way of mirrors and clear faces, over each chain of Lighting::mirrors; 0 without any.
+Field irradiance_in_mirrors(const Lighting& lighting, std::span<const LitPlace> places);
+
 /// The radiance of sky and ground that gets to the origins of rays, W/(m^2 sr): a row per ray, a column per band.
 /// Nothing from behind something opaque.
 Field radiance_from_outside(const Lighting& lighting, std::span<const Ray> rays);

@@ -32,6 +32,9 @@
 //
 // Luminaires without extent, spheres and the sun meet no scattered ray: shadow rays alone find them. The sky is found
 // by scattered rays alone, those that leave the scene, through clear openings or where nothing is.
+//
+// A ray that meets a mirror or a clear face goes on through it, or as from a mirror, or ends there, by chance. Lamps
+// behind mirrors are found by such rays alone; luminaires and sun by shadow rays over each chain of mirrors.
 
 namespace patchlight {
 namespace {
@@ -83,9 +86,10 @@ struct PathTracer {
   const Occluder& occluder;
   Surfaces surfaces;
   Lamps lamps;
-  std::optional<Lighting> lights;   // where there are luminaires, sun or sky
-  LightPaths straight;              // between two points
-  std::vector<std::uint8_t> clear;  // per polygon: 1 for an opening
+  std::optional<Lighting> lights;      // where there are luminaires, sun or sky
+  LightPaths straight;                 // between two points
+  std::vector<std::uint8_t> clear;     // per polygon: 1 for an opening
+  std::vector<std::uint8_t> specular;  // per polygon: 1 for an opening, and for a mirror
   Eigen::Index bands;
 
   Batch trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
@@ -97,12 +101,16 @@ struct PathTracer {
                               const std::vector<std::optional<Hit>>& hits) const;
   Step scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
 
-  // The end of a ray, and what its light is multiplied with.
+  // The end of a ray, what its light is multiplied with, and the rays that have left mirrors on the way, each with
+  // what its light is multiplied with.
   struct End {
     std::optional<Hit> hit;
     Spectrum factor;
+    std::vector<Ray> mirrored;
+    std::vector<Spectrum> of_mirrored;
   };
-  End end_of(const Ray& ray, std::optional<Hit> hit, std::uint32_t seed) const;
+  End end_of(std::optional<Hit> hit, std::uint32_t seed) const;
+  Spectrum light_in_mirrors(const std::vector<End>& ends, const std::vector<Vertex>& vertices) const;
 };
 
 // Points spread over the exposed part of the receiver.
@@ -157,7 +165,7 @@ Spectrum PathTracer::light_from_luminaires(const std::vector<Vertex>& vertices, 
                       uniform({seed, path, 5}),
                       {samples[path][0], samples[path][1]}});
   }
-  const Field found = irradiance_by_lights(*lights, places);
+  const Field found = irradiance_by_lights(*lights, places) + irradiance_in_mirrors(*lights, places);
   for (std::size_t k = 0; k < vertices.size(); ++k)
     sum += vertices[k].throughput * found.row(static_cast<Eigen::Index>(k));
   return sum;
@@ -182,28 +190,55 @@ Spectrum PathTracer::light_from_outside(const std::vector<Vertex>& vertices, con
   return sum;
 }
 
-// Where a ray ends that goes through each clear face with the probability of its mean transmittance at this angle, and
-// by how much what it carries changes: by the transmittance over that probability, or by what the face sends out in the
-// ray's direction over what is left.
-PathTracer::End PathTracer::end_of(const Ray& ray, std::optional<Hit> hit, std::uint32_t seed) const {
-  Spectrum factor = Spectrum::Ones(bands);
-  double gone = 0;
-  for (std::uint64_t crossing = 0; hit; ++crossing) {
-    hit->distance += gone;
-    if (clear[hit->polygon] == 0) break;
-    const Surface& met = surfaces.at(hit->polygon, hit->side);
-    const double passing = occluder.transmittance(hit->polygon, ray.direction);
-    const double cosine = met.normal.dot(ray.direction);
-    if (uniform({seed, crossing, 6}) >= passing) {
-      factor *= relative_held(met, cosine) / (1 - passing);
+// Where a ray ends that goes through each clear face with the probability of its mean transmittance at this angle, is
+// reflected with that of its mean reflectance, and by how much what it carries changes: by the share that goes on over
+// that probability, or by what the face sends out in the ray's direction over what is left.
+PathTracer::End PathTracer::end_of(std::optional<Hit> hit, std::uint32_t seed) const {
+  End end{std::move(hit), Spectrum::Ones(bands), {}, {}};
+  for (std::uint64_t meeting = 0; end.hit && specular[end.hit->polygon] != 0; ++meeting) {
+    const Hit met = *end.hit;
+    const Surface& surface = surfaces.at(met.polygon, met.side);
+    const double cosine = surface.normal.dot(met.direction);
+    const double passing = occluder.transmittance(met.polygon, met.direction);
+    const double reflected = occluder.specular_reflectance(met.polygon, met.direction);
+    const double drawn = uniform({seed, meeting, 6});
+    if (drawn >= passing + reflected) {
+      end.factor *= relative_held(surface, cosine) / (1 - passing - reflected);
       break;
     }
-    factor *= transmittance(met, cosine) / passing;
-    gone = hit->distance;
-    const Ray onward{hit->point, ray.direction, hit->polygon};
-    hit = occluder.first_hits({&onward, 1}).front();
+    Ray onward{met.point, met.direction, met.polygon};
+    if (drawn < passing) {
+      end.factor *= transmittance(surface, cosine) / passing;
+    } else {
+      end.factor *= specular_reflectance(surface, cosine) / reflected;
+      onward.direction = occluder.mirrored(met.polygon, met.direction);
+      end.mirrored.push_back(onward);
+      end.of_mirrored.push_back(end.factor);
+    }
+    end.hit = occluder.first_hits({&onward, 1}).front();
+    if (!end.hit) break;
+    end.hit->distance += met.distance;
+    end.hit->reflections = met.reflections + (drawn < passing ? 0 : 1);
   }
-  return {hit, factor};
+  return end;
+}
+
+// Light of sky and ground that rays which leave mirrors find. pi L, as directions are distributed as cos(theta) / pi.
+Spectrum PathTracer::light_in_mirrors(const std::vector<End>& ends, const std::vector<Vertex>& vertices) const {
+  Spectrum sum = Spectrum::Zero(bands);
+  if (!lights || !lights->sky) return sum;
+  std::vector<Ray> rays;
+  std::vector<Spectrum> factors;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    for (std::size_t m = 0; m < ends[k].mirrored.size(); ++m) {
+      rays.push_back(ends[k].mirrored[m]);
+      factors.emplace_back(vertices[k].throughput * ends[k].of_mirrored[m]);
+    }
+  }
+  const Field found = radiance_from_outside(*lights, rays);
+  for (std::size_t k = 0; k < rays.size(); ++k)
+    sum += std::numbers::pi * factors[k] * found.row(static_cast<Eigen::Index>(k));
+  return sum;
 }
 
 // One scattered ray from each vertex, backward along the light's way. A side that is not kept is black.
@@ -217,8 +252,11 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   const auto hits = occluder.first_hits(rays);
 
   Step step{{}, light_from_outside(vertices, rays, hits)};
+  std::vector<End> ends;
+  for (std::size_t k = 0; k < vertices.size(); ++k) ends.push_back(end_of(hits[k], hash({seed, vertices[k].path})));
+  step.irradiance += light_in_mirrors(ends, vertices);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const End end = end_of(rays[k], hits[k], hash({seed, vertices[k].path}));
+    const End& end = ends[k];
     if (!end.hit || !surfaces.at(end.hit->polygon, end.hit->side).kept) continue;
     const Vertex& vertex = vertices[k];
     const Hit& hit = *end.hit;
@@ -227,10 +265,12 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
     if (clear[vertex.polygon] != 0) throughput *= relative_held(here, here.normal.dot(rays[k].direction));
     const Surface& there = surfaces.at(hit.polygon, hit.side);
 
-    // 1. A lamp: E(y) with the weight G / (p + G)
-    if ((there.exitance > 0).any()) {
+    // 1. A lamp: E(y) with the weight G / (p + G), and 1 in a mirror, where no point on it is looked for
+    if (hit.reflections > 0) {
+      step.irradiance += throughput * there.exitance;
+    } else if ((there.exitance > 0).any()) {
       const double cosine = here.normal.dot(rays[k].direction);
-      const double cosine_there = -there.normal.dot(rays[k].direction);
+      const double cosine_there = -there.normal.dot(hit.direction);
       // G / (p + G) with G = a / distance^2, as a / (p distance^2 + a): finite where a ray hardly gets off.
       const double a = std::max(0.0, cosine * cosine_there) / std::numbers::pi;
       const double by_area = sampling_density(lamps, there) * hit.distance * hit.distance;
@@ -287,13 +327,19 @@ Field mean_and_error(std::span<const Batch> batches) {
   return result;
 }
 
-PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
-  const Surfaces surfaces = surfaces_of(scene, sides);
-  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, sides), Occluder::Blockers::all);
-  PathTracer tracer{tracing, tracing->all_faces(scene),   surfaces, lamps_of(scene, surfaces),
-                    {},      LightPaths(scene, *tracing), {},       number_of_bands(scene)};
+PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides, Reflections reflections) {
+  const Surfaces surfaces = surfaces_of(scene, sides, reflections);
+  const auto tracing =
+      std::make_shared<const Tracing>(scene, find_coverings(scene, sides), Occluder::Blockers::all, reflections);
+  PathTracer tracer{
+      tracing, tracing->all_faces(scene), surfaces, lamps_of(scene, surfaces), {}, LightPaths(scene, *tracing), {},
+      {},      number_of_bands(scene)};
   if (has_point_or_daylight(scene)) tracer.lights = lighting_of(scene, *tracing);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    tracer.clear.push_back(is_opening(scene, p) ? 1 : 0);
+    const bool mirrors = is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
+    tracer.specular.push_back(tracer.clear.back() != 0 || mirrors ? 1 : 0);
+  }
   return tracer;
 }
 
@@ -301,7 +347,8 @@ PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides) {
 
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options, const Observer& observer) {
-  const PathTracer tracer = path_tracer_for(scene, sides);
+  const PathTracer tracer =
+      path_tracer_for(scene, sides, options.follows_reflections ? Reflections::followed : Reflections::kept);
   const std::uint32_t paths = std::bit_ceil((options.paths + path_batches - 1) / path_batches);  // of a batch
   std::vector<Batch> batches(receivers.size() * path_batches);
   parallel_for(batches.size(), Stage::trace_paths, observer, [&](std::size_t k) {

@@ -26,6 +26,7 @@ inline constexpr std::uint32_t path_batches = 32;
 struct PathOptions {
   std::uint32_t paths = 4096;  ///< per receiver; rounded up to path_batches times a power of two
   std::uint64_t seed = 1;
+  bool follows_reflections = true;  ///< light that mirrors and clear faces reflect goes on; else it is absorbed
 };
 
 /// One row per receiver, one column per band.
@@ -41,8 +42,8 @@ struct PathEstimate {
 /// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
 /// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. Luminaires and
 /// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected goes
-/// on through clear openings, too, per band. The mean is over the part of a receiver that is not covered
-/// (docs/theory.md section 2). The same bits for any number of threads. \throws Cancelled.
+/// on through clear openings, too, and over mirrors, per band. The mean is over the part of a receiver that is not
+/// covered (docs/theory.md section 2). The same bits for any number of threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 

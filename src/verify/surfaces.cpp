@@ -15,17 +15,17 @@ struct Panes {
   std::vector<Spectrum> held;
 };
 
-Panes panes_of_materials(const Scene& scene) {
+Panes panes_of_materials(const Scene& scene, Reflections reflections) {
   Panes all;
   for (const Material& material : scene.materials) {
     all.panes.push_back(panes_of(material));
-    all.held.push_back(hemispherical_held(all.panes.back()));
+    all.held.push_back(hemispherical_held(all.panes.back(), reflections == Reflections::followed));
   }
   return all;
 }
 
 Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<PolygonIndex, Side>& of,
-                   const KeptSides& kept) {
+                   const KeptSides& kept, Reflections reflections) {
   const auto [index, side] = of;
   const Polygon& polygon = scene.polygons[index];
   const MaterialIndex of_material = material_on(polygon, side);
@@ -37,6 +37,11 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
   surface.reflectance = material.reflectance;
   surface.panes = panes.panes[of_material];
   surface.held = panes.held[of_material];
+  surface.reflections = reflections;
+  const bool is_mirrored =
+      reflections == Reflections::followed && !is_opening(scene, index) && is_mirror(scene, index, side);
+  surface.mirrored =
+      is_mirrored ? material.specular_reflectance : Spectrum(Spectrum::Zero(material.reflectance.size()));
   const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
   surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
   return surface;
@@ -49,17 +54,23 @@ Spectrum transmittance(const Surface& surface, double cosine) {
   return transmittance(surface.panes, std::min(1.0, std::abs(cosine)));
 }
 
-Spectrum relative_held(const Surface& surface, double cosine) {
-  if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
-  return transmittance(surface, cosine).unaryExpr(&held_of) / surface.held;
+Spectrum specular_reflectance(const Surface& surface, double cosine) {
+  if (surface.panes.empty() || surface.reflections == Reflections::kept) return surface.mirrored;
+  return specular_reflectance(surface.panes, std::min(1.0, std::abs(cosine)));
 }
 
-Surfaces surfaces_of(const Scene& scene, const KeptSides& kept) {
-  const Panes panes = panes_of_materials(scene);
+Spectrum relative_held(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
+  const Spectrum onward = transmittance(surface, cosine) + specular_reflectance(surface, cosine);
+  return onward.unaryExpr(&held_of) / surface.held;
+}
+
+Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections) {
+  const Panes panes = panes_of_materials(scene, reflections);
   Surfaces surfaces;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     for (const Side side : {Side::front, Side::back})
-      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept));
+      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept, reflections));
   }
   return surfaces;
 }

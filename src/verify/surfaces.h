@@ -5,6 +5,7 @@
 #include "patchlight/scene/sides.h"
 
 #include "light/pane.h"
+#include "scene/specular_faces.h"
 
 #include <cstddef>
 #include <vector>
@@ -18,11 +19,17 @@ struct Surface {
   Spectrum reflectance;
   std::vector<Pane> panes;  ///< per band; none of an opaque side
   Spectrum held;            ///< of a clear one: the share of light from all directions alike that is kept, per band
-  Spectrum exitance;        ///< W/m^2; 0 for a side that does not emit
+  Spectrum mirrored;  ///< the share of light that is reflected as by a mirror at all angles; 0 of a clear one, and
+                      ///< where reflections are not followed
+  Reflections reflections = Reflections::kept;
+  Spectrum exitance;  ///< W/m^2; 0 for a side that does not emit
 };
 
 /// The share that a side lets straight through at an angle to its normal with this cosine, per band.
 Spectrum transmittance(const Surface& surface, double cosine);
+
+/// The share that is reflected there as by a mirror, per band; 0 where reflections are not followed.
+Spectrum specular_reflectance(const Surface& surface, double cosine);
 
 /// The share that it keeps there over that which it keeps of light from all directions alike. A pane sends out, and
 /// weighs what it reflects, by this: docs/theory.md section 11.
@@ -37,7 +44,7 @@ struct Surfaces {
   }
 };
 
-Surfaces surfaces_of(const Scene& scene, const KeptSides& kept);
+Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections = Reflections::kept);
 
 /// An orthonormal frame whose third axis is the normal.
 Eigen::Matrix3d frame_around(const Vector& normal);

@@ -3,9 +3,11 @@
 #include "patchlight/gather/gather.h"
 
 #include "gather/doubtful_sensors.h"
+#include "gather/mirrored_gather.h"
 #include "gather/sensor_places.h"
-#include "lighting/direct_irradiance.h"
+#include "lighting/mirrored_irradiance.h"
 #include "pipeline/radiosity_errors.h"
+#include "pipeline/ray_light.h"
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
@@ -53,6 +55,41 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
   return all;
 }
 
+void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
+  const auto add_squares = [](Field& to, const Field& of) { to = (to.square() + of.square()).sqrt(); };
+  gathered.irradiance += more.irradiance;
+  add_squares(gathered.errors.rays, more.errors.rays);
+  add_squares(gathered.errors.sampling, more.errors.sampling);
+  gathered.errors.mesh += more.errors.mesh;
+  gathered.errors.solver += more.errors.solver;
+}
+
+// What sensors see in mirrors and clear faces: lamps, luminaires, sun and sky over each chain of mirrors, and all other
+// light of patches by rays. Nothing where reflections are not followed.
+std::optional<GatheredIrradiance> seen_in_mirrors(const Scene& scene, const Simulation& simulation,
+                                                  const std::vector<Sensor>& sensors, const Observer& observer) {
+  const Lighting lighting = lighting_of(scene, *simulation.tracing);
+  if (!lighting.mirrors) return {};
+  const PatchMesh& mesh = simulation.mesh;
+  Field sent = simulation.solution.radiosity;
+  std::vector<LampFace> lamps;
+  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem)) {
+    const auto faces = lamp_faces(scene, polygon, side);
+    lamps.insert(lamps.end(), faces.begin(), faces.end());
+    const auto [begin, end] = mesh.patches_on(polygon, side);
+    sent.middleRows(begin, end - begin) -= simulation.problem.exitance.middleRows(begin, end - begin);
+  }
+  const std::uint64_t seed = simulation.plan.assembly.seed;
+  std::vector<SurfacePoint> points;
+  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+  GatheredIrradiance found = gather_mirrored(mesh, sent, lighting.mirrors->view, simulation.tracing->all_faces(scene),
+                                             sensors, {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
+  const DirectIrradiance direct = mirrored_irradiance(lighting, lamps, points, {.seed = seed}, observer);
+  found.irradiance += direct.irradiance;
+  found.errors.rays = (found.errors.rays.square() + direct.standard_error.square()).sqrt();
+  return found;
+}
+
 Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, const Simulation& simulation,
                      const Observer& observer) {
   const Scene scene = scene_for_sensors(whole, simulation.plan);
@@ -75,6 +112,7 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
     gathered.irradiance += direct.irradiance;
     errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
   }
+  if (const auto mirrored = seen_in_mirrors(scene, simulation, sensors, observer)) add(gathered, *mirrored);
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),
                        .standard_error = at_places(errors.total(), places),
                        .errors = {.rays = at_places(errors.rays, places),

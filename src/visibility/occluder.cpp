@@ -1,7 +1,6 @@
 #include "visibility/occluder.h"
 
 #include "base/sampling.h"
-#include "scene/clear_faces.h"
 #include "visibility/blockers.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
@@ -48,11 +47,11 @@ struct Occluder::Tracer {
   const TriangleScene* blockers = nullptr;  // those that can block a segment
   TriangleScene own_blockers;               // unless these are all faces
   TriangleScene panes;                      // those that can weaken it
-  ClearFaces clear;                         // where light is let through
+  SpecularFaces specular;                   // where light is let through, or goes on as from a mirror
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
 
-  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met);
+  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met, SpecularFaces of_scene);
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
   float arriving_along(const ExactRay& ray, Crossed crossed) const;
@@ -60,26 +59,28 @@ struct Occluder::Tracer {
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
 
-Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const TracedFaces> met)
+Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const TracedFaces> met,
+                         SpecularFaces of_scene)
     : faces(std::move(met)),
       blockers(&faces->triangles),
-      clear(lets_through(which) ? ClearFaces(scene) : ClearFaces()),
+      specular(std::move(of_scene)),
       left_out(left_out_by(which, scene)),
       shafts(scene, left_out) {
-  const std::vector<std::uint8_t> not_blocking = clear.empty() ? left_out : without_kind(left_out, scene, true);
+  const std::vector<std::uint8_t> not_blocking = specular.empty() ? left_out : without_kind(left_out, scene, true);
   if (not_blocking != never_met(which, scene)) {
     faces->build(own_blockers, scene, not_blocking);
     blockers = &own_blockers;
   }
-  if (!clear.empty()) faces->build(panes, scene, without_kind(left_out, scene, false), list_crossed);
+  if (!specular.empty()) faces->build(panes, scene, without_kind(left_out, scene, false), list_crossed);
 }
 
 // The product over the polygons in their order in the scene: the same bits in whichever order they were met.
 float Occluder::Tracer::arriving_along(const ExactRay& ray, Crossed crossed) const {
   std::sort(crossed.polygons.begin(), crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count));
   const Vector direction = (ray.to - ray.from).normalized();
-  double share = clear.relative_held(ray.from_polygon, direction) * clear.relative_held(ray.to_polygon, direction);
-  for (std::size_t k = 0; k < crossed.count; ++k) share *= clear.transmittance(crossed.polygons[k], direction);
+  double share =
+      specular.relative_held(ray.from_polygon, direction) * specular.relative_held(ray.to_polygon, direction);
+  for (std::size_t k = 0; k < crossed.count; ++k) share *= specular.transmittance(crossed.polygons[k], direction);
   return static_cast<float>(share);
 }
 
@@ -113,7 +114,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     arriving[k] = blocked ? 0.0F : 1.0F;
     valid[k] = blocked ? 0 : -1;
   }
-  if (clear.empty()) return;
+  if (specular.empty()) return;
   std::array<Crossed, packet_size> crossed;
   context.crossed = crossed.data();
   context.covered_places = nullptr;
@@ -144,7 +145,7 @@ std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket
   const unsigned blocked = occluded(packet);
   std::array<float, ShadowPacket::size> arriving{};
   for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
-  if (tracer_->clear.empty()) return arriving;
+  if (tracer_->specular.empty()) return arriving;
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
   for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = (blocked >> k & 1) != 0 ? 0 : -1;
@@ -189,13 +190,13 @@ const ShaftCuller& Occluder::shafts() const { return tracer_->shafts; }
 
 TracingFrame Occluder::frame() const { return {tracer_->faces->centre, tracer_->faces->scale}; }
 
-Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings)
+Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings, Reflections reflections)
     : tracer_(std::make_unique<Tracer>(
-          scene, blockers,
-          std::make_shared<const TracedFaces>(scene, never_met(blockers, scene), std::move(coverings)))) {}
+          scene, blockers, std::make_shared<const TracedFaces>(scene, never_met(blockers, scene), std::move(coverings)),
+          lets_through(blockers) ? SpecularFaces(scene, reflections) : SpecularFaces())) {}
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, const Occluder& like)
-    : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces)) {
+    : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces, like.tracer_->specular)) {
   assert(lets_through(blockers));
 }
 Occluder::~Occluder() = default;
@@ -203,21 +204,29 @@ Occluder::Occluder(Occluder&&) noexcept = default;
 Occluder& Occluder::operator=(Occluder&&) noexcept = default;
 
 bool Occluder::can_occlude() const {
-  return !tracer_->blockers->planes.empty() || !tracer_->clear.empty() || tracer_->faces->covered_places.any();
+  return !tracer_->blockers->planes.empty() || !tracer_->specular.empty() || tracer_->faces->covered_places.any();
 }
 
 double Occluder::transmittance(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->clear.transmittance(polygon, direction);
+  return tracer_->specular.transmittance(polygon, direction);
 }
 
-double Occluder::held_share(PolygonIndex polygon) const { return tracer_->clear.held(polygon); }
+double Occluder::specular_reflectance(PolygonIndex polygon, const Vector& direction) const {
+  return tracer_->specular.reflectance(polygon, direction);
+}
+
+Vector Occluder::mirrored(PolygonIndex polygon, const Vector& direction) const {
+  return tracer_->specular.mirrored(polygon, direction);
+}
+
+double Occluder::held_share(PolygonIndex polygon, Side side) const { return tracer_->specular.held(polygon, side); }
 
 double Occluder::relative_held(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->clear.relative_held(polygon, direction);
+  return tracer_->specular.relative_held(polygon, direction);
 }
 
 Vector Occluder::held_direction(PolygonIndex polygon, double u, double v) const {
-  return tracer_->clear.held_direction(polygon, u, v);
+  return tracer_->specular.held_direction(polygon, u, v);
 }
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
@@ -264,26 +273,40 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     const bool grazes = std::abs(cosine) < 1e-3;
     const double distance =
         (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->faces->scale;
-    hits[k] =
-        Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance};
+    hits[k] = Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance,
+                  ray.direction};
   }
   return hits;
 }
 
-// Each time that a ray meets a clear polygon it goes on from there with the probability of its transmittance.
+namespace {
+
+// A ray from a specular polygon that has met it, and how many reflections are behind it; nothing where it was kept.
+std::optional<Ray> onward(const Occluder& occluder, const Hit& hit, double drawn) {
+  const double passing = occluder.transmittance(hit.polygon, hit.direction);
+  if (drawn < passing) return Ray{hit.point, hit.direction, hit.polygon};
+  if (drawn >= passing + occluder.specular_reflectance(hit.polygon, hit.direction)) return {};
+  return Ray{hit.point, occluder.mirrored(hit.polygon, hit.direction), hit.polygon};
+}
+
+}  // namespace
+
+// Each time that a ray meets a specular polygon it goes on from there with the probability of its transmittance, or of
+// its reflectance.
 std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                           std::span<const std::size_t> keys) const {
   assert(keys.empty() || keys.size() == rays.size());
   std::vector<std::optional<Hit>> hits = first_hits(rays);
-  if (tracer_->clear.empty()) return hits;
+  if (tracer_->specular.empty()) return hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    for (std::uint64_t crossing = 0; hits[k] && crossing < Crossed::most; ++crossing) {
-      const double passing = transmittance(hits[k]->polygon, rays[k].direction);
-      if (hash({seed, keys.empty() ? k : keys[k], crossing}) * 0x1p-32 >= passing) break;
-      const double before = hits[k]->distance;
-      const Ray onward{hits[k]->point, rays[k].direction, hits[k]->polygon};
-      hits[k] = first_hits({&onward, 1}).front();
-      if (hits[k]) hits[k]->distance += before;
+    for (std::uint64_t meeting = 0; hits[k] && meeting < Crossed::most; ++meeting) {
+      const Hit before = *hits[k];
+      const auto ray = onward(*this, before, hash({seed, keys.empty() ? k : keys[k], meeting}) * 0x1p-32);
+      if (!ray) break;
+      hits[k] = first_hits({&*ray, 1}).front();
+      if (!hits[k]) break;
+      hits[k]->distance += before.distance;
+      hits[k]->reflections = before.reflections + (ray->direction == before.direction ? 0 : 1);
     }
   }
   return hits;

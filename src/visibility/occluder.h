@@ -4,6 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "scene/coverings.h"
+#include "scene/specular_faces.h"
 #include "visibility/shaft.h"
 
 #include <array>
@@ -51,11 +52,13 @@ struct Hit {
   PolygonIndex polygon = no_polygon;
   Side side = Side::front;  ///< the side of the polygon that was hit
   Point point;
-  double distance = 0;  ///< metres from the ray's origin
+  double distance = 0;                ///< metres from the ray's origin, along its way
+  Vector direction = Vector::Zero();  ///< unit, in which the ray arrives
+  std::uint32_t reflections = 0;      ///< on the way, as at mirrors
 };
 
 /// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides, but for clear
-/// ones, which let light through as a ClearFace does. Immutable and safe to use from
+/// ones, which let light through as a SpecularFace does. Immutable and safe to use from
 /// several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
 /// extent in double; a hit counts only if the plane of the polygon separates the two ends of the ray in double, by more
 /// than 1e-9 of the extent at each end. So there is no offset to choose: a surface never shades itself or its neighbour
@@ -74,10 +77,11 @@ class Occluder {
     none          ///< none: as if nothing stood in the way
   };
 
-  explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {});
+  explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {},
+                    Reflections reflections = Reflections::kept);
 
   /// Of the same scene as another one that rays meet all polygons of, and with its coverings, but with other blockers:
-  /// neither of the two may be `opaque` or `clear`. What both need is there once.
+  /// neither of the two may be `opaque` or `clear`. What both need is there once, and reflections are followed alike.
   Occluder(const Scene& scene, Blockers blockers, const Occluder& like);
   ~Occluder();
   Occluder(Occluder&&) noexcept;
@@ -97,8 +101,15 @@ class Occluder {
   /// not let light through clear polygons.
   double transmittance(PolygonIndex polygon, const Vector& direction) const;
 
-  /// The share of light from all directions alike that a polygon keeps: 1 if it is opaque.
-  double held_share(PolygonIndex polygon) const;
+  /// The share of light in a unit direction that a polygon reflects as a mirror does; 0 where it does not, or
+  /// reflections are not followed.
+  double specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
+
+  /// The unit direction of a ray after it was reflected at a polygon as at a mirror.
+  Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
+
+  /// The share of light from all directions alike that a side of a polygon keeps: 1 but for clear ones and mirrors.
+  double held_share(PolygonIndex polygon, Side side) const;
 
   /// The share of light in a unit direction that a polygon keeps, over held_share(): 1 if it is opaque.
   double relative_held(PolygonIndex polygon, const Vector& direction) const;
@@ -128,9 +139,10 @@ class Occluder {
   /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
-  /// The same, but a ray goes through a clear polygon with the probability of its transmittance at the ray's angle,
-  /// drawn for each: so in the mean hits count as the polygons hold back light. Rays with the same key and seed go
-  /// through alike; without `keys` each has its place as its key.
+  /// The same, but a ray goes through a clear polygon with the probability of its transmittance at the ray's angle, and
+  /// is reflected with that of what the polygon, or a mirror, reflects, drawn for each: so in the mean hits count as
+  /// the polygons hold back light. Rays with the same key and seed go on alike; without `keys` each has its place as
+  /// its key.
   std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                   std::span<const std::size_t> keys = {}) const;
 

@@ -17,6 +17,13 @@ bool has_openings(const Scene& scene) {
   return false;
 }
 
+bool has_mirrors(const Scene& scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 // What is made when it is first asked for.
@@ -25,11 +32,13 @@ struct Tracing::Later {
   Shared all, opaque, clear;
 };
 
-Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers between_patches)
+Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers between_patches, Reflections reflections)
     : coverings_(std::move(coverings)),
       kind_(between_patches),
       has_openings_(has_openings(scene)),
-      between_patches_(std::make_shared<const Occluder>(scene, between_patches, coverings_)),
+      has_specular_faces_(has_openings_ || has_mirrors(scene)),
+      reflections_(reflections),
+      between_patches_(std::make_shared<const Occluder>(scene, between_patches, coverings_, reflections)),
       later_(std::make_unique<Later>()) {}
 
 Tracing::~Tracing() = default;

@@ -12,10 +12,17 @@ namespace patchlight {
 class Tracing {
  public:
   explicit Tracing(const Scene& scene, Coverings coverings = {},
-                   Occluder::Blockers between_patches = Occluder::Blockers::inside_hull);
+                   Occluder::Blockers between_patches = Occluder::Blockers::inside_hull,
+                   Reflections reflections = Reflections::kept);
   ~Tracing();
 
   const Coverings& coverings() const { return coverings_; }
+
+  /// Whether light goes on that mirrors and clear faces reflect.
+  Reflections reflections() const { return reflections_; }
+
+  /// True when there are mirrors or clear faces.
+  bool has_specular_faces() const { return has_specular_faces_; }
 
   /// For rays between points of patches.
   const Occluder& between_patches() const { return *between_patches_; }
@@ -35,6 +42,8 @@ class Tracing {
   Coverings coverings_;
   Occluder::Blockers kind_;
   bool has_openings_;
+  bool has_specular_faces_;
+  Reflections reflections_;
   std::shared_ptr<const Occluder> between_patches_;
   std::unique_ptr<Later> later_;
 };

@@ -4,7 +4,7 @@
 #include "mesh/mesher.h"
 #include "render/render.h"
 #include "render/smooth.h"
-#include "scene/clear_faces.h"
+#include "scene/specular_faces.h"
 #include "scene/transmittance.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
@@ -50,7 +50,7 @@ Material glass(double transmittance, double reflectance, double exitance = 0) {
 double held_by(double transmittance) {
   const Scene scene = with_quad(empty_scene({glass(transmittance, 0)}),
                                 {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
-  return ClearFaces(scene).held(0);
+  return SpecularFaces(scene).held(0, Side::front);
 }
 
 // An upright rectangle in the plane at x, whose front looks to -x or +x.

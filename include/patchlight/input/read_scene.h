@@ -12,15 +12,15 @@ namespace patchlight {
 
 /// A change to materials, applied after reading: "light.radiance=17,12,4".
 struct MaterialSetting {
-  enum class Quantity { reflectance, exitance, radiance, transmittance, index };
+  enum class Quantity { reflectance, exitance, radiance, transmittance, index, specular_reflectance };
   std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
   Spectrum value;                       ///< one value stands for all bands; an index has one
   std::string where = "read.settings";  ///< where it is asked for, for messages
 };
 
-/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance=, .transmittance=, or
-/// .index= with one value.
+/// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance=, .transmittance=,
+/// .specular_reflectance=, or .index= with one value.
 /// \throws InputError naming read.settings.
 MaterialSetting parse_material_setting(const std::string& text);
 

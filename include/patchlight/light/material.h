@@ -13,7 +13,8 @@ using MaterialIndex = std::uint32_t;
 /// The index of refraction of window glass.
 inline constexpr double usual_index = 1.52;
 
-/// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.
+/// A surface that scatters diffusely (Lambertian), and may let light through or reflect it as a mirror besides; all
+/// spectra have the scene's number of bands.
 struct Material {
   std::string name;
   Spectrum reflectance;      ///< rho, in [0, 1]
@@ -22,6 +23,8 @@ struct Material {
                              ///< through the glass of a window; empty or 0: opaque
   double index = usual_index;  ///< n, 1 or more: the index of refraction, by which a clear material lets less through
                                ///< at an angle
+  Spectrum specular_reflectance{};  ///< in [0, 1]: the share of light that is reflected as by a mirror, at all angles
+                                    ///< alike; empty or 0: none, but for what a clear material reflects by its index
 };
 
 }  // namespace patchlight

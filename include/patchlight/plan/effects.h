@@ -16,11 +16,12 @@ enum class Effect : std::uint8_t {
   luminaires,       ///< lamps that are no polygons
   sun,
   sky,
-  closure,  ///< correction of form factors so that rows sum up to what is seen
-  sheets,   ///< what clear faces reflect as mirrors do and, of light between patches, let through by band; not
-            ///< simulated, so below
-  mirrors,
-  glass
+  mirrors,         ///< light that mirrors and clear faces reflect without scattering it
+  closure,         ///< correction of form factors so that rows sum up to what is seen
+  bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors; not
+                   ///< simulated, so below
+  gloss,           ///< of materials that a file says are partly mirrors
+  glass            ///< of materials that a file says are transparent
 };
 
 /// The effects that a user may force or skip, in this order: all but the last three.

@@ -123,6 +123,9 @@ bool has_point_or_daylight(const Scene& scene);
 /// True when the polygon is a clear opening: one of its sides has a transmittance above 0 in some band.
 bool is_opening(const Scene& scene, PolygonIndex polygon);
 
+/// True when this side of the polygon is a mirror: its specular reflectance is above 0 in some band.
+bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side);
+
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
 /// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
 /// whose files do not say.
@@ -143,8 +146,8 @@ void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
 /// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
-/// transmittance not negative and with the reflectance at most 1, exitance finite and not negative. \throws InputError
-/// naming the file and line, or the material.
+/// transmittance or specular reflectance not negative and with the reflectance at most 1, not both of them, exitance
+/// finite and not negative. \throws InputError naming the file and line, or the material.
 void check(const Scene& scene);
 
 }  // namespace patchlight

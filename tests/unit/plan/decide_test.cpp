@@ -116,13 +116,14 @@ TEST(Decide, DaylightOnlyWhereSomethingSeesOut) {
 
 TEST(Decide, NamesWhatIsNotSimulatedOnlyWhereItIs) {
   EffectFacts facts = usual_facts();
-  for (const Effect effect : {Effect::sheets, Effect::mirrors, Effect::glass}) {
+  for (const Effect effect : {Effect::bands_of_panes, Effect::gloss, Effect::glass}) {
     EXPECT_THROW(decision(facts, effect), std::out_of_range);
   }
-  facts.openings = 3;
-  facts.mirrors = 2;
+  facts.coloured_specular = 3;
+  facts.gloss = 2;
   facts.glass = 1;
-  for (const auto& [effect, count] : {std::pair{Effect::sheets, "3"}, {Effect::mirrors, "2"}, {Effect::glass, "1"}}) {
+  for (const auto& [effect, count] :
+       {std::pair{Effect::bands_of_panes, "3"}, {Effect::gloss, "2"}, {Effect::glass, "1"}}) {
     EXPECT_FALSE(is_on(facts, effect));
     EXPECT_NE(decision(facts, effect).reason.find(std::string("not simulated: ") + count), std::string::npos);
   }

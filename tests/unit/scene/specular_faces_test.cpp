@@ -1,4 +1,4 @@
-#include "scene/clear_faces.h"
+#include "scene/specular_faces.h"
 
 #include "scene/transmittance.h"
 #include "support/scenes.h"
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight::clear_faces_test {
+namespace patchlight::specular_faces_test {
 namespace {
 
 using namespace test;
@@ -19,9 +19,9 @@ Scene coloured_pane(const Spectrum& transmittance) {
   return with_quad(std::move(scene), {Point(0, 0, 1), Point(1, 0, 1), Point(1, 1, 1), Point(0, 1, 1)}, 0);
 }
 
-TEST(ClearFace, IsTheMeanOfItsPanesByLuminance) {
+TEST(SpecularFace, IsTheMeanOfItsPanesByLuminance) {
   const Spectrum stated = rgb(0.9, 0.5, 0.2);
-  const ClearFace face(coloured_pane(stated), 1);
+  const SpecularFace face(coloured_pane(stated), 1);
   for (const double cosine : {1.0, 0.6, 0.1}) {
     const double expected = 0.2126 * transmittance(pane_of(1.52, 0.9), cosine) +
                             0.7152 * transmittance(pane_of(1.52, 0.5), cosine) +
@@ -30,15 +30,15 @@ TEST(ClearFace, IsTheMeanOfItsPanesByLuminance) {
   }
 }
 
-TEST(ClearFace, TakesHalfOfEachSide) {
+TEST(SpecularFace, TakesHalfOfEachSide) {
   Scene scene = coloured_pane(rgb(0.8, 0.8, 0.8));
   scene.polygons[1].back_material = 1;
-  EXPECT_NEAR(ClearFace(scene, 1).transmittance(1), 0.4, 1e-14);
+  EXPECT_NEAR(SpecularFace(scene, 1).transmittance(1), 0.4, 1e-14);
 }
 
-TEST(ClearFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
+TEST(SpecularFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
   // 2 int mu w(mu) dmu = 1 by Simpson's rule, which has the fourth order: the rest is that of the 1,024 steps.
-  const ClearFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
+  const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int intervals = 4096;
   double sum = 0;
   for (int k = 0; k <= intervals; ++k) {
@@ -47,14 +47,14 @@ TEST(ClearFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
     sum += weight / (3 * intervals) * 2 * mu * face.relative_held(mu);
   }
   EXPECT_NEAR(sum, 1, 1e-5);
-  EXPECT_GT(face.held(), 0.2 + 0.05) << "less gets through at an angle";
-  EXPECT_NEAR(hemispherical_held({pane_of(1.52, 0.8)})[0], face.held(), 1e-14);
+  EXPECT_GT(face.held(Side::front), 0.2 + 0.05) << "less gets through at an angle";
+  EXPECT_NEAR(hemispherical_held({pane_of(1.52, 0.8)})[0], face.held(Side::front), 1e-14);
 }
 
-TEST(ClearFace, SamplesDirectionsAsItHoldsLight) {
+TEST(SpecularFace, SamplesDirectionsAsItHoldsLight) {
   // The mean of any f over these directions is 2 int f mu w dmu: of f = 1 / w, where all is by the cosine, 1; of f = mu
   // / w it is 2 / 3.
-  const ClearFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
+  const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int samples = 100000;
   double one = 0;
   double cosine = 0;
@@ -67,17 +67,17 @@ TEST(ClearFace, SamplesDirectionsAsItHoldsLight) {
   EXPECT_NEAR(cosine, 2.0 / 3, 1e-4);
 }
 
-TEST(ClearFaces, KnowWhichPolygonsAreClear) {
-  const ClearFaces faces(coloured_pane(rgb(0.8, 0.8, 0.8)));
+TEST(SpecularFaces, KnowWhichPolygonsAreClear) {
+  const SpecularFaces faces(coloured_pane(rgb(0.8, 0.8, 0.8)));
   EXPECT_FALSE(faces.empty());
-  EXPECT_EQ(faces.held(0), 1);
+  EXPECT_EQ(faces.held(0, Side::front), 1);
   EXPECT_EQ(faces.transmittance(0, Vector::UnitZ()), 0);
   EXPECT_EQ(faces.relative_held(0, Vector::UnitZ()), 1);
   EXPECT_EQ(faces.relative_held(no_polygon, Vector::UnitZ()), 1);
   EXPECT_NEAR(faces.transmittance(1, -Vector::UnitZ()), 0.8, 1e-14);
   EXPECT_LT(faces.transmittance(1, Vector(0.8, 0, 0.6)), 0.78);
-  EXPECT_TRUE(ClearFaces(cube_room(0.5, 1)).empty());
+  EXPECT_TRUE(SpecularFaces(cube_room(0.5, 1)).empty());
 }
 
 }  // namespace
-}  // namespace patchlight::clear_faces_test
+}  // namespace patchlight::specular_faces_test

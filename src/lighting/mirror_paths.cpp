@@ -1,0 +1,80 @@
+#include "lighting/mirror_paths.h"
+
+#include <utility>
+
+namespace patchlight {
+
+// The places at the mirrors of a chain where light on its way from one end of a segment to the other is reflected.
+struct MirrorPaths::Way {
+  std::size_t segment = 0;
+  std::vector<Point> places;
+};
+
+namespace {
+
+// Places nearer to a mirror's plane than this, in metres, are on it: the receiver is the mirror.
+constexpr double least_height = 1e-9;
+
+}  // namespace
+
+MirrorPaths::MirrorPaths(const Scene& scene)
+    : chains_(mirror_chains(scene)), sides_(scene), bands_(number_of_bands(scene)), flat_(scene.polygons.size()) {
+  for (const MirrorChain& chain : chains_.chains) {
+    const PolygonIndex p = chain.mirrors.back().polygon;
+    if (flat_[p].corners.empty()) flat_[p] = flat_polygon(corner_points(scene, p));
+  }
+}
+
+// From the last mirror to the first: the straight line from the receiver's image behind a mirror to what light goes to
+// from there.
+std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::span<const Segment> segments) const {
+  std::vector<Way> found;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    Point image = chain.image * segments[k].from;
+    Point onward = segments[k].to;
+    Way way{k, std::vector<Point>(chain.mirrors.size())};
+    bool meets_all = true;
+    for (std::size_t m = chain.mirrors.size(); m-- > 0 && meets_all;) {
+      const MirrorSide& mirror = chain.mirrors[m];
+      const double before = mirror.normal.dot(onward - mirror.on_plane);
+      const double behind = -mirror.normal.dot(image - mirror.on_plane);
+      meets_all = before > least_height && behind > least_height;
+      if (!meets_all) break;
+      way.places[m] = image + behind / (before + behind) * (onward - image);
+      meets_all = contains(flat_[mirror.polygon], way.places[m]);
+      image += 2 * behind * mirror.normal;
+      onward = way.places[m];
+    }
+    if (meets_all) found.push_back(std::move(way));
+  }
+  return found;
+}
+
+Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& paths,
+                                 std::span<const Segment> segments) const {
+  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), bands_);
+  const std::vector<Way> found = ways(chain, segments);
+  if (found.empty()) return share;
+  Field along = Field::Ones(static_cast<Eigen::Index>(found.size()), bands_);
+  for (std::size_t m = 0; m <= chain.mirrors.size(); ++m) {
+    std::vector<Segment> parts;
+    for (std::size_t w = 0; w < found.size(); ++w) {
+      const Segment& whole = segments[found[w].segment];
+      const bool is_first = m == 0;
+      const bool is_last = m == chain.mirrors.size();
+      const Segment part{is_first ? whole.from : found[w].places[m - 1], is_last ? whole.to : found[w].places[m],
+                         is_first ? whole.from_polygon : chain.mirrors[m - 1].polygon,
+                         is_last ? whole.to_polygon : chain.mirrors[m].polygon};
+      parts.push_back(part);
+      if (is_last) continue;
+      const Vector direction = (part.to - part.from).normalized();
+      along.row(static_cast<Eigen::Index>(w)) *= sides_.specular_reflectance(chain.mirrors[m].polygon, direction);
+    }
+    along *= paths.transmittance(parts);
+  }
+  for (std::size_t w = 0; w < found.size(); ++w)
+    share.row(static_cast<Eigen::Index>(found[w].segment)) = along.row(static_cast<Eigen::Index>(w));
+  return share;
+}
+
+}  // namespace patchlight

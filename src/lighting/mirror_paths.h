@@ -1,0 +1,43 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+
+#include "lighting/light_paths.h"
+#include "lighting/mirror_chains.h"
+#include "visibility/flat_polygon.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// How much light gets from one point to another by way of mirrors: the product of what these reflect and of what
+/// LightPaths lets through between them.
+class MirrorPaths {
+ public:
+  explicit MirrorPaths(const Scene& scene);
+
+  const std::vector<MirrorChain>& chains() const { return chains_.chains; }
+
+  /// The largest share of light that a chain which is left out would reflect.
+  double cut_off() const { return chains_.cut_off; }
+
+  /// Per segment (row), from a receiver to a source, and band (column), by way of the mirrors of a chain: 0 where the
+  /// straight line from the receiver's image to the source misses one of them.
+  Field transmittance(const MirrorChain& chain, const LightPaths& paths, std::span<const Segment> segments) const;
+
+  /// What a polygon reflects, PaneSides::specular_reflectance().
+  const PaneSides& sides() const { return sides_; }
+
+ private:
+  struct Way;
+  std::vector<Way> ways(const MirrorChain& chain, std::span<const Segment> segments) const;
+
+  MirrorChains chains_;
+  PaneSides sides_;
+  Eigen::Index bands_;
+  std::vector<FlatPolygon> flat_;  // per polygon; empty where it is no mirror
+};
+
+}  // namespace patchlight

@@ -1,0 +1,96 @@
+#include "lighting/mirror_rays.h"
+
+#include "base/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+
+namespace patchlight {
+namespace {
+
+// A straight line crosses no more clear faces than this.
+constexpr int most_faces_crossed = 64;
+
+}  // namespace
+
+MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing)
+    : sides_(sides), occluder_(tracing.all_faces(scene)) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    if (sides.is_specular(p)) targets_.push_back(opening_at(scene, p));
+}
+
+// Roughly as the solid angle of each if it were turned to the receiver.
+MirrorView::Aim MirrorView::aim_from(const SurfacePoint& at) const {
+  Aim aim;
+  double sum = 0;
+  for (const Opening& target : targets_) {
+    double rise = 0;
+    for (const auto& triangle : target.triangles)
+      for (const Point& corner : triangle) rise = std::max(rise, at.normal.dot(corner - at.point));
+    const double weight = rise > 0 && target.polygon != at.polygon
+                              ? target.area / ((target.centre - at.point).squaredNorm() + target.area)
+                              : 0;
+    aim.probabilities.push_back(weight);
+    sum += weight;
+  }
+  if (!(sum > 0)) return {};
+  for (double& probability : aim.probabilities) probability /= sum;
+  return aim;
+}
+
+// 1/sr
+double MirrorView::Aim::density(const MirrorView& view, const SurfacePoint& at, const Vector& direction) const {
+  double density = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    const Opening& target = view.targets_[k];
+    const std::optional<double> distance = distance_to(target, at.point, direction);
+    const double facing = std::abs(target.normal.dot(direction));
+    if (distance && facing > 0) density += probabilities[k] * *distance * *distance / (facing * target.area);
+  }
+  return density;
+}
+
+// Straight on, through clear faces.
+void MirrorView::follow(const SurfacePoint& at, const Vector& direction, double per_density,
+                        std::vector<MirrorRay>& into) const {
+  Ray ray{at.point, direction, at.polygon};
+  Spectrum weight;
+  for (int crossing = 0; crossing < most_faces_crossed; ++crossing) {
+    const std::optional<Hit> hit = occluder_.first_hits({&ray, 1}).front();
+    if (!hit || !sides_.is_specular(hit->polygon)) return;
+    const Spectrum reflected = sides_.specular_reflectance(hit->polygon, direction);
+    if (weight.size() == 0) weight = Spectrum::Constant(reflected.size(), per_density);
+    if ((reflected > 0).any())
+      into.push_back({{hit->point, occluder_.mirrored(hit->polygon, direction), hit->polygon}, weight * reflected});
+    if (!sides_.is_clear(hit->polygon)) return;
+    weight *= sides_.transmittance(hit->polygon, direction);
+    ray = {hit->point, direction, hit->polygon};
+  }
+}
+
+void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
+                          std::vector<MirrorRay>& into) const {
+  const Aim aim = aim_from(at);
+  if (aim.probabilities.empty()) return;
+  const std::size_t half = samples.size() / 2;
+  for (std::size_t k = 0; k < 2 * half; ++k) {
+    const auto& [u, v, s, t] = samples[k];
+    Vector direction;
+    if (k < half) {
+      direction = cosine_direction(at.normal, s, t);
+    } else {
+      const Choice chosen = choose(aim.probabilities, s);
+      direction = (point_of(targets_[chosen.index], chosen.rest, t) - at.point).normalized();
+    }
+    const double cosine = at.normal.dot(direction);
+    if (!(cosine > 0)) continue;
+    const double density = cosine / std::numbers::pi + aim.density(*this, at, direction);
+    follow(at, direction, cosine / (static_cast<double>(half) * density), into);
+  }
+}
+
+}  // namespace patchlight

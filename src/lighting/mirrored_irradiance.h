@@ -1,0 +1,49 @@
+#pragma once
+
+#include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
+
+#include "lighting/direct_irradiance.h"
+#include "lighting/lighting.h"
+#include "lighting/mirror_paths.h"
+#include "lighting/mirror_rays.h"
+
+#include <array>
+#include <span>
+
+namespace patchlight {
+
+/// What a scene's mirrors and clear faces do to light that lamps, luminaires, sun and sky send over them.
+struct Mirrors {
+  MirrorPaths paths;
+  MirrorView view;
+
+  Mirrors(const Scene& scene, const Tracing& tracing);
+  Mirrors(const Mirrors&) = delete;  // the view refers to the paths
+};
+
+/// A triangle, whose last corner comes twice, or a convex quadrilateral that emits from its front.
+struct LampFace {
+  std::array<Point, 4> corners;
+  Vector normal;  ///< unit
+  double area = 0;
+  PolygonIndex polygon = no_polygon;
+  Spectrum exitance;  ///< W/m^2
+};
+
+/// The triangles and convex quadrilaterals of a side of a polygon that emits.
+std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side side);
+
+/// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
+/// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over one mirror.
+/// `lighting` must have mirrors; it is sampled as direct_irradiance() samples. docs/theory.md section 11.
+/// O(patches x chains x lights x lamp_samples). \throws Cancelled.
+DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
+                                     const LightingOptions& options = {}, const Observer& observer = {});
+
+/// Irradiance at points, with 16 times as many samples.
+DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
+                                     std::span<const SurfacePoint> points, const LightingOptions& options = {},
+                                     const Observer& observer = {});
+
+}  // namespace patchlight

@@ -1,0 +1,145 @@
+#include "scene/specular_faces.h"
+
+#include "base/sampling.h"
+#include "scene/transmittance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+constexpr std::uint32_t not_specular = ~0U;
+
+}  // namespace
+
+SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections)
+    : reflections_(reflections) {
+  const Bands bands = bands_of(scene);
+  const bool is_clear = is_opening(scene, polygon);
+  for (const Side side : {Side::front, Side::back}) {
+    const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
+    const std::vector<Pane> panes = panes_of(material);
+    for (std::size_t band = 0; band < panes.size() && is_clear; ++band) {
+      const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
+        return part.pane.index == panes[band].index && part.pane.internal == panes[band].internal;
+      });
+      const double weight = bands[band].luminous_weight / 2;
+      if (found == parts_.end()) {
+        parts_.push_back({weight, panes[band]});
+      } else {
+        found->weight += weight;
+      }
+    }
+    if (is_clear || reflections == Reflections::kept) continue;
+    const auto s = static_cast<std::size_t>(side);
+    for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band)
+      mirrored_[s] += bands[static_cast<std::size_t>(band)].luminous_weight * material.specular_reflectance[band];
+    held_[s] = held_of(mirrored_[s]);
+  }
+  if (is_clear) keep_what_panes_hold();
+}
+
+void SpecularFace::keep_what_panes_hold() {
+  held_upto_.push_back(0);
+  for (std::size_t k = 0; k < cosine_steps; ++k)
+    held_upto_.push_back(held_upto_.back() + irradiance_of_step(k) * kept(cosine_of_step(k)));
+  held_.fill(held_upto_.back());
+  for (double& upto : held_upto_) upto /= held_[0];
+}
+
+double SpecularFace::transmittance(double cosine) const {
+  double sum = 0;
+  for (const Part& part : parts_) sum += part.weight * patchlight::transmittance(part.pane, cosine);
+  return sum;
+}
+
+double SpecularFace::reflected_by_panes(double cosine) const {
+  if (reflections_ == Reflections::kept) return 0;
+  double sum = 0;
+  for (const Part& part : parts_) sum += part.weight * specular_reflectance(part.pane, cosine);
+  return sum;
+}
+
+double SpecularFace::reflectance(Side side, double cosine) const {
+  return parts_.empty() ? mirrored_[static_cast<std::size_t>(side)] : reflected_by_panes(cosine);
+}
+
+double SpecularFace::kept(double cosine) const { return held_of(transmittance(cosine) + reflected_by_panes(cosine)); }
+
+double SpecularFace::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
+
+// What a mirror keeps is the same at all angles.
+double SpecularFace::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
+
+// Within a step the density is taken as even.
+double SpecularFace::held_cosine(double u) const {
+  if (parts_.empty()) return std::sqrt(u);
+  const auto next = std::upper_bound(held_upto_.begin() + 1, held_upto_.end() - 1, u);
+  const double before = *(next - 1);
+  const auto step = static_cast<double>(next - held_upto_.begin() - 1);
+  return std::clamp((step + (u - before) / (*next - before)) / cosine_steps, 0.0, 1.0);
+}
+
+SpecularFaces::SpecularFaces(const Scene& scene, Reflections reflections) {
+  std::map<std::pair<MaterialIndex, MaterialIndex>, std::uint32_t> known;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!is_opening(scene, p) && !is_mirror(scene, p, Side::front) && !is_mirror(scene, p, Side::back)) continue;
+    if (faces_.empty()) {
+      of_polygon_.assign(scene.polygons.size(), not_specular);
+      normals_.assign(scene.polygons.size(), Vector::Zero());
+    }
+    const Polygon& polygon = scene.polygons[p];
+    const auto [place, is_new] = known.insert({{material_on(polygon, Side::front), material_on(polygon, Side::back)},
+                                               static_cast<std::uint32_t>(faces_.size())});
+    if (is_new) faces_.emplace_back(scene, p, reflections);
+    of_polygon_[p] = place->second;
+    normals_[p] = front_normal(scene, p);
+  }
+}
+
+const SpecularFace* SpecularFaces::at(PolygonIndex polygon) const {
+  if (polygon >= of_polygon_.size() || of_polygon_[polygon] == not_specular) return nullptr;
+  return &faces_[of_polygon_[polygon]];
+}
+
+double SpecularFaces::transmittance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularFace* const face = at(polygon);
+  return face ? face->transmittance(cosine_between(normals_[polygon], direction)) : 0;
+}
+
+double SpecularFaces::reflectance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularFace* const face = at(polygon);
+  if (!face) return 0;
+  const Side met = normals_[polygon].dot(direction) < 0 ? Side::front : Side::back;
+  return face->reflectance(met, cosine_between(normals_[polygon], direction));
+}
+
+Vector SpecularFaces::mirrored(PolygonIndex polygon, const Vector& direction) const {
+  const Vector& normal = normals_[polygon];
+  return direction - 2 * normal.dot(direction) * normal;
+}
+
+double SpecularFaces::held(PolygonIndex polygon, Side side) const {
+  const SpecularFace* const face = at(polygon);
+  return face ? face->held(side) : 1;
+}
+
+double SpecularFaces::relative_held(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularFace* const face = at(polygon);
+  return face ? face->relative_held(cosine_between(normals_[polygon], direction)) : 1;
+}
+
+Vector SpecularFaces::held_direction(PolygonIndex polygon, double u, double v) const {
+  const SpecularFace* const face = at(polygon);
+  if (!face) return square_to_cosine_hemisphere(u, v);
+  const double cosine = face->held_cosine(u);
+  const double sine = std::sqrt(1 - cosine * cosine);
+  const double angle = 2 * std::numbers::pi * v;
+  return {sine * std::cos(angle), sine * std::sin(angle), cosine};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include "light/pane.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// What becomes of light that a face reflects as a mirror does: the face keeps it, or it goes on.
+enum class Reflections : bool { kept, followed };
+
+/// A clear polygon or a mirror as light between patches meets it: one number for all bands, weighted as luminance is.
+/// What a clear one lets through and reflects is the same both ways, the mean of its two sides; each side of a mirror
+/// has a reflectance of its own, 0 if it is none. Cosines are those of the angle to its normal, in [0, 1].
+class SpecularFace {
+ public:
+  /// Of a polygon that is_opening(), or of which a side is_mirror().
+  SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections = Reflections::kept);
+
+  /// The share that goes straight through.
+  double transmittance(double cosine) const;
+
+  /// The share that goes on as from a mirror: 0 where reflections are not followed.
+  double reflectance(Side side, double cosine) const;
+
+  /// The share that a side keeps of light from all directions alike, weighted as irradiance is.
+  double held(Side side) const;
+
+  /// The share that is kept at an angle, over held(): its mean over the hemisphere, weighted as irradiance is, is 1.
+  double relative_held(double cosine) const;
+
+  /// The cosine that belongs to a number of [0, 1) if directions are distributed as what is kept of light from all
+  /// directions alike.
+  double held_cosine(double u) const;
+
+ private:
+  struct Part {
+    double weight = 0;
+    Pane pane;
+  };
+  void keep_what_panes_hold();
+  double kept(double cosine) const;
+  double reflected_by_panes(double cosine) const;
+
+  Reflections reflections_;
+  std::vector<Part> parts_;           // each pane once; none of a mirror
+  std::array<double, 2> mirrored_{};  // by the sides of a mirror
+  std::vector<double> held_upto_;     // of panes: the share of what is kept that comes at cosines up to k / steps
+  std::array<double, 2> held_{1, 1};  // of front and back
+};
+
+/// The clear polygons and mirrors of a scene; all others scatter or absorb all light that they meet. Directions are
+/// unit vectors, those in which light is seen: a front is met against its normal.
+class SpecularFaces {
+ public:
+  /// None.
+  SpecularFaces() = default;
+  explicit SpecularFaces(const Scene& scene, Reflections reflections = Reflections::kept);
+
+  bool empty() const { return faces_.empty(); }
+
+  /// SpecularFace::transmittance() of a polygon; 0 of all others.
+  double transmittance(PolygonIndex polygon, const Vector& direction) const;
+
+  /// SpecularFace::reflectance() of the side that is met; 0 of all others.
+  double reflectance(PolygonIndex polygon, const Vector& direction) const;
+
+  /// The direction in which a mirror is seen in another: that after the reflection at a polygon of this scene that is
+  /// specular.
+  Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
+
+  /// SpecularFace::held() of a side; 1 of all others.
+  double held(PolygonIndex polygon, Side side) const;
+
+  /// SpecularFace::relative_held() of a polygon; 1 of all others.
+  double relative_held(PolygonIndex polygon, const Vector& direction) const;
+
+  /// The direction, in a frame whose third axis is the polygon's normal, that belongs to (u, v) of the unit square if
+  /// directions are distributed as what the polygon keeps of light from all directions alike: of all but clear ones
+  /// square_to_cosine_hemisphere().
+  Vector held_direction(PolygonIndex polygon, double u, double v) const;
+
+ private:
+  const SpecularFace* at(PolygonIndex polygon) const;  // null: of all others
+
+  std::vector<SpecularFace> faces_;        // each pair of materials once
+  std::vector<std::uint32_t> of_polygon_;  // none where no polygon is specular, as normals
+  std::vector<Vector> normals_;            // of the fronts
+};
+
+}  // namespace patchlight
