@@ -42,7 +42,8 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
   Reading reading{zero, zero, zero, zero, zero, zero, zero};
   Spectrum heaviest = zero;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    const Spectrum unoccluded = sources[s].form_factor * radiosity.row(sources[s].patch);
+    Spectrum unoccluded = sources[s].form_factor * radiosity.row(sources[s].patch);
+    if (shares[s].colour.size() > 0) unoccluded *= shares[s].colour;
     reading.mean += unoccluded * shares[s].mean;
     reading.variance += unoccluded.square() * shares[s].variance;
     if (!(shares[s].variance > 0)) heaviest = heaviest.max(unoccluded / shares[s].rays);
@@ -87,8 +88,10 @@ std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<co
     const double b = second[s].rays / rays;
     const double mean = a * first[s].mean + b * second[s].mean;
     const Vector moment = a * first[s].mean * first[s].centre + b * second[s].mean * second[s].centre;
+    Spectrum colour = a * first[s].mean * first[s].colour + b * second[s].mean * second[s].colour;
+    if (mean > 0) colour /= mean;
     first[s] = {mean, a * a * first[s].variance + b * b * second[s].variance, rays,
-                mean > 0 ? Point(moment / mean) : Point(Point::Zero())};
+                mean > 0 ? Point(moment / mean) : Point(Point::Zero()), colour};
   }
   return first;
 }
@@ -146,7 +149,7 @@ Field SensorErrors::total() const {
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
-  const ShadowRays rays(mesh, occluder, options.seed);
+  const ShadowRays rays(mesh, occluder, options.seed, options.coloured);
   const Light light{mesh, radiosity, gradients(mesh, radiosity), options.errors};
   const double tolerance = on_plane_tolerance / occluder.frame().scale;
   std::vector<Reading> readings(sensors.size());

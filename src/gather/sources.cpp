@@ -53,6 +53,7 @@ struct Weights {
   double reached = 0;
   double all = 0;
   Vector moment = Vector::Zero();  // sum of reached points by their weights
+  Spectrum by_band = {};           // what is reached in each band, where these differ
 };
 
 // The ratio of what is reached to all, with its variance by the scatter of the replicates about it (Cochran 1977,
@@ -61,7 +62,9 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   double reached = 0;
   double all = 0;
   Vector moment = Vector::Zero();
+  Spectrum by_band = Spectrum::Zero(replicates[0].by_band.size());
   for (const Weights& one : replicates) {
+    by_band += one.by_band;
     reached += one.reached;
     all += one.all;
     moment += one.moment;
@@ -72,7 +75,8 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   for (const Weights& one : replicates) squares += std::pow(one.reached - mean * one.all, 2);
   const auto count = static_cast<double>(replicates.size());
   const Point centre = reached > 0 ? Point(moment / reached) : Point(Point::Zero());
-  return {mean, squares / (all * all) * count / (count - 1), rays, centre};
+  if (reached > 0) by_band /= reached;
+  return {mean, squares / (all * all) * count / (count - 1), rays, centre, by_band};
 }
 
 }  // namespace
@@ -107,8 +111,8 @@ RayCounts ray_counts(double rays) {
   return {replicates, (wanted + replicates - 1) / replicates};
 }
 
-ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed)
-    : mesh_(mesh), occluder_(occluder), seed_(seed), points_(scrambled_sobol(most_points, hash({seed}))) {}
+ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured)
+    : mesh_(mesh), occluder_(occluder), coloured_(coloured), seed_(seed), points_(scrambled_sobol(most_points, hash({seed}))) {}
 
 // Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
 ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> sources,
@@ -138,16 +142,22 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
                                                      std::span<const RayCounts> counts, std::uint32_t stage) const {
   const auto [segments, weights] = rays(sensor, sources, counts, stage);
   const std::vector<float> arriving = occluder_.transmittance(segments);
+  const Field by_band = coloured_ != nullptr ? coloured_->transmittance(segments) : Field();
   std::vector<VisibleShare> shares;
   std::size_t ray = 0;
   for (const RayCounts& count : counts) {
     std::array<Weights, most_replicates> replicates{};
+    for (Weights& replicate : replicates) replicate.by_band = Spectrum::Zero(by_band.cols());
     for (std::uint32_t r = 0; r < count.replicates; ++r) {
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
         const double reached = static_cast<double>(arriving[ray]) * weights[ray];
         replicates[r].reached += reached;
         replicates[r].moment += reached * segments[ray].to;
+        if (by_band.size() == 0 || !(reached > 0)) continue;
+        const Segment& segment = segments[ray];
+        const double sent = occluder_.relative_held(segment.to_polygon, (segment.to - segment.from).normalized());
+        replicates[r].by_band += weights[ray] * sent * by_band.row(static_cast<Eigen::Index>(ray));
       }
     }
     shares.push_back(share_of(std::span(replicates).first(count.replicates), count.replicates * count.each));

@@ -4,6 +4,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/sensor.h"
 
+#include "lighting/light_paths.h"
 #include "visibility/occluder.h"
 
 #include <array>
@@ -32,6 +33,7 @@ struct VisibleShare {
   double variance = 0;  ///< of the mean
   double rays = 0;
   Point centre = Point::Zero();  ///< of what is visible, as seen from the sensor, metres; where anything is
+  Spectrum colour = {};          ///< times which each band of the mean arrives; empty: 1
 };
 
 /// Shadow rays to a source: so many replicates of so many.
@@ -46,7 +48,8 @@ RayCounts ray_counts(double rays);
 /// Shadow rays from sensors to patches.
 class ShadowRays {
  public:
-  ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed);
+  /// `coloured` as GatherOptions has it.
+  ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured = nullptr);
 
   /// The visible shares of the sources. Stages of one sensor have unrelated random numbers.
   std::vector<VisibleShare> visible_shares(const Sensor& sensor, std::span<const Source> sources,
@@ -62,6 +65,7 @@ class ShadowRays {
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
+  const LightPaths* coloured_;
   std::uint64_t seed_;
   std::vector<std::array<double, 4>> points_;
 };

@@ -5,15 +5,18 @@
 #include "gather/doubtful_sensors.h"
 #include "gather/mirrored_gather.h"
 #include "gather/sensor_places.h"
+#include "lighting/light_paths.h"
 #include "lighting/mirrored_irradiance.h"
 #include "pipeline/radiosity_errors.h"
 #include "pipeline/ray_light.h"
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -53,6 +56,15 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
       all.row(row) = values.row(next++);
   }
   return all;
+}
+
+// What each band's light meets, where clear faces are coloured.
+std::optional<LightPaths> coloured_paths(const Scene& scene, const Tracing& tracing) {
+  const auto is_coloured = [](const Material& material) {
+    return material.transmittance.size() > 0 && (material.transmittance != material.transmittance[0]).any();
+  };
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), is_coloured)) return {};
+  return LightPaths(scene, tracing);
 }
 
 void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
@@ -99,8 +111,10 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
   const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.assembly.seed;
   const Tracing& tracing = *simulation.tracing;
-  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, tracing.all_faces(whole), sensors,
-                                                  {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
+  const std::optional<LightPaths> coloured = coloured_paths(whole, tracing);
+  GatheredIrradiance gathered = gather_irradiance(
+      simulation.mesh, sent, tracing.all_faces(whole), sensors,
+      {.seed = seed, .errors = radiosity_errors(simulation), .coloured = coloured ? &*coloured : nullptr}, observer);
   SensorErrors& errors = gathered.errors;
   // Light that is still under way, by how much is not known.
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;

@@ -10,6 +10,7 @@
 
 namespace patchlight {
 
+class LightPaths;
 class Occluder;
 
 /// What may be wrong with the radiosities that are gathered, per patch and band, W/m^2. Empty fields: nothing.
@@ -28,6 +29,7 @@ struct GatherOptions {
   double wanted_error = 0.01;  ///< relative standard error of a sensor
   std::uint64_t seed = 1;
   RadiosityErrors errors = {};
+  const LightPaths* coloured = nullptr;  ///< what each band's light meets on its way; null where all bands meet the same
 };
 
 /// Standard errors of irradiances by where they come from, W/m^2.

@@ -1,0 +1,244 @@
+#include "patchlight/base/error.h"
+#include "patchlight/simulate.h"
+#include "patchlight/views/sensors.h"
+
+#include "base/sampling.h"
+#include "form_factor/point_polygon.h"
+#include "scene/specular_faces.h"
+#include "support/scenes.h"
+#include "verify/path_tracer.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <utility>
+
+namespace patchlight::mirrors_test {
+namespace {
+
+using namespace test;
+
+Material mirror(double specular_reflectance, double exitance = 0) {
+  Material material = grey(0, exitance);
+  material.name = "mirror";
+  material.specular_reflectance = Spectrum::Constant(1, specular_reflectance);
+  return material;
+}
+
+Request fronts(PatchIndex patches) {
+  Request request;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
+  return request;
+}
+
+// A closed room of 4 x 3 x 2.5 m. Of its walls, that at low x is of material 1, and that at high x of material 2.
+Scene room(std::vector<Material> materials) {
+  Scene scene = empty_scene(std::move(materials));
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    scene = with_quad(std::move(scene), faces[k],
+                      k == 5   ? MaterialIndex{1}
+                      : k == 3 ? MaterialIndex{2}
+                               : MaterialIndex{0});
+  return scene;
+}
+
+// Looking down from below the ceiling, 1 m x 0.5 m.
+Scene with_lamp(Scene scene, double x, MaterialIndex material) {
+  return with_quad(std::move(scene),
+                   {Point(x, 1, 2.4), Point(x, 1.5, 2.4), Point(x + 1, 1.5, 2.4), Point(x + 1, 1, 2.4)}, material);
+}
+
+std::vector<Point> mirrored_at_low_x(std::vector<Point> points) {
+  for (Point& point : points) point.x() = -point.x();
+  return {points.rbegin(), points.rend()};
+}
+
+double on_floor(const Simulation& simulation, PatchIndex i) { return simulation.solution.irradiance(i, 0); }
+
+TEST(PlanarMirror, ShowsTheLampOnceMore) {
+  // Black walls: H = E (F(x, lamp) + R F(x, image of the lamp)), both by Lambert's formula. All of the wall is the
+  // mirror, so that no place of the floor sees less than all of the image.
+  const double R = 0.9;
+  Scene scene = with_lamp(room({grey(0), mirror(R), grey(0), grey(0, 10)}), 1.5, 3);
+  const std::vector<Point> lamp = corner_points(scene, 6);
+  SensorGroup group;
+  group.name = "floor";
+  for (const double x : {0.05, 0.7, 2.0, 3.5})
+    for (const double y : {0.3, 1.2, 2.9}) group.sensors.push_back({Point(x, y, 0), Vector::UnitZ()});
+  scene.sensors = {group};
+  const Simulation simulation = simulate(scene, fronts(400));
+  const auto expected_at = [&](const Point& x) {
+    const std::vector<Point> image = mirrored_at_low_x(lamp);
+    return 10 * (point_to_polygon(x, Vector::UnitZ(), lamp) + R * point_to_polygon(x, Vector::UnitZ(), image));
+  };
+  const Readings readings = read_sensors(scene, simulation).readings;
+  for (std::size_t k = 0; k < group.sensors.size(); ++k)
+    EXPECT_NEAR(readings.irradiance(static_cast<Eigen::Index>(k), 0) / expected_at(group.sensors[k].point), 1, 0.003);
+
+  // Patches: means, against those over 8 x 8 places, of errors below the mesh's.
+  const PatchRange floor = simulation.mesh.patches_on(0, Side::front);
+  double flux = 0, expected = 0;
+  for (PatchIndex i = floor.begin; i < floor.end; ++i) {
+    flux += simulation.mesh.area[i] * on_floor(simulation, i);
+    const PatchCorners corners = simulation.mesh.corner_points(i);
+    for (int u = 0; u < 8; ++u)
+      for (int v = 0; v < 8; ++v)
+        expected +=
+            simulation.mesh.area[i] / 64 * expected_at(square_to_quad(corners.points, (u + 0.5) / 8, (v + 0.5) / 8));
+  }
+  EXPECT_NEAR(flux / expected, 1, 0.003);
+}
+
+// Reflectances of the mirrors at both ends.
+class MirrorFurnace : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(MirrorFurnace, IsOne) {
+  // Walls emit 1 - rho, mirrors 1 - R: all light has the radiance 1 / pi, also between mirrors that face each other.
+  // What a mirror keeps is 1e-6 at least, and of 64 meetings on the way of a ray R^64 is left.
+  const auto [R, other] = GetParam();
+  const Scene scene = room({grey(0.6, 0.4), mirror(R, 1 - R), mirror(other, 1 - other)});
+  const Simulation simulation = simulate(scene, fronts(600));
+  EXPECT_EQ(simulation.plan.assembly.storage, Storage::rays);
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    const PolygonIndex p = simulation.mesh.polygon[i];
+    const double held = p == 5 ? 1 - R : p == 3 ? 1 - other : 1;
+    if (held < 0.01) continue;  // held at least 1e-6: no number of its own
+    EXPECT_NEAR(simulation.solution.radiosity(i, 0), held, 1e-3 * held) << p;
+  }
+  EXPECT_LT(simulation.balance.imbalance, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, MirrorFurnace,
+                         testing::Values(std::pair(0.9, 0.0), std::pair(0.99, 0.99), std::pair(0.5, 0.9),
+                                         std::pair(1.0, 0.0)));
+
+TEST(PlanarMirror, OfNoReflectanceIsABlackWall) {
+  const Scene black = with_lamp(room({grey(0.5), grey(0), grey(0.5), grey(0, 10)}), 1.5, 3);
+  const Scene dark = with_lamp(room({grey(0.5), mirror(0), grey(0.5), grey(0, 10)}), 1.5, 3);
+  const Simulation one = simulate(black, fronts(300));
+  const Simulation other = simulate(dark, fronts(300));
+  EXPECT_TRUE((one.solution.radiosity == other.solution.radiosity).all());
+}
+
+// A mirror of 2 x 1.2 m just before the wall at low x, a box before it, and a lamp.
+Scene furnished_with_mirror(double R) {
+  Scene scene = with_lamp(room({grey(0.6), grey(0.5), grey(0.3), grey(0, 10), mirror(R)}), 1.5, 3);
+  scene = with_quad(std::move(scene),
+                    {Point(0.01, 0.5, 0.8), Point(0.01, 2.5, 0.8), Point(0.01, 2.5, 2), Point(0.01, 0.5, 2)}, 4);
+  return with_box(std::move(scene), Point(0.5, 1, 0), Point(1, 1.6, 1.2), false);
+}
+
+// The means over whole faces, by paths that know neither patches nor images.
+TEST(PlanarMirror, LightsARoomAsPathsDo) {
+  const Scene scene = furnished_with_mirror(0.9);
+  const Simulation simulation = simulate(scene, fronts(3000));
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  for (const PolygonIndex p : {0U, 1U, 2U, 3U, 4U, 5U}) {
+    const std::vector<Point> corners = corner_points(scene, p);
+    const PathReceiver receiver{{corners[0], corners[1], corners[2], corners[3]}, p, Side::front};
+    const PathEstimate paths = trace_irradiance(scene, sides, {&receiver, 1}, {.paths = 1 << 15});
+    const PatchRange range = simulation.mesh.patches_on(p, Side::front);
+    double flux = 0, area = 0;
+    for (PatchIndex i = range.begin; i < range.end; ++i) {
+      flux += simulation.problem.area[i] * simulation.solution.irradiance(i, 0);
+      area += simulation.problem.area[i];
+    }
+    EXPECT_NEAR(flux / area / paths.irradiance(0, 0), 1, 0.01 + 4 * paths.standard_error(0, 0) / paths.irradiance(0, 0))
+        << p;
+  }
+}
+
+TEST(PlanarMirror, LosesNothing) {
+  const Simulation simulation = simulate(furnished_with_mirror(0.9), fronts(1500));
+  EXPECT_LT(simulation.balance.imbalance, 1e-3);
+  const Simulation dark = simulate(furnished_with_mirror(0), fronts(1500));
+  EXPECT_GT(simulation.solution.irradiance.mean(), 1.05 * dark.solution.irradiance.mean());
+}
+
+TEST(PlanarMirror, GivesTheSameBitsOnOneThreadAndOnTwo) {
+  Request request = fronts(500);
+  request.resources.threads = 1;
+  const Simulation one = simulate(furnished_with_mirror(0.9), request);
+  request.resources.threads = 2;
+  const Simulation two = simulate(furnished_with_mirror(0.9), request);
+  EXPECT_TRUE((one.solution.radiosity == two.solution.radiosity).all());
+}
+
+// A mirror on the sill throws the sun onto the ceiling: all of R E A sin(altitude) arrives there, on the patches where
+// geometry puts it. By 64 samples of each patch, 1 % of the flux.
+TEST(PlanarMirror, ThrowsTheSunOntoTheCeiling) {
+  Scene scene = empty_scene({grey(0), mirror(0.8)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 3), Point(0, 4, 3), Point(6, 4, 3), Point(6, 0, 3)});
+  scene = with_quad(std::move(scene), {Point(0, 1, 0), Point(0.4, 1, 0), Point(0.4, 3, 0), Point(0, 3, 0)}, 1);
+  const double altitude = 0.7;
+  scene.sun = Sun{Vector(-std::cos(altitude), 0, std::sin(altitude)), Spectrum::Constant(1, 800)};
+  const Simulation simulation = simulate(scene, fronts(2000));
+  const double shift = 3 / std::tan(altitude);
+  double flux = 0;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (simulation.mesh.polygon[i] != 0) continue;
+    const double H = simulation.solution.irradiance(i, 0);
+    flux += simulation.mesh.area[i] * H;
+    const Point& at = simulation.mesh.centroid[i];
+    const double edge = 0.2;
+    if (H > 0) {
+      EXPECT_GT(at.x(), shift - edge);
+      EXPECT_LT(at.x(), shift + 0.4 + edge);
+    }
+  }
+  EXPECT_NEAR(flux / (0.8 * 800 * std::sin(altitude) * 0.8), 1, 0.01);
+}
+
+// The cusp of a half cylinder's caustic: parallel light along the axis of a concave mirror of radius r meets it at half
+// of r. 64 strips, each of which throws what it gets onto the floor, flux E R sum A cos, less what meets the mirror
+// twice: only strips within 45 degrees of the axis are mirrors, whose light does not.
+TEST(ConcaveMirror, ThrowsACausticWhoseCuspIsAtHalfItsRadius) {
+  const double r = 1, height = 0.1, R = 0.9, slope = 0.1;
+  Scene scene = empty_scene({grey(0), mirror(R)});
+  scene =
+      with_quad(std::move(scene), {Point(-1.2, -1.5, 0), Point(1.5, -1.5, 0), Point(1.5, 1.5, 0), Point(-1.2, 1.5, 0)});
+  const Vector sun = Vector(1, 0, slope).normalized();
+  double expected = 0;
+  const int strips = 64;
+  const auto at = [&](int k, double z) {
+    const double angle = std::numbers::pi * (0.75 + 0.5 * k / strips);
+    return Point(r * std::cos(angle), r * std::sin(angle), z);
+  };
+  for (int k = 0; k < strips; ++k) {
+    const Quad strip{at(k, 0), at(k, height), at(k + 1, height), at(k + 1, 0)};
+    scene = with_quad(std::move(scene), strip, 1);
+    const Vector area = area_vector(std::vector<Point>(strip.begin(), strip.end()));
+    EXPECT_GT(area.x(), 0);
+    expected += 500 * R * area.dot(sun);
+  }
+  scene.sun = Sun{sun, Spectrum::Constant(1, 500)};
+  const Simulation with = simulate(scene, fronts(6000));
+  scene.materials[1].specular_reflectance.setZero();
+  const Simulation without = simulate(scene, fronts(6000));
+  double flux = 0, brightest = 0;
+  Point cusp = Point::Zero();
+  for (PatchIndex i = 0; i < with.mesh.size() && with.mesh.polygon[i] == 0; ++i) {
+    const double thrown = with.problem.direct_irradiance(i, 0) - without.problem.direct_irradiance(i, 0);
+    flux += with.mesh.area[i] * thrown;
+    if (thrown > brightest) brightest = thrown, cusp = with.mesh.centroid[i];
+  }
+  EXPECT_NEAR(flux / expected, 1, 0.01);
+  // Light falls by the slope on its way: from the upper half of the mirror some gets as far as the focus.
+  // arrives.
+  EXPECT_NEAR(cusp.x(), -r / 2, 0.06);
+  EXPECT_NEAR(cusp.y(), 0, 0.06);
+}
+
+TEST(Mirrors, AreRefusedWhereTheyReflectMoreThanArrives) {
+  Material bad = mirror(0.7);
+  bad.reflectance.setConstant(0.4);
+  EXPECT_THROW(simulate(room({grey(0.5, 1), bad, grey(0.5)}), fronts(100)), InputError);
+  Material both = mirror(0.5);
+  both.transmittance = Spectrum::Constant(1, 0.3);
+  EXPECT_THROW(simulate(room({grey(0.5, 1), both, grey(0.5)}), fronts(100)), InputError);
+}
+
+}  // namespace
+}  // namespace patchlight::mirrors_test
