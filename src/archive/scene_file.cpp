@@ -62,7 +62,8 @@ Json materials_part(const Scene& scene) {
                     {"reflectance", json_of(material.reflectance)},
                     {"exitance", json_of(material.exitance)},
                     {"transmittance", json_of(material.transmittance)},
-                    {"index", material.index}});
+                    {"index", material.index},
+                    {"second_face", material.second_face}});
   }
   return part;
 }
@@ -159,6 +160,7 @@ std::vector<Material> materials_of(const Json& json) {
     Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
                       spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance")),
                       entry.value("index", usual_index)};
+    material.second_face = entry.value("second_face", false);
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
                 (material.transmittance.size() == 0 || material.transmittance.size() == bands),

@@ -103,7 +103,7 @@ bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
-    facts.openings += is_opening(scene, p);
+    facts.openings += is_opening(scene, p) && !scene.materials[scene.polygons[p].material].second_face;
   }
   facts.luminaires = scene.luminaires.size();
   facts.sky = scene.sky.has_value();

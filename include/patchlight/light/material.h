@@ -3,6 +3,7 @@
 #include "patchlight/light/spectrum.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace patchlight {
@@ -13,6 +14,12 @@ using MaterialIndex = std::uint32_t;
 /// The index of refraction of window glass.
 inline constexpr double usual_index = 1.52;
 
+/// What a model file says of a material that it makes a pane.
+struct StatedPane {
+  std::string by;               ///< the statement, for messages: "d 0.3"
+  Spectrum opaque_reflectance;  ///< what the surface reflects if it is taken for opaque
+};
+
 /// A diffuse (Lambertian) surface; all spectra have the scene's number of bands.
 struct Material {
   std::string name;
@@ -22,6 +29,8 @@ struct Material {
                              ///< through the glass of a window; empty or 0: opaque
   double index = usual_index;  ///< n, 1 or more: the index of refraction, by which a clear material lets less through
                                ///< at an angle
+  std::optional<StatedPane> stated_pane{};  ///< where a model file makes it a pane, and no setting has another say
+  bool second_face = false;                 ///< made up, clear in full: that of the second faces of solid panes
 };
 
 }  // namespace patchlight
