@@ -121,7 +121,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
 }
 
 Scene with_options(Scene scene, const ReadOptions& options) {
-  scene = set_upright(with_settings(std::move(scene), options.settings), options);
+  scene = with_settings(std::move(scene), options.settings);
+  check(scene);
+  scene = set_upright(std::move(scene), options);
   check_limits(scene);
   return scene;
 }

@@ -197,6 +197,14 @@ TEST_F(StatedPanes, ASettingMakesThemOpaque) {
                            "read.settings glass.transmittance=0 makes it opaque"));
 }
 
+TEST_F(StatedPanes, AreThoseThatASettingMakes) {
+  const Material stated = glass_of("d 0.2\n");
+  const Material set = glass_of("", settings({"glass.transmittance=0.8"}));
+  expect_transmittance(stated, set.transmittance);
+  EXPECT_TRUE((stated.reflectance == set.reflectance).all());
+  EXPECT_EQ(stated.index, set.index);
+}
+
 TEST_F(StatedPanes, ASettingCountsMoreThanTheFile) {
   const Material material = glass_of("d 0.9\nNi 1.4\n", settings({"glass.transmittance=0.8", "glass.index=1.6"}));
   expect_transmittance(material, rgb(0.8, 0.8, 0.8));
@@ -230,6 +238,14 @@ TEST_F(StatedPanes, AnIndexAloneIsRefused) {
   // In any order, and with a transmittance of 0 as an earlier one is taken back.
   EXPECT_EQ(glass_of("", settings({"glass.index=1.6", "glass.transmittance=0.8"})).index, 1.6);
   EXPECT_NO_THROW(read_scene(write("m.toml", model + "transmittance = 0.8\n"), settings({"glass.transmittance=0"})));
+}
+
+// Of a scene that was read before, too.
+TEST_F(StatedPanes, NothingReflectsWhatItLetsThrough) {
+  const ReadOptions both = settings({"wall.transmittance=0.6", "wall.reflectance=0.5"});
+  const Scene scene = of_mtl("");
+  EXPECT_THROW(read_scene(folder_ / "m.obj", both), InputError);
+  EXPECT_THROW(with_options(scene, both), InputError);
 }
 
 TEST_F(StatedPanes, PatternsDoNotMeanSecondFaces) {
