@@ -95,7 +95,8 @@ bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
   std::erase_if(sealed, [](const Solid& solid) { return solid.has_opening; });
   const std::vector<std::uint8_t> within = sides_within(scene, shells, sealed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if ((kept.front[p] && !within[2 * p]) || (kept.back[p] && !within[2 * p + 1])) return true;
+    if ((kept.front[p] && !within[std::size_t{2} * p]) || (kept.back[p] && !within[std::size_t{2} * p + 1]))
+      return true;
   }
   return false;
 }
