@@ -5,7 +5,7 @@ usage: scripts/radiance_to_obj.py OUT.obj SCENE.rad...
 
 The files are read in their order, as by oconv: materials first. Polygons are carried over with their outlines as they
 are (holes by coincident edges), and files that !xform lines name. A material becomes its reflectance, a light its
-radiance (Ke). The transmittance of glass, which MTL files cannot tell, is printed as the --set that makes it clear.
+radiance (Ke), glass a pane (Tf, Ni, illum 7). What trans lets straight through is printed as the --set that does so.
 What cannot be carried over is named on stderr; what cannot be read is refused with file and line.
 """
 import math
@@ -18,7 +18,7 @@ LEFT_OUT = ("sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring", "sour
 LIGHTS = ("light", "glow", "illum", "spotlight")
 ARGUMENTS = {"plastic": 5, "metal": 5, "trans": 7, "glass": 3, "mirror": 3, "light": 3, "illum": 3, "glow": 4,
              "spotlight": 7}
-INDEX = 1.52  # of refraction, of Radiance's glass unless it states another
+INDEX = 1.52  # of refraction, of Radiance's glass unless its fourth number states another
 
 
 class Refusal(Exception):
@@ -78,9 +78,14 @@ class Words:
         return [read() for _ in range(count)]
 
 
-def glass_of(transmissivity):
-    """Reflectance and transmittance of a pane, square to it: Fresnel at both faces, and all reflections between."""
-    r = ((INDEX - 1) / (INDEX + 1))**2
+def glass_of(transmissivity, index):
+    """Reflectance and transmittance of a pane, square to it: Fresnel at both faces, and all reflections between.
+
+    The Radiance Reference Manual (material glass) has the inverse for the index 1.52, the transmissivity of a
+    transmittance T: (sqrt(.8402528435 + .0072522239 T^2) - .9166530661) / .0036261119 / T, with (1 - r)^4, 4 r^2,
+    (1 - r)^2 and 2 r^2.
+    """
+    r = ((index - 1) / (index + 1))**2
     through = 1 - (r * transmissivity)**2
     transmittance = (1 - r)**2 * transmissivity / through
     return r + r * transmissivity * transmittance, transmittance
@@ -99,6 +104,7 @@ class Scene:
     def __init__(self):
         self.modifiers = {}
         self.materials = {}  # name: (reflectance, transmittance, radiance)
+        self.index = {}      # of refraction, of those that are glass
         self.left_out = {}   # kind: names
         self.vertices, self.lines, self.polygons, self.complaints = [], [], 0, []
 
@@ -193,7 +199,8 @@ class Scene:
                 self.complain(f"{name}: {found.kind} is taken for a matt light, the same in all directions")
             return black, black, color
         if found.kind == "glass":
-            return (*zip(*map(glass_of, color)), black)
+            self.index[name] = index = rest[0] if rest else INDEX
+            return (*zip(*(glass_of(t, index) for t in color)), black)
         if found.kind == "trans":
             return self.sheet(name, color, rest), [c * (1 - rest[0]) * rest[2] * rest[3] for c in color], black
         if found.kind == "mirror" or rest[0] > 0:
@@ -212,11 +219,18 @@ class Scene:
 
     def write(self, file):
         library = file.with_suffix(".mtl")
-        materials = [f"newmtl {name}\nKd {text_of(rho)}\n" + (f"Ke {text_of(light)}\n" if any(light) else "")
-                     for name, (rho, _, light) in self.materials.items()]
-        library.write_text("".join(materials))
+        library.write_text("".join(self.statements(name) for name in self.materials))
         vertices = [f"v {text_of(vertex)}" for vertex in self.vertices]
         file.write_text("\n".join([f"mtllib {library.name}", *vertices, *self.lines]) + "\n")
+
+    def statements(self, name):
+        """A material of the MTL file."""
+        rho, tau, light = self.materials[name]
+        lines = [f"newmtl {name}", f"Kd {text_of(rho)}"]
+        lines += [f"Ke {text_of(light)}"] if any(light) else []
+        if name in self.index:
+            lines += [f"Tf {text_of(tau)}", f"Ni {self.index[name]:.9g}", "illum 7"]
+        return "".join(line + "\n" for line in lines)
 
 
 def text_of(values):
@@ -274,7 +288,7 @@ def main():
     lamps = sum(any(light) for _, _, light in scene.materials.values())
     print(f"{target}: {scene.polygons} polygons, {len(scene.materials)} materials, {lamps} of them lamps")
     for name, (_, tau, _) in scene.materials.items():
-        if any(tau):
+        if any(tau) and name not in scene.index:
             bands = tau[:1] if len(set(tau)) == 1 else tau
             print(f"--set {name}.transmittance={','.join(f'{t:.4g}' for t in bands)}")
 

@@ -89,7 +89,7 @@ for name in "${names[@]}"; do
       ;;
     duplex)
       files=("$models/duplex-ifc/Duplex_A.ifc")
-      options=(--set Sash.radiance=100 --patches 100000 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
+      options=(--set Sash.radiance=100 --set 'Glass*.transmittance=0' --patches 100000 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
       ;;
     kitchen)
       python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
@@ -131,10 +131,6 @@ up = "z"
 
 [[model]]
 file = "openroom.obj"              # in metres
-
-[[material]]
-name = "glass_60"
-transmittance = 0.6
 
 [sky]
 kind = "overcast"

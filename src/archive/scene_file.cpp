@@ -63,7 +63,8 @@ Json materials_part(const Scene& scene) {
                     {"exitance", json_of(material.exitance)},
                     {"transmittance", json_of(material.transmittance)},
                     {"index", material.index},
-                    {"specular_reflectance", json_of(material.specular_reflectance)}});
+                    {"specular_reflectance", json_of(material.specular_reflectance)},
+                    {"second_face", material.second_face}});
   }
   return part;
 }
@@ -157,13 +158,12 @@ Spectrum spectrum_of(const Json& json) {
 std::vector<Material> materials_of(const Json& json) {
   std::vector<Material> materials;
   for (const Json& entry : json) {
-    Material material{
-        text_of(entry.at("name")),
-        spectrum_of(entry.at("reflectance")),
-        spectrum_of(entry.at("exitance")),
-        spectrum_of(entry.at("transmittance")),
-        entry.value("index", usual_index),
-        entry.contains("specular_reflectance") ? spectrum_of(entry.at("specular_reflectance")) : Spectrum()};
+    Material material{text_of(entry.at("name")), spectrum_of(entry.at("reflectance")),
+                      spectrum_of(entry.at("exitance")), spectrum_of(entry.at("transmittance")),
+                      entry.value("index", usual_index)};
+    if (entry.contains("specular_reflectance"))
+      material.specular_reflectance = spectrum_of(entry.at("specular_reflectance"));
+    material.second_face = entry.value("second_face", false);
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
                 (material.transmittance.size() == 0 || material.transmittance.size() == bands) &&

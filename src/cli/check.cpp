@@ -64,6 +64,12 @@ std::string sides_lines(const SceneReport& report) {
   return text.str();
 }
 
+// "; transmittance 0.8, index 1.52" of a pane.
+std::string pane_part(const Material& material) {
+  if (!(material.transmittance > 0).any()) return {};
+  return "; transmittance " + listed(material.transmittance, ", ") + ", index " + rounded(material.index, digits);
+}
+
 std::string material_lines(const SceneReport& report) {
   std::size_t width = 0;
   for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
@@ -72,8 +78,8 @@ std::string material_lines(const SceneReport& report) {
   text << "materials:\n";
   for (const MaterialFacts& facts : report.materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
-         << "  reflectance " << listed(facts.material.reflectance, ", ") << "; " << counted(facts.faces, "face") << ", "
-         << rounded(facts.area, digits) << " m^2\n";
+         << "  reflectance " << listed(facts.material.reflectance, ", ") << pane_part(facts.material) << "; "
+         << counted(facts.faces, "face") << ", " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }
@@ -86,6 +92,25 @@ std::string lamp_lines(const SceneReport& report) {
     text << "  " << shown_name(facts.material.name) << "  flux " << listed(facts.flux, ", ") << " W, "
          << rounded(facts.luminous_flux, digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
   }
+  return text.str();
+}
+
+std::string daylight_lines(const Scene& scene) {
+  std::ostringstream text;
+  if (scene.sun) {
+    text << "sun: " << listed(scene.sun->normal_irradiance, ", ") << " W/m^2 across its rays, from ("
+         << listed(scene.sun->direction, ", ") << ")\n";
+  }
+  if (!scene.sky) return text.str();
+  const Sky& sky = *scene.sky;
+  text << "sky: " << name_of(sky.kind) << ", ";
+  if (sky.horizontal_irradiance.size() > 0) {
+    text << listed(sky.horizontal_irradiance, ", ") << " W/m^2 on the open ground\n";
+  } else {
+    text << listed(sky.zenith_radiance, ", ") << " W/(m^2 sr) from the zenith\n";
+  }
+  const bool is_black = !(sky.ground_radiance > 0).any();
+  text << "ground: " << (is_black ? "black" : listed(sky.ground_radiance, ", ") + " W/(m^2 sr)") << '\n';
   return text.str();
 }
 
@@ -134,7 +159,7 @@ ExitCode check(const CheckArguments& arguments) {
   } else {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
               << size_line(scene, report) << counts_lines(report) << sides_lines(report) << material_lines(report)
-              << lamp_lines(report) << problem_lines(scene, report) << std::flush;
+              << lamp_lines(report) << daylight_lines(scene) << problem_lines(scene, report) << std::flush;
   }
   if (report.usable) return good;
   print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));

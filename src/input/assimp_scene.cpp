@@ -2,7 +2,9 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/rounded.h"
 #include "input/materials.h"
+#include "input/stated_panes.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -10,6 +12,7 @@
 #include <assimp/scene.h>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -37,9 +40,28 @@ bool has_texture(const aiMaterial& material) {
   return false;
 }
 
-bool is_transparent(const aiMaterial& material) {
-  float opacity = 1;
-  return material.Get(AI_MATKEY_OPACITY, opacity) == aiReturn_SUCCESS && opacity < 1;
+double number_or(const aiMaterial& material, const char* key, double otherwise) {
+  float found = 0;
+  return material.Get(key, 0, 0, found) == aiReturn_SUCCESS ? found : otherwise;
+}
+
+// What goes through: in COLLADA by the transparent colour (opaque="RGB_ZERO"), whose luminance the opacity has already.
+Spectrum let_through(const aiMaterial& material, double opacity) {
+  const Spectrum filter = color(material, "$clr.transparent", 1).max(0);
+  const double luminance = 0.212671 * filter[0] + 0.715160 * filter[1] + 0.072169 * filter[2];
+  if ((filter == filter[0]).all() || !(luminance > 0)) return Spectrum::Constant(3, 1 - opacity);
+  return (1 - opacity) / luminance * filter;
+}
+
+Material assimp_material(const aiMaterial& read) {
+  aiString name;
+  read.Get(AI_MATKEY_NAME, name);
+  // Exitance = pi radiance for a Lambertian emitter.
+  Material material{name.C_Str(), color(read, "$clr.diffuse", 0.5), std::numbers::pi * color(read, "$clr.emissive", 0)};
+  const double opacity = number_or(read, "$mat.opacity", 1);
+  if (!(opacity >= 0 && opacity < 1)) return material;
+  return as_pane(std::move(material), let_through(read, opacity),
+                 plausible_index(number_or(read, "$mat.refracti", usual_index)), "opacity " + rounded(opacity));
 }
 
 bool is_used(const aiScene& model, unsigned int material) {
@@ -52,23 +74,13 @@ bool is_used(const aiScene& model, unsigned int material) {
 // The scene with the materials of the model and notes on what they have that is not simulated.
 Scene with_materials(Scene scene, const aiScene& model) {
   std::vector<std::string> textured;
-  std::vector<std::string> transparent;
   for (unsigned int m = 0; m < model.mNumMaterials; ++m) {
     const aiMaterial& read = *model.mMaterials[m];
-    aiString name;
-    read.Get(AI_MATKEY_NAME, name);
-    // Exitance = pi radiance for a Lambertian emitter.
-    scene.materials.push_back(
-        {name.C_Str(), color(read, "$clr.diffuse", 0.5), std::numbers::pi * color(read, "$clr.emissive", 0)});
-    if (!is_used(model, m)) continue;
-    if (has_texture(read)) textured.emplace_back(name.C_Str());
-    if (is_transparent(read)) transparent.emplace_back(name.C_Str());
+    scene.materials.push_back(assimp_material(read));
+    if (is_used(model, m) && has_texture(read)) textured.push_back(scene.materials.back().name);
   }
-  for (const auto& notes : {note_on("textures are ignored, the diffuse colour is used instead", textured),
-                            note_on("transparency is ignored, the surface is opaque", transparent)}) {
-    scene.notes.insert(scene.notes.end(), notes.begin(), notes.end());
-  }
-  scene.unsimulated = counted(0, transparent.size());
+  for (std::string& note : note_on("textures are ignored, the diffuse colour is used instead", textured))
+    scene.notes.push_back(std::move(note));
   return scene;
 }
 

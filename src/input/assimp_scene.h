@@ -13,9 +13,10 @@ struct AssimpFormat {
 };
 
 /// Reads a model with assimp: all faces, in the order of the nodes, with the nodes' transformations. Coordinates pass
-/// through single precision. Diffuse colours become reflectances, emissive colours radiances in W/(m^2 sr). Fills
-/// vertices (metres), polygons, used materials, groups (names of the nodes), file, metres_per_unit and notes.
-/// May crash on damaged files: call it within read_isolated(). \throws InputError naming `file`.
+/// through single precision. Diffuse colours become reflectances, emissive colours radiances in W/(m^2 sr), an opacity
+/// below 1 makes a pane. Fills vertices (metres), polygons, used materials, groups (names of the nodes), file,
+/// metres_per_unit and notes. May crash on damaged files: call it within read_isolated(). \throws InputError naming
+/// `file`.
 Scene assimp_scene(const std::string& bytes, const std::string& file, const AssimpFormat& format,
                    double metres_per_unit);
 

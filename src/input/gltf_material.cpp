@@ -1,10 +1,14 @@
 #include "input/gltf_material.h"
 
+#include "base/rounded.h"
 #include "input/materials.h"
+#include "input/stated_panes.h"
 
+#include <algorithm>
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -31,19 +35,64 @@ Spectrum with_texture(const Spectrum& factor, const GltfModel& gltf, int texture
   return mean ? Spectrum(factor * *mean) : factor;
 }
 
-// KHR_materials_emissive_strength; 1 without it.
+// A number of an extension of the material, or what holds without it.
+double number_of(const tinygltf::Material& material, const char* extension, const char* key, double otherwise) {
+  const auto found = material.extensions.find(extension);
+  if (found == material.extensions.end() || !found->second.Has(key)) return otherwise;
+  return found->second.Get(key).GetNumberAsDouble();
+}
+
 double emissive_strength(const tinygltf::Material& material) {
-  const auto found = material.extensions.find("KHR_materials_emissive_strength");
-  if (found == material.extensions.end() || !found->second.Has("emissiveStrength")) return 1;
-  return found->second.Get("emissiveStrength").GetNumberAsDouble();
+  return number_of(material, "KHR_materials_emissive_strength", "emissiveStrength", 1);
+}
+
+// KHR_materials_transmission.
+double transmission(const tinygltf::Material& material) {
+  return std::clamp(number_of(material, "KHR_materials_transmission", "transmissionFactor", 0), 0.0, 1.0);
+}
+
+// The share of the surface that is there: glTF 2.0 section 3.9.4.
+double coverage(const tinygltf::Material& material) {
+  const std::vector<double>& factor = material.pbrMetallicRoughness.baseColorFactor;
+  return material.alphaMode == "BLEND" && factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1;
+}
+
+// KHR_materials_ior, which says that 1.5 holds without it.
+double index_of(const tinygltf::Material& material) {
+  constexpr double usual = 1.5;
+  return plausible_index(number_of(material, "KHR_materials_ior", "ior", usual), usual);
+}
+
+// "transmissionFactor 0.9", "alpha 0.3", or both.
+std::string statement_of(double transmitted, double covered) {
+  const std::string factor = transmitted > 0 ? "transmissionFactor " + rounded(transmitted) : "";
+  const std::string alpha = covered < 1 ? "alpha " + rounded(covered) : "";
+  return factor + (factor.empty() || alpha.empty() ? "" : " and ") + alpha;
+}
+
+// What is covered reflects the part of the base colour that it does not transmit, KHR_materials_transmission says, and
+// transmits the other part, but for what the surfaces of glass reflect even if it absorbs nothing.
+Material with_transparency(Material material, const tinygltf::Material& read) {
+  const double transmitted = transmission(read);
+  const double covered = coverage(read);
+  if (transmitted == 0 && covered == 1) return material;
+  const double index = index_of(read);
+  const Spectrum color = material.reflectance.min(1);
+  const Spectrum clear = (transmitted * color).min(highest_transmittance(index));
+  Material pane =
+      as_pane(std::move(material), 1 - covered + covered * clear, index, statement_of(transmitted, covered));
+  pane.reflectance = covered * (1 - transmitted) * color;
+  return pane;
 }
 
 Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const Spectrum radiance = emissive_strength(read) * color(read.emissiveFactor, 0);
   // Exitance = pi radiance for a Lambertian emitter.
-  return {read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
-          std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)};
+  return with_transparency(
+      {read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
+       std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)},
+      read);
 }
 
 // The two textures that count; -1 stands for none.
@@ -57,9 +106,12 @@ std::vector<int> colored_textures(const tinygltf::Material& material) {
 
 bool is_metallic(const tinygltf::Material& material) { return material.pbrMetallicRoughness.metallicFactor > 0; }
 
-bool is_transparent(const tinygltf::Material& material) {
-  return material.alphaMode == "BLEND" || material.alphaMode == "MASK" ||
-         material.extensions.count("KHR_materials_transmission") > 0;
+// Transparent by a picture, or where one is below a threshold.
+bool has_cut_outs(const tinygltf::Material& material) {
+  const auto found = material.extensions.find("KHR_materials_transmission");
+  const bool has_picture = found != material.extensions.end() && found->second.Has("transmissionTexture");
+  const bool is_blended = material.alphaMode == "BLEND" && material.pbrMetallicRoughness.baseColorTexture.index >= 0;
+  return material.alphaMode == "MASK" || is_blended || has_picture;
 }
 
 std::vector<std::string> names_with(const tinygltf::Model& model,
@@ -81,7 +133,7 @@ std::vector<Material> gltf_materials(const GltfModel& gltf) {
 }
 
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
-  return counted(names_with(gltf.model, is_metallic).size(), names_with(gltf.model, is_transparent).size());
+  return counted(names_with(gltf.model, is_metallic).size(), names_with(gltf.model, has_cut_outs).size());
 }
 
 std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
@@ -100,7 +152,7 @@ std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
   note("textures are replaced by their mean colour", has_texture(true));
   note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
   note("metallic surfaces are simulated as matt ones of their base colour", is_metallic);
-  note("transparency is ignored, the surface is opaque", is_transparent);
+  note("transparency by textures and masks is ignored, factors alone count", has_cut_outs);
   return notes;
 }
 

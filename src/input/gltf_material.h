@@ -11,10 +11,11 @@
 namespace patchlight {
 
 /// The materials of a glTF file as diffuse ones: reflectance is the base colour, radiance in W/(m^2 sr) the emissive
-/// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded.
+/// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded. Those with
+/// transmission or, blended, an alpha below 1 are panes.
 std::vector<Material> gltf_materials(const GltfModel& gltf);
 
-/// The numbers of materials that are metallic or transparent.
+/// The numbers of materials that are metallic, or transparent by textures or masks.
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf);
 
 /// One sentence per property that the materials have and the simulation ignores or simplifies.

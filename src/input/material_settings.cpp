@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/near_match.h"
+#include "base/shortest.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -60,6 +61,7 @@ Material changed(Material material, const MaterialSetting& setting) {
   switch (setting.quantity) {
     case Quantity::reflectance:
       material.reflectance = value;
+      if (material.stated_pane) material.stated_pane->opaque_reflectance = value;
       break;
     case Quantity::exitance:
       material.exitance = value;
@@ -68,6 +70,8 @@ Material changed(Material material, const MaterialSetting& setting) {
       material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
       break;
     case Quantity::transmittance:
+      if (material.stated_pane && (value == 0).all()) material.reflectance = material.stated_pane->opaque_reflectance;
+      material.stated_pane.reset();
       material.transmittance = value;
       break;
     case Quantity::index:
@@ -80,12 +84,13 @@ Material changed(Material material, const MaterialSetting& setting) {
   return material;
 }
 
-// The materials that a setting is for.
+// The materials that a setting is for. A pattern does not mean those that are made up.
 std::vector<std::size_t> chosen(const std::vector<Material>& materials, const MaterialSetting& setting) {
   std::vector<std::size_t> by_pattern;
   std::vector<std::string> names;
   for (std::size_t m = 0; m < materials.size(); ++m) {
     if (materials[m].name == setting.material) return {m};
+    if (materials[m].second_face) continue;
     if (matches(materials[m].name, setting.material)) by_pattern.push_back(m);
     names.push_back(materials[m].name);
   }
@@ -93,6 +98,19 @@ std::vector<std::size_t> chosen(const std::vector<Material>& materials, const Ma
   const std::string hint = suggestion(setting.material, names);
   throw InputError(setting.where, "no face has a material '" + setting.material + "'" + hint +
                                       (hint.empty() ? "; expected one of " : " Expected one of ") + listed(names));
+}
+
+// \throws InputError when a setting gives an index to opaque materials alone.
+void require_transmittance(const std::vector<Material>& materials, const MaterialSetting& setting) {
+  if (setting.quantity != Quantity::index) return;
+  for (const std::size_t m : chosen(materials, setting)) {
+    if (materials[m].transmittance.size() > 0) return;
+  }
+  throw InputError(setting.where, "found the index of refraction " + shortest(setting.value[0]) + " for material '" +
+                                      setting.material +
+                                      "', for which no transmittance is given; expected both, as the index tells how "
+                                      "a pane lets light through at an angle. Add read.settings " +
+                                      setting.material + ".transmittance=0.8, or leave the index out");
 }
 
 }  // namespace
@@ -129,6 +147,7 @@ Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
       scene.materials[m] = changed(scene.materials[m], setting);
     }
   }
+  for (const MaterialSetting& setting : settings) require_transmittance(scene.materials, setting);
   return scene;
 }
 

@@ -7,8 +7,9 @@
 namespace patchlight {
 
 /// The scene with changed materials, one setting after the other. A setting is for the material of that name; without
-/// one, for all whose names match it as a pattern, in which * stands for any letters and ? for one. \throws InputError
-/// at MaterialSetting::where when no material matches.
+/// one, for all whose names match it as a pattern, in which * stands for any letters and ? for one, but for second
+/// faces of panes, which are made up. \throws InputError at MaterialSetting::where when no material matches, or one
+/// that matches is given an index and none has a transmittance.
 Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings);
 
 /// True when no value of a setting may be above 1.

@@ -12,6 +12,7 @@
 #include "input/read_off.h"
 #include "input/read_ply.h"
 #include "input/read_stl.h"
+#include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ void require_file(const std::filesystem::path& file, const std::string& where, b
 Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
                  const std::filesystem::path& confine) {
   require_within(confine, file, file.string());
-  Scene scene = read_format(file, format, metres_per_unit, confine);
+  Scene scene = without_doubtful_panes(read_format(file, format, metres_per_unit, confine));
   if (file != "-") scene.inputs.push_back(file);
   return scene;
 }

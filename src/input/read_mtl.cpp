@@ -14,43 +14,69 @@
 namespace patchlight {
 namespace {
 
-// Kd and Ke of one material.
-struct Colors {
+// Kd and Ke of one material, and what lets light through.
+struct Statements {
   std::optional<Spectrum> reflectance;
   std::optional<Spectrum> radiance;
+  MtlTransparency transparency;
 };
 
-Spectrum three_numbers(const TextLine& line, const std::vector<std::string_view>& statement, const std::string& file) {
-  Spectrum values(3);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::optional<double> value = k + 1 < statement.size() ? finite_number(statement[k + 1]) : std::nullopt;
+// A line of the file, its words, and the file's name for messages.
+struct MtlLine {
+  const TextLine& line;
+  std::vector<std::string_view> words;
+  const std::string& file;
+};
+
+Spectrum numbers_after(const MtlLine& statement, std::size_t first, std::size_t count) {
+  Spectrum values(static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool exists = first + k < statement.words.size();
+    const std::optional<double> value = exists ? finite_number(statement.words[first + k]) : std::nullopt;
     if (!value) {
-      throw InputError(file + ":" + std::to_string(line.number), "found '" + std::string(trimmed(line.text)) +
-                                                                     "'; expected three finite numbers after " +
-                                                                     std::string(statement[0]));
+      throw InputError(statement.file + ":" + std::to_string(statement.line.number),
+                       "found '" + std::string(trimmed(statement.line.text)) + "'; expected " +
+                           (count == 1 ? "a finite number" : "three finite numbers") + " after " +
+                           std::string(statement.words[0]));
     }
     values[static_cast<Eigen::Index>(k)] = *value;
   }
   return values;
 }
 
-// Kd and Ke of every material, read here because tinyobjloader turns what it cannot read into 0 and rounds the rest
+Spectrum three_numbers(const MtlLine& statement) { return numbers_after(statement, 1, 3); }
+
+double one_number(const MtlLine& statement) {
+  const bool is_halo = statement.words.size() > 1 && statement.words[1] == "-halo";  // d -halo 0.5
+  return numbers_after(statement, is_halo ? 2 : 1, 1)[0];
+}
+
+void take(Statements& material, const MtlLine& statement) {
+  const std::string_view key = statement.words[0];
+  if (key == "Kd") material.reflectance = three_numbers(statement);
+  if (key == "Ke") material.radiance = three_numbers(statement);
+  if (key == "Tf") material.transparency.filter = three_numbers(statement);
+  if (key == "d") material.transparency.dissolve = one_number(statement);
+  if (key == "Tr") material.transparency.transparency = one_number(statement);
+  if (key == "Ni") material.transparency.index = one_number(statement);
+}
+
+// What every material states, read here because tinyobjloader turns what it cannot read into 0 and rounds the rest
 // (0.75 to 0.75 + 1e-16). Of materials with the same name the first counts.
-std::map<std::string, Colors> read_colors(const std::vector<TextLine>& lines, const std::string& file) {
-  std::map<std::string, Colors> colors;
-  Colors ignored;
-  Colors* current = &ignored;
+std::map<std::string, Statements> read_statements(const std::vector<TextLine>& lines, const std::string& file) {
+  std::map<std::string, Statements> materials;
+  Statements ignored;
+  Statements* current = &ignored;
   for (const TextLine& line : lines) {
     const std::vector<std::string_view> statement = words_before_comment(line.text);
     if (statement.empty()) continue;
     if (statement[0] == "newmtl") {
-      const auto [entry, is_new] = colors.try_emplace(std::string(after_first_word(line.text)));
+      const auto [entry, is_new] = materials.try_emplace(std::string(after_first_word(line.text)));
       current = is_new ? &entry->second : &ignored;
     }
-    if (statement[0] == "Kd") current->reflectance = three_numbers(line, statement, file);
-    if (statement[0] == "Ke") current->radiance = three_numbers(line, statement, file);
+    take(*current, {line, statement, file});
   }
-  return colors;
+  return materials;
 }
 
 bool any(const tinyobj::real_t (&color)[3]) { return color[0] != 0 || color[1] != 0 || color[2] != 0; }
@@ -67,16 +93,19 @@ std::vector<std::string> textures_of(const tinyobj::material_t& m) {
   return textures;
 }
 
-MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, const Colors& colors) {
+MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, Statements stated) {
+  stated.transparency.illumination = read.illum;
   MtlMaterial material;
   material.name = name;
-  material.has_reflectance = colors.reflectance.has_value();
-  material.reflectance = colors.reflectance.value_or(rgb(read.diffuse[0], read.diffuse[1], read.diffuse[2]));
-  material.radiance = colors.radiance.value_or(rgb(0, 0, 0));
+  material.has_reflectance = stated.reflectance.has_value();
+  material.reflectance = stated.reflectance.value_or(rgb(read.diffuse[0], read.diffuse[1], read.diffuse[2]));
+  material.radiance = stated.radiance.value_or(rgb(0, 0, 0));
   material.ambient = rgb(read.ambient[0], read.ambient[1], read.ambient[2]);
   material.is_specular = any(read.specular);
   material.textures = textures_of(read);
-  material.is_transparent = read.dissolve < 1;
+  material.pane = mtl_pane(stated.transparency);
+  material.is_contradictory = is_contradictory(stated.transparency);
+  material.has_cut_outs = !read.alpha_texname.empty();
   material.is_metallic = read.metallic > 0;
   material.is_mirror_or_glass = read.illum >= 3 && read.illum <= 9;
   return material;
@@ -94,7 +123,7 @@ std::vector<std::string> names_with(std::span<const MtlMaterial> materials, bool
 
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file) {
   const std::vector<TextLine> lines = logical_lines(text);
-  std::map<std::string, Colors> colors = read_colors(lines, file);
+  std::map<std::string, Statements> statements = read_statements(lines, file);
   std::map<std::string, int> by_name;
   std::vector<tinyobj::material_t> read;
   std::stringstream stream;
@@ -106,7 +135,7 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
   for (const tinyobj::material_t& found : read) {
     const auto name = std::string(trimmed(found.name));
     if (name.empty() || !seen.insert(name).second) continue;
-    materials.push_back(material_from(found, name, colors[name]));
+    materials.push_back(material_from(found, name, statements[name]));
   }
   return materials;
 }
@@ -121,18 +150,19 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic; });
   note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return !m.textures.empty(); });
-  note("d and Tr (transparency) are ignored, the surface is opaque",
-       [](const MtlMaterial& m) { return m.is_transparent; });
+  note("d and Tr contradict each other, the surface is opaque",
+       [](const MtlMaterial& m) { return m.is_contradictory; });
+  note("map_d (transparency by a picture) is ignored", [](const MtlMaterial& m) { return m.has_cut_outs; });
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",
-       [](const MtlMaterial& m) { return m.is_mirror_or_glass; });
+       [](const MtlMaterial& m) { return m.is_mirror_or_glass && !m.pane; });
   return notes;
 }
 
 std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials) {
   const auto is_mirror = [](const MtlMaterial& m) {
-    return m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.is_transparent);
+    return m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.pane);
   };
-  const auto is_glass = [](const MtlMaterial& m) { return m.is_transparent; };
+  const auto is_glass = [](const MtlMaterial& m) { return m.has_cut_outs || m.is_contradictory; };
   return counted(names_with(materials, is_mirror).size(), names_with(materials, is_glass).size());
 }
 

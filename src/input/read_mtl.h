@@ -3,6 +3,9 @@
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/scene.h"
 
+#include "input/mtl_pane.h"
+
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,13 +21,16 @@ struct MtlMaterial {
   bool has_reflectance = false;       ///< Kd is given
   bool is_specular = false;           ///< Ks is not 0
   std::vector<std::string> textures;  ///< the files of map_, bump, disp, refl and norm
-  bool is_transparent = false;        ///< d < 1 or Tr > 0
+  std::optional<MtlPane> pane;        ///< what d, Tr, Tf, Ni and illum make of it
+  bool is_contradictory = false;      ///< d and Tr contradict each other
+  bool has_cut_outs = false;          ///< map_d is given
   bool is_mirror_or_glass = false;    ///< illum 3 to 9
   bool is_metallic = false;           ///< Pm is not 0
 };
 
 /// Reads the materials of an MTL file; of materials with the same name the first is kept.
-/// \throws InputError naming `file` and the line when Kd or Ke is not three finite numbers.
+/// \throws InputError naming `file` and the line when Kd, Ke or Tf is not three finite numbers, or d, Tr or Ni is
+/// not one.
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file);
 
 /// One sentence per property that these materials have and the simulation ignores.

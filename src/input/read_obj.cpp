@@ -7,6 +7,7 @@
 #include "input/obj_libraries.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
+#include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <numbers>
 #include <sstream>
 #include <tiny_obj_loader.h>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -185,6 +187,13 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
   return problems;
 }
 
+Material obj_material(const MtlMaterial& read) {
+  // Exitance = pi radiance for a Lambertian emitter.
+  Material material{read.name, read.reflectance, std::numbers::pi * read.radiance};
+  if (!read.pane) return material;
+  return as_pane(std::move(material), read.pane->transmittance, read.pane->index, read.pane->statement);
+}
+
 // Materials that do not emit, but have a Ka above 1: some programs mean a lamp by that.
 std::vector<LampHint> lamp_hints(std::span<const MtlMaterial> materials) {
   std::vector<LampHint> hints;
@@ -214,10 +223,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   // 3. The scene, in metres.
   Scene scene;
   for (const Point& vertex : scan.vertices) scene.vertices.push_back(metres_per_unit * vertex);
-  for (const MtlMaterial& material : palette.materials) {
-    // Exitance = pi radiance for a Lambertian emitter.
-    scene.materials.push_back({material.name, material.reflectance, std::numbers::pi * material.radiance});
-  }
+  for (const MtlMaterial& material : palette.materials) scene.materials.push_back(obj_material(material));
   scene = with_polygons(std::move(scene), parse_shapes(scan, file.string()), scan, palette.of_face);
   scene.file = file.string();
   scene.metres_per_unit = metres_per_unit;

@@ -8,6 +8,7 @@
 #include "input/placed.h"
 #include "input/read_model.h"
 #include "input/scene_file.h"
+#include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml_sensors.h"
 #include "scene/limits.h"
@@ -104,7 +105,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   }
   Scene scene = merge_scenes(std::move(models));
   for (const SceneFile& file : scene_files) scene = with_scene_file(std::move(scene), file);
-  scene = with_settings(std::move(scene), options.settings);
+  scene = with_stated_panes(with_settings(std::move(scene), options.settings));
   scene = repair(std::move(scene));
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
@@ -120,7 +121,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
 }
 
 Scene with_options(Scene scene, const ReadOptions& options) {
-  scene = set_upright(with_settings(std::move(scene), options.settings), options);
+  scene = with_settings(std::move(scene), options.settings);
+  check(scene);
+  scene = set_upright(std::move(scene), options);
   check_limits(scene);
   return scene;
 }

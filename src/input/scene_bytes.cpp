@@ -89,6 +89,12 @@ void write_material(Writer& out, const Material& material) {
   out.text(material.name);
   out.numbers(material.reflectance);
   out.numbers(material.exitance);
+  out.numbers(material.transmittance);
+  out.plain(material.index);
+  out.plain(material.stated_pane.has_value());
+  if (!material.stated_pane) return;
+  out.text(material.stated_pane->by);
+  out.numbers(material.stated_pane->opaque_reflectance);
 }
 
 Material read_material(Reader& in) {
@@ -96,6 +102,12 @@ Material read_material(Reader& in) {
   material.name = in.text();
   material.reflectance = in.spectrum();
   material.exitance = in.spectrum();
+  material.transmittance = in.spectrum();
+  material.index = in.plain<double>();
+  if (!in.plain<bool>()) return material;
+  StatedPane& pane = material.stated_pane.emplace();
+  pane.by = in.text();
+  pane.opaque_reflectance = in.spectrum();
   return material;
 }
 

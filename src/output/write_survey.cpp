@@ -16,15 +16,40 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_faces = 1000;
 
+// Spectra that are empty are null.
+Json spectrum_part(const Spectrum& spectrum) { return spectrum.size() > 0 ? json_array(spectrum) : Json(); }
+
 Json material_part(const MaterialFacts& facts) {
+  const Material& material = facts.material;
+  const bool is_pane = (material.transmittance > 0).any();
   Json part;
-  part["name"] = facts.material.name;
-  part["reflectance"] = json_array(facts.material.reflectance);
-  part["exitance_W_m2"] = json_array(facts.material.exitance);
+  part["name"] = material.name;
+  part["reflectance"] = json_array(material.reflectance);
+  part["transmittance"] = is_pane ? spectrum_part(material.transmittance) : Json();
+  part["index"] = is_pane ? Json(material.index) : Json();
+  part["exitance_W_m2"] = json_array(material.exitance);
   part["faces"] = facts.faces;
   part["area_m2"] = facts.area;
   part["flux_W"] = json_array(facts.flux);
   part["flux_lm"] = facts.luminous_flux;
+  return part;
+}
+
+Json sun_part(const Scene& scene) {
+  if (!scene.sun) return nullptr;
+  Json part;
+  part["direction"] = json_array(scene.sun->direction);
+  part["normal_irradiance_W_m2"] = json_array(scene.sun->normal_irradiance);
+  return part;
+}
+
+Json sky_part(const Scene& scene) {
+  if (!scene.sky) return nullptr;
+  Json part;
+  part["kind"] = name_of(scene.sky->kind);
+  part["horizontal_irradiance_W_m2"] = spectrum_part(scene.sky->horizontal_irradiance);
+  part["zenith_radiance_W_m2_sr"] = spectrum_part(scene.sky->zenith_radiance);
+  part["ground_radiance_W_m2_sr"] = spectrum_part(scene.sky->ground_radiance);
   return part;
 }
 
@@ -80,6 +105,8 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   json["sides"] = sides_part(report);
   json["materials"] = Json::array();
   for (const MaterialFacts& facts : report.materials) json["materials"].push_back(material_part(facts));
+  json["sun"] = sun_part(scene);
+  json["sky"] = sky_part(scene);
   json["problems"] = Json::array();
   for (const Problem& problem : report.problems) json["problems"].push_back(problem_part(scene, problem));
   json["notes"] = scene.notes;

@@ -100,7 +100,8 @@ bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
   std::erase_if(sealed, [](const Solid& solid) { return solid.has_opening; });
   const std::vector<std::uint8_t> within = sides_within(scene, shells, sealed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if ((kept.front[p] && !within[2 * p]) || (kept.back[p] && !within[2 * p + 1])) return true;
+    if ((kept.front[p] && !within[std::size_t{2} * p]) || (kept.back[p] && !within[std::size_t{2} * p + 1]))
+      return true;
   }
   return false;
 }
@@ -108,7 +109,7 @@ bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
-    facts.openings += is_opening(scene, p);
+    facts.openings += is_opening(scene, p) && !scene.materials[scene.polygons[p].material].second_face;
     facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
   }
   facts.luminaires = scene.luminaires.size();

@@ -26,7 +26,7 @@ struct EffectFacts {
   std::size_t luminaires = 0;
   std::optional<double> sun_altitude;  ///< degrees above the horizon; nothing where there is no sun
   bool sky = false;
-  std::size_t openings = 0;           ///< clear faces
+  std::size_t openings = 0;           ///< clear faces, of a solid pane one
   bool sees_out = true;               ///< some kept side does not face the inside of a closed solid
   std::size_t mirrors = 0;            ///< polygons of which a side is a mirror
   std::size_t coloured_specular = 0;  ///< materials whose transmittance or specular reflectance differs by band

@@ -153,6 +153,20 @@ std::string advice_without_lamp(const Scene& scene) {
   return advice + by_scene_file;
 }
 
+const char* name_of(SkyKind kind) {
+  switch (kind) {
+    case SkyKind::uniform:
+      return "uniform";
+    case SkyKind::cie_overcast:
+      return "overcast";
+    case SkyKind::cie_clear:
+      return "clear";
+    case SkyKind::perez:
+      return "perez";
+  }
+  return "";
+}
+
 SideCounts count_sides(const Scene& scene, Sides sides) {
   const Sides chosen = has_lamp(scene) || sides == Sides::both ? sides : Sides::front;
   const KeptSides kept = kept_sides(scene, chosen);

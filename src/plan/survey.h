@@ -60,6 +60,9 @@ SceneReport survey(const Scene& scene);
 /// make it the size of a room; nothing for others.
 std::vector<Problem> problems_with_size(const Scene& scene);
 
+/// The sky's kind as in a scene file.
+const char* name_of(SkyKind kind);
+
 /// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
 SideCounts count_sides(const Scene& scene, Sides sides);
 

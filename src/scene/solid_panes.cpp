@@ -109,6 +109,8 @@ Material clear_in_full(const Scene& scene, const Material& glass) {
   Material clear = glass;
   clear.reflectance.setZero();
   clear.transmittance.setOnes();
+  clear.stated_pane.reset();
+  clear.second_face = true;
   clear.name += " (second face)";
   while (has_material(scene, clear.name)) clear.name += "'";
   return clear;

@@ -1,5 +1,6 @@
 """patchlight check: what a model holds, what is wrong with it, and whether it can be solved."""
 import json
+import math
 import unittest
 
 from support import MATERIALS, ROOM, ToolTest, content, run
@@ -101,6 +102,34 @@ class CheckTest(ToolTest):
             self.assertEqual(parts[fact], whole[fact])
         piped = run("check", "-", "--json", folder=self.folder, text=ROOM)
         self.assertEqual(json.loads(piped.stdout)["polygons"], whole["polygons"])
+
+    def test_panes_are_listed_with_transmittance_and_index(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 10 9 8\nd 0.2\nTf 1 0.5 1\nNi 1.45"))
+        done = self.check("room.obj")
+        self.assertIn("; transmittance 0.8, 0.4, 0.8, index 1.45; ", done.stdout)
+        self.assertIn("lamp (d 0.2 and Tf 1 0.5 1: transmittance 0.8, 0.4, 0.8)", done.stdout)
+        materials = {material["name"]: material for material in self.report("room.obj")["materials"]}
+        self.assertEqual((materials["lamp"]["transmittance"], materials["lamp"]["index"]), ([0.8, 0.4, 0.8], 1.45))
+        opaque = self.check("room.obj", "--set", "lamp.transmittance=0").stdout
+        self.assertNotIn("transmittance", opaque)
+        for material in self.report("room.obj", "--set", "lamp.transmittance=0")["materials"]:
+            self.assertEqual((material["transmittance"], material["index"]), (None, None))
+
+    def test_sun_sky_and_ground_are_listed(self):
+        self.assertNotIn("sky", self.check("room.obj").stdout)
+        report = self.report("room.obj")
+        self.assertEqual((report["sun"], report["sky"]), (None, None))
+        self.write("room.toml", 'up = "z"\n[[model]]\nfile = "room.obj"\n[sun]\ndirection = [0, 0, 1]\n'
+                                'irradiance = 300\n[sky]\nkind = "overcast"\nirradiance = 100\n'
+                                "[ground]\nreflectance = 0.5\n")
+        done = self.check("room.toml")
+        for line in ("sun: 300, 300, 300 W/m^2 across its rays, from (0, 0, 1)",
+                     "sky: overcast, 100, 100, 100 W/m^2 on the open ground", "ground: 63.66, 63.66, 63.66 W/(m^2 sr)"):
+            self.assertIn(line + "\n", done.stdout)
+        report = self.report("room.toml")
+        self.assertEqual(report["sun"], {"direction": [0, 0, 1], "normal_irradiance_W_m2": [300] * 3})
+        self.assertEqual((report["sky"]["kind"], report["sky"]["horizontal_irradiance_W_m2"]), ("overcast", [100] * 3))
+        self.assertAlmostEqual(report["sky"]["ground_radiance_W_m2_sr"][0], 0.5 / math.pi * 400, places=9)
 
     def test_command_line(self):
         for arguments, word in (((), "model"), (("room.obj", "--vtk", "a.vtk"), ".vtp"), (("room.obj", "--jsn"), "--json"),

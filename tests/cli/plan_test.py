@@ -58,7 +58,7 @@ class PlanTest(ToolTest):
         self.assertFalse(black["closure"]["simulate"])
 
     def test_what_is_not_simulated_is_named(self):
-        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 0.6 0.5\nKs 0.1 0.1 0.1\nd 0.5"))
+        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 0.6 0.5\nKs 0.1 0.1 0.1\nmap_d holes.png"))
         plan = self.plan()["by_effect"]
         self.assertIn("1 material", plan["mirrors"]["reason"])
         self.assertIn("1 transparent material", plan["glass"]["reason"])

@@ -1,4 +1,5 @@
 """scripts/radiance_to_obj.py: transformations, materials, glass, naming what is lost, refusing what cannot be read."""
+import json
 import math
 import pathlib
 import subprocess
@@ -102,9 +103,29 @@ class RadianceTest(ToolTest):
         through = sum((1 - r)**2 * t * (r * t)**(2 * k) for k in range(40))
         back = r + sum((1 - r)**2 * r * t**2 * (r * t)**(2 * k) for k in range(40))
         done = self.converted()
-        (line,) = (line for line in done.stdout.splitlines() if line.startswith("--set pane."))
-        self.assertTrue(math.isclose(float(line.split("=")[1]), through, abs_tol=5e-5), line)
-        self.assertIn(f"newmtl pane\nKd {back:.9g} ", (self.folder / "out.mtl").read_text())
+        self.assertNotIn("--set pane", done.stdout)
+        text = (self.folder / "out.mtl").read_text()
+        self.assertIn(f"newmtl pane\nKd {back:.9g} ", text)
+        self.assertIn(f"Tf {through:.9g} {through:.9g} {through:.9g}\nNi 1.52\nillum 7\n", text)
+
+    def test_transmissivity_is_that_of_the_reference_manual(self):
+        """For each transmittance its formula gives the transmissivity, which gives the transmittance."""
+        stated = [0.05, 0.6, 0.88]
+        numbers = [(math.sqrt(.8402528435 + .0072522239 * T * T) - .9166530661) / .0036261119 / T for T in stated]
+        self.write("materials.mat", MATERIALS.replace(".654 .654 .654", " ".join(map(str, numbers))))
+        self.converted()
+        (line,) = (line for line in (self.folder / "out.mtl").read_text().splitlines() if line.startswith("Tf"))
+        for found, transmittance in zip(line.split()[1:], stated):
+            self.assertAlmostEqual(float(found), transmittance, places=6)
+
+    def test_a_fourth_number_of_glass_is_its_index(self):
+        """Without absorption 2 n / (n^2 + 1) goes through: the glass and its reflections add up to 1."""
+        self.write("materials.mat", MATERIALS.replace("3 .654 .654 .654", "4 1 1 1 1.7"))
+        self.converted()
+        through = 2 * 1.7 / (1.7**2 + 1)
+        text = (self.folder / "out.mtl").read_text()
+        self.assertIn(f"newmtl pane\nKd {1 - through:.9g} ", text)
+        self.assertIn(f"Tf {through:.9g} {through:.9g} {through:.9g}\nNi 1.7\n", text)
 
     def test_what_is_lost_is_named(self):
         self.assertEqual(self.converted().stderr.splitlines(), [
@@ -130,9 +151,13 @@ class RadianceTest(ToolTest):
 
     def test_the_tool_reads_what_comes_out(self):
         self.converted()
-        done = self.run_tool("check", "out.obj", "--set", "pane.transmittance=0.6")
+        done = self.run_tool("check", "out.obj", "--json", "check.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("6 polygons", done.stdout)
+        materials = json.loads((self.folder / "check.json").read_text())["materials"]
+        (pane,) = (material for material in materials if material["name"] == "pane")
+        self.assertAlmostEqual(pane["transmittance"][0], 0.599956, places=6)
+        self.assertEqual(pane["index"], 1.52)
 
 
 if __name__ == "__main__":

@@ -37,6 +37,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
     EXPECT_TRUE(same(a.materials[m].transmittance, b.materials[m].transmittance));
     EXPECT_EQ(a.materials[m].index, b.materials[m].index);
+    EXPECT_EQ(a.materials[m].second_face, b.materials[m].second_face);
   }
   ASSERT_EQ(a.bands.size(), b.bands.size());
   for (std::size_t k = 0; k < a.bands.size(); ++k) {
@@ -90,6 +91,7 @@ Scene odd_scene() {
   scene.materials[1].name = "\xff\x00\"\n";
   scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
   scene.materials[1].index = 4.0 / 3;
+  scene.materials[1].second_face = true;
   scene.bands = {{"650 nm", 1.0 / 3, {1, 0, 0}}};
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";

@@ -28,11 +28,20 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   Scene scene = test::furnished_room(0.5);
   scene.file = "room.dae";
   scene.notes = {"a note"};
+  scene.materials[1].transmittance = Spectrum::Constant(1, 0.5);
+  scene.materials[1].index = 1.4;
+  scene.materials[1].stated_pane = StatedPane{"opacity 0.5", Spectrum::Constant(1, 0.3)};
   const Scene read = read_isolated("room.dae", [&] { return scene; });
   EXPECT_EQ(read.vertices, scene.vertices);
   EXPECT_EQ(read.polygons.size(), scene.polygons.size());
   EXPECT_EQ(read.materials.size(), scene.materials.size());
   EXPECT_EQ(read.notes, scene.notes);
+  EXPECT_EQ(read.materials[0].transmittance.size(), 0);
+  EXPECT_EQ(read.materials[1].transmittance[0], 0.5);
+  EXPECT_EQ(read.materials[1].index, 1.4);
+  ASSERT_TRUE(read.materials[1].stated_pane);
+  EXPECT_EQ(read.materials[1].stated_pane->by, "opacity 0.5");
+  EXPECT_EQ(read.materials[1].stated_pane->opaque_reflectance[0], 0.3);
 }
 
 TEST(ReadIsolated, ARefusalKeepsItsWords) {

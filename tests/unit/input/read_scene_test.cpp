@@ -165,18 +165,17 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
         "newmtl plain\nKd .5 .5 .5\nKs 0 0 0\nd 1\nillum 2\n"
         "newmtl glossy\nKd .5 .5 .5\nKs .1 .1 .1\n"
         "newmtl painted\nKd .5 .5 .5\nmap_Kd wood.png\n"
-        "newmtl veil\nKd .5 .5 .5\nd 0.5\n"
-        "newmtl film\nKd .5 .5 .5\nTr 0.5\n"
+        "newmtl leaves\nKd .5 .5 .5\nmap_d leaves.png\n"
         "newmtl mirror\nKd .5 .5 .5\nillum 3\n"
         "newmtl bare\nKa 2 2 2\n");
   std::string text = "mtllib m.mtl\n" + square + "v 0 0 1 1 0 0\nl 1 2\nl 2 3\np 4\n";
-  for (const char* name : {"plain", "glossy", "painted", "veil", "film", "mirror", "bare"}) {
+  for (const char* name : {"plain", "glossy", "painted", "leaves", "mirror", "bare"}) {
     text += std::string("usemtl ") + name + "\nf 1 2 3\n";
   }
   const Scene scene = read_scene(write("m.obj", text));
-  for (const char* note :
-       {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted", "opaque: veil, film", "matt: mirror",
-        "texture): bare", "lines (l), ignored: 2", "points (p), ignored: 1", "colours of vertices, ignored: 1"}) {
+  for (const char* note : {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted, leaves",
+                           "picture) is ignored: leaves", "matt: mirror", "texture): bare", "lines (l), ignored: 2",
+                           "points (p), ignored: 1", "colours of vertices, ignored: 1"}) {
     EXPECT_TRUE(any_contains(scene.notes, note)) << note;
   }
   EXPECT_FALSE(any_contains(scene.notes, "plain"));
@@ -184,7 +183,7 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   EXPECT_EQ(scene.unsimulated[0].property, UnsimulatedProperty::mirror);
   EXPECT_EQ(scene.unsimulated[0].materials, 2U) << "glossy, mirror";
   EXPECT_EQ(scene.unsimulated[1].property, UnsimulatedProperty::glass);
-  EXPECT_EQ(scene.unsimulated[1].materials, 2U) << "veil, film";
+  EXPECT_EQ(scene.unsimulated[1].materials, 1U) << "leaves";
   ASSERT_EQ(scene.lamp_hints.size(), 1U) << "a Ka above 1 may be meant as a lamp's Ke";
   EXPECT_EQ(scene.lamp_hints[0].material, "bare");
   EXPECT_TRUE((scene.lamp_hints[0].radiance == 2).all());

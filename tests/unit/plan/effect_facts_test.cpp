@@ -78,6 +78,8 @@ TEST(SurveyEffects, DaylightNeedsAnOpeningOrASideThatSeesOut) {
   scene.polygons[1].material = 2;
   EXPECT_EQ(facts_of(scene, Sides::front).openings, 1U);
   EXPECT_TRUE(facts_of(scene, Sides::front).sees_out) << "through the opening";
+  scene.materials[2].second_face = true;
+  EXPECT_EQ(facts_of(scene, Sides::front).openings, 0U) << "counted with the first face of its pane";
 }
 
 TEST(SurveyEffects, CountsMaterialsThatAreNotSimulated) {

@@ -32,6 +32,8 @@ TEST(SolidPanes, CountOnce) {
       EXPECT_EQ(through(scene, 0)[0], 0.8);
       EXPECT_EQ(through(scene, 1)[0], 1);
       EXPECT_EQ(scene.materials[scene.polygons[1].material].reflectance[0], 0);
+      EXPECT_FALSE(scene.materials[scene.polygons[0].material].second_face);
+      EXPECT_TRUE(scene.materials[scene.polygons[1].material].second_face);
       for (PolygonIndex p = 2; p < 6; ++p) EXPECT_EQ(through(scene, p)[0], 0.8) << "the rim is farther apart";
       ASSERT_EQ(scene.notes.size(), 1U);
       EXPECT_NE(scene.notes[0].find("1 pane of two parallel faces"), std::string::npos) << scene.notes[0];

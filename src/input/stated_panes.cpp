@@ -1,0 +1,86 @@
+#include "input/stated_panes.h"
+
+#include "base/rounded.h"
+#include "input/materials.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+bool lets_all_through(const Material& material) { return material.stated_pane && (material.transmittance >= 1).all(); }
+
+// "0.7", or "0.9, 0.5, 0.2" where bands differ.
+std::string shares(const Spectrum& spectrum) {
+  constexpr int digits = 4;
+  std::string text = rounded(spectrum[0], digits);
+  if ((spectrum == spectrum[0]).all()) return text;
+  for (Eigen::Index band = 1; band < spectrum.size(); ++band) text += ", " + rounded(spectrum[band], digits);
+  return text;
+}
+
+std::string note_on_panes(const std::vector<std::string>& panes, const std::string& first) {
+  return "materials read as panes, which let light through: " + listed(panes) + "; read.settings " + first +
+         ".transmittance=0 makes " + (panes.size() == 1 ? "it" : "the first one") + " opaque";
+}
+
+}  // namespace
+
+double plausible_index(double stated, double otherwise) {
+  constexpr double of_ice = 1.3;
+  constexpr double of_diamond = 2.5;
+  return stated >= of_ice && stated <= of_diamond ? stated : otherwise;
+}
+
+// (1 - r) / (1 + r) with r = ((n - 1) / (n + 1))^2
+double highest_transmittance(double index) { return 2 * index / (index * index + 1); }
+
+Material as_pane(Material material, const Spectrum& transmittance, double index, std::string statement) {
+  material.stated_pane = StatedPane{std::move(statement), material.reflectance};
+  material.transmittance = transmittance.max(0).min(1);
+  material.index = index;
+  return material;
+}
+
+Scene without_doubtful_panes(Scene scene) {
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) {
+    if (lets_all_through(material)) names.push_back(material.name);
+  }
+  if (2 * names.size() <= scene.materials.size()) return scene;
+  for (Material& material : scene.materials) {
+    if (!lets_all_through(material)) continue;
+    material.reflectance = material.stated_pane->opaque_reflectance;
+    material.transmittance = {};
+    material.index = usual_index;
+    material.stated_pane.reset();
+  }
+  scene.notes.push_back("most materials would let all light through, so these are taken for opaque: " + listed(names) +
+                        "; read.settings " + names[0] + ".transmittance=1 makes one clear");
+  for (const UnsimulatedMaterials& glass : counted(0, names.size())) scene.unsimulated.push_back(glass);
+  return scene;
+}
+
+Scene with_stated_panes(Scene scene) {
+  std::vector<std::string> panes;
+  std::vector<std::string> darker;
+  std::string first;
+  for (Material& material : scene.materials) {
+    if (!material.stated_pane || !(material.transmittance > 0).any()) continue;
+    if (panes.empty()) first = material.name;
+    panes.push_back(material.name + " (" + material.stated_pane->by + ": transmittance " +
+                    shares(material.transmittance) + ")");
+    const Spectrum most = 1 - material.transmittance;
+    if (!(material.reflectance > most).any()) continue;
+    darker.push_back(material.name);
+    material.reflectance = material.reflectance.min(most);
+  }
+  if (!panes.empty()) scene.notes.push_back(note_on_panes(panes, first));
+  for (std::string& note : note_on("the reflectance of panes is lowered to what they do not let through", darker))
+    scene.notes.push_back(std::move(note));
+  return scene;
+}
+
+}  // namespace patchlight
