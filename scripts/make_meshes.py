@@ -322,12 +322,58 @@ def lamp(model, name, material, centre, size):
     box(model, "lamp_body", low, high, materials={"-z": material})
 
 
+def bathroom():
+    model = Model(
+        "bathroom",
+        [
+            "A bathroom of 2.4 x 2 x 2.5 m, z up, metres: basin on a cabinet, tub, a mirror 1 cm before the wall in a",
+            "frame, a lamp over it, a towel. Mirror, lamp and a view are in bathroom.toml.",
+        ],
+        [
+            Material("tiles", (0.75, 0.77, 0.78)),
+            Material("floor_tiles", (0.35, 0.36, 0.38)),
+            Material("ceiling", grey(0.85)),
+            Material("green_wall", (0.35, 0.55, 0.45)),
+            Material("cabinet", (0.45, 0.3, 0.2)),
+            Material("porcelain", (0.85, 0.85, 0.84)),
+            Material("mirror", grey(0)),
+            Material("frame", grey(0.5)),
+            Material("lamp", grey(0)),
+            Material("towel", (0.7, 0.2, 0.15)),
+        ],
+    )
+    model.group("room")
+    walls = {"-z": "floor_tiles", "+z": "ceiling", "+x": "green_wall"}
+    box(model, "tiles", (0, 0, 0), (2.4, 2, 2.5), inward=True, materials=walls)
+    for name, material, low, high in [
+        ("cabinet", "cabinet", (0.1, 0, 0), (0.9, 0.5, 0.82)),
+        ("basin", "porcelain", (0.05, 0, 0.82), (0.95, 0.55, 0.86)),
+        ("tub", "porcelain", (1.5, 0, 0), (2.4, 2, 0.55)),
+        ("towel", "towel", (0, 0.9, 0.9), (0.03, 1.4, 1.6)),
+    ]:
+        model.group(name)
+        box(model, material, low, high)
+    model.group("mirror")
+    (x0, x1), (z0, z1), rim = (0.1, 0.9), (1.05, 1.95), 0.03
+    model.face("mirror", (x0, 0.01, z0), (x0, 0.01, z1), (x1, 0.01, z1), (x1, 0.01, z0))
+    for low, high in [
+        ((x0 - rim, z0 - rim), (x1 + rim, z0)),
+        ((x0 - rim, z1), (x1 + rim, z1 + rim)),
+        ((x0 - rim, z0), (x0, z1)),
+        ((x1, z0), (x1 + rim, z1)),
+    ]:
+        box(model, "frame", (low[0], 0, low[1]), (high[0], 0.02, high[1]), sides="+x-x+y+z-z")
+    model.group("lamp")
+    box(model, "frame", (0.2, 0, 2.05), (0.8, 0.12, 2.13), sides="+x-x+y+z-z", materials={"+y": "lamp"})
+    return model
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; fail when a file differs")
     check = parser.parse_args().check
     differing = []
-    for make in (cornell_box, furnace_cube, parallel_squares, perpendicular_squares, two_rooms):
+    for make in (cornell_box, furnace_cube, parallel_squares, perpendicular_squares, two_rooms, bathroom):
         model = make()
         for suffix, text in (("obj", model.obj()), ("mtl", model.mtl())):
             path = MESHES / f"{model.name}.{suffix}"

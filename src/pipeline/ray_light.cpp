@@ -92,7 +92,8 @@ Field emitted_in_rows(const RayLight& light) {
 // Light that comes from no patch of the rows.
 Field direct_of(const RayLight& light) {
   Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
-  if (light.lit.problem.direct_irradiance.size() > 0) direct += light.lit.problem.direct_irradiance;
+  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
+    if (more->size() > 0) direct += *more;
   return direct;
 }
 
@@ -153,6 +154,7 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
                  .is_apart = {},
                  .by_lamps = {},
                  .lamp_standard_error = {},
+                 .in_mirrors = {},
                  .distance = {},
                  .is_missed = {}};
   const RadiosityProblem& problem = light.lit.problem;
@@ -195,26 +197,23 @@ Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen
 }
 
 // What lamps that are apart send over mirrors, which their factors do not have.
-void add_lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh, const std::vector<PatchRange>& lamps,
-                          LitProblem& lit) {
+DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh,
+                                  const std::vector<PatchRange>& lamps) {
+  if (lamps.empty() || run.tracing->reflections() == Reflections::kept) return {};
   Scene scene = run.scene;
   scene.luminaires.clear();
   scene.sun.reset();
   scene.sky.reset();
   const Lighting lighting = lighting_of(scene, *run.tracing);
-  if (!lighting.mirrors || lamps.empty()) return;
+  if (!lighting.mirrors) return {};
   std::vector<LampFace> faces;
   for (const PatchRange& patches : lamps) {
     const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
-  const DirectIrradiance more = mirrored_irradiance(lighting, faces, mesh, {.seed = plan.assembly.seed}, run.observer);
-  DirectIrradiance direct{std::move(lit.problem.direct_irradiance), std::move(lit.direct_standard_error)};
-  const Field none = Field::Zero(more.irradiance.rows(), more.irradiance.cols());
-  if (direct.irradiance.size() == 0) direct = {none, none};
-  add(direct, {more.irradiance, with_errors_around(mesh, more.standard_error)});
-  lit.problem.direct_irradiance = std::move(direct.irradiance);
-  lit.direct_standard_error = std::move(direct.standard_error);
+  DirectIrradiance found = mirrored_irradiance(lighting, faces, mesh, {.seed = plan.assembly.seed}, run.observer);
+  found.standard_error = with_errors_around(mesh, found.standard_error);
+  return found;
 }
 
 struct ExchangeAndLight {
@@ -229,7 +228,7 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
                                   : traced_lamps(run, plan, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
-  add_lamps_in_mirrors(run, plan, mesh, exchange.lamps, light.lit);
+  light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light);
     return {std::move(exchange), std::move(light)};
@@ -260,6 +259,11 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
   const Eigen::ArrayXd exposed = exposed_shares(run, mesh, exchange.rows.area);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
+  if (light.in_mirrors.irradiance.size() > 0) {
+    const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exchange.rows.area);
+    light.in_mirrors.irradiance.colwise() *= factor;
+    light.in_mirrors.standard_error.colwise() *= factor;
+  }
   const Eigen::ArrayXd relative = exposure_errors(lost);
   const Field by_exposure = (0.5 * (light.by_lamps[0] + light.by_lamps[1])).colwise() * relative;
   light.lamp_standard_error = (light.lamp_standard_error.square() + by_exposure.square()).sqrt();
@@ -375,9 +379,10 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   variance = variance.max(mean_around(mesh, all.area, variance)).eval();
   if (!light.is_missed.empty()) variance.rowwise() += variance_of_missed(light, sources, row_sum).transpose();
   SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), light.lamp_standard_error.square()};
-  if (light.lit.direct_standard_error.size() > 0) {
-    variance += light.lit.direct_standard_error.square();
-    single.of_lights += light.lit.direct_standard_error.square();
+  for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
+    if (error->size() == 0) continue;
+    variance += error->square();
+    single.of_lights += error->square();
   }
 
   // 4. B = E + rho o H with all that is emitted.

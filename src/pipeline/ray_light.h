@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lighting/direct_irradiance.h"
 #include "pipeline/lit_problem.h"
 #include "transport/lamp_pieces.h"
 #include "transport/ray_exchange.h"
@@ -17,7 +18,8 @@ struct RayLight {
   std::vector<std::uint8_t> is_apart;  ///< per patch: what it emits counts in by_lamps, not in rows
   std::array<Field, 2> by_lamps;       ///< irradiance straight from them, by both halves of the samples, W/m^2
   Field lamp_standard_error;           ///< of its mean, W/m^2
-  std::vector<float> distance;         ///< as TracedRows has it
+  DirectIrradiance in_mirrors;  ///< what the same lamps send over mirrors and clear faces; empty where there are none
+  std::vector<float> distance;  ///< as TracedRows has it
   std::vector<std::uint8_t>
       is_missed;              ///< per patch: bright, but rows that are known have sent no ray there on purpose
   double rays_per_patch = 0;  ///< mean number over the hemisphere
