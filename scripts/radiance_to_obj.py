@@ -5,8 +5,9 @@ usage: scripts/radiance_to_obj.py OUT.obj SCENE.rad...
 
 The files are read in their order, as by oconv: materials first. Polygons are carried over with their outlines as they
 are (holes by coincident edges), and files that !xform lines name. A material becomes its reflectance, a light its
-radiance (Ke), glass a pane (Tf, Ni, illum 7). What trans lets straight through is printed as the --set that does so.
-What cannot be carried over is named on stderr; what cannot be read is refused with file and line.
+radiance (Ke), glass a pane (Tf, Ni, illum 7), mirror and smooth metal a mirror (Ks, illum 3). What trans lets straight
+through is printed as the --set that does so. What cannot be carried over is named on stderr; what cannot be read is
+refused with file and line.
 """
 import math
 import pathlib
@@ -105,6 +106,7 @@ class Scene:
         self.modifiers = {}
         self.materials = {}  # name: (reflectance, transmittance, radiance)
         self.index = {}      # of refraction, of those that are glass
+        self.specular = {}   # reflectance, of those that are mirrors
         self.left_out = {}   # kind: names
         self.vertices, self.lines, self.polygons, self.complaints = [], [], 0, []
 
@@ -203,7 +205,13 @@ class Scene:
             return (*zip(*(glass_of(t, index) for t in color)), black)
         if found.kind == "trans":
             return self.sheet(name, color, rest), [c * (1 - rest[0]) * rest[2] * rest[3] for c in color], black
-        if found.kind == "mirror" or rest[0] > 0:
+        if found.kind == "mirror":
+            self.specular[name] = color
+            return black, black, black
+        if found.kind == "metal" and rest[0] > 0 and rest[1] == 0:
+            self.specular[name] = [c * rest[0] for c in color]
+            return [c * (1 - rest[0]) for c in color], black, black
+        if rest[0] > 0:
             self.complain(f"{name}: its gloss ({found.kind}) becomes matt")
         gloss = rest[0] if found.kind == "plastic" else 0.0  # of a metal the gloss has its colour
         return [c * (1 - gloss) + gloss for c in color], black, black
@@ -230,6 +238,8 @@ class Scene:
         lines += [f"Ke {text_of(light)}"] if any(light) else []
         if name in self.index:
             lines += [f"Tf {text_of(tau)}", f"Ni {self.index[name]:.9g}", "illum 7"]
+        if name in self.specular:
+            lines += [f"Ks {text_of(self.specular[name])}", "illum 3"]
         return "".join(line + "\n" for line in lines)
 
 

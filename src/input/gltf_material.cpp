@@ -2,6 +2,7 @@
 
 #include "base/rounded.h"
 #include "input/materials.h"
+#include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 
 #include <algorithm>
@@ -70,12 +71,29 @@ std::string statement_of(double transmitted, double covered) {
   return factor + (factor.empty() || alpha.empty() ? "" : " and ") + alpha;
 }
 
+bool is_clear(const tinygltf::Material& material) { return transmission(material) > 0 || coverage(material) < 1; }
+
+// A smooth metal. Both factors are 1 where they are not stated.
+bool is_mirror(const tinygltf::Material& material) {
+  const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+  return surface.metallicFactor >= least_metallic && surface.roughnessFactor <= most_roughness &&
+         surface.metallicRoughnessTexture.index < 0 && !is_clear(material);
+}
+
+// glTF 2.0 appendix B.2: a metal reflects its base colour, and nothing diffusely.
+Material with_metal(Material material, const tinygltf::Material& read) {
+  const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
+  const Spectrum color = material.reflectance;
+  return as_mirror(
+      std::move(material), color, Spectrum::Zero(color.size()),
+      "metallicFactor " + rounded(surface.metallicFactor) + " and roughnessFactor " + rounded(surface.roughnessFactor));
+}
+
 // What is covered reflects the part of the base colour that it does not transmit, KHR_materials_transmission says, and
 // transmits the other part, but for what the surfaces of glass reflect even if it absorbs nothing.
 Material with_transparency(Material material, const tinygltf::Material& read) {
   const double transmitted = transmission(read);
   const double covered = coverage(read);
-  if (transmitted == 0 && covered == 1) return material;
   const double index = index_of(read);
   const Spectrum color = material.reflectance.min(1);
   const Spectrum clear = (transmitted * color).min(highest_transmittance(index));
@@ -89,10 +107,10 @@ Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const Spectrum radiance = emissive_strength(read) * color(read.emissiveFactor, 0);
   // Exitance = pi radiance for a Lambertian emitter.
-  return with_transparency(
-      {read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
-       std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)},
-      read);
+  Material material{read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
+                    std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)};
+  if (is_mirror(read)) return with_metal(std::move(material), read);
+  return is_clear(read) ? with_transparency(std::move(material), read) : material;
 }
 
 // The two textures that count; -1 stands for none.
@@ -104,7 +122,9 @@ std::vector<int> colored_textures(const tinygltf::Material& material) {
   return textures;
 }
 
-bool is_metallic(const tinygltf::Material& material) { return material.pbrMetallicRoughness.metallicFactor > 0; }
+bool is_matt_metal(const tinygltf::Material& material) {
+  return material.pbrMetallicRoughness.metallicFactor > 0 && !is_mirror(material);
+}
 
 // Transparent by a picture, or where one is below a threshold.
 bool has_cut_outs(const tinygltf::Material& material) {
@@ -133,7 +153,7 @@ std::vector<Material> gltf_materials(const GltfModel& gltf) {
 }
 
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
-  return counted(names_with(gltf.model, is_metallic).size(), names_with(gltf.model, has_cut_outs).size());
+  return counted(names_with(gltf.model, is_matt_metal).size(), names_with(gltf.model, has_cut_outs).size());
 }
 
 std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
@@ -151,7 +171,7 @@ std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
   };
   note("textures are replaced by their mean colour", has_texture(true));
   note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
-  note("metallic surfaces are simulated as matt ones of their base colour", is_metallic);
+  note("metallic surfaces are simulated as matt ones of their base colour", is_matt_metal);
   note("transparency by textures and masks is ignored, factors alone count", has_cut_outs);
   return notes;
 }

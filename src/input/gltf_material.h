@@ -12,10 +12,10 @@ namespace patchlight {
 
 /// The materials of a glTF file as diffuse ones: reflectance is the base colour, radiance in W/(m^2 sr) the emissive
 /// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded. Those with
-/// transmission or, blended, an alpha below 1 are panes.
+/// transmission or, blended, an alpha below 1 are panes, smooth metals mirrors.
 std::vector<Material> gltf_materials(const GltfModel& gltf);
 
-/// The numbers of materials that are metallic, or transparent by textures or masks.
+/// The numbers of materials that are metallic and no mirrors, or transparent by textures or masks.
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf);
 
 /// One sentence per property that the materials have and the simulation ignores or simplifies.

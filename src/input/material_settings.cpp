@@ -4,10 +4,13 @@
 
 #include "base/near_match.h"
 #include "base/shortest.h"
+#include "input/stated_mirrors.h"
+#include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -56,12 +59,15 @@ Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
                                       std::to_string(bands) + " bands");
 }
 
+// What a setting makes a pane is no mirror of the file's, and the other way round; one of 0 takes back the file's own.
 Material changed(Material material, const MaterialSetting& setting) {
   const Spectrum value = spread(setting, material.reflectance.size());
+  const bool is_some = (value > 0).any();
   switch (setting.quantity) {
     case Quantity::reflectance:
       material.reflectance = value;
-      if (material.stated_pane) material.stated_pane->opaque_reflectance = value;
+      if (material.stated_pane) material.stated_pane->matt_reflectance = value;
+      if (material.stated_mirror) material.stated_mirror->matt_reflectance = value;
       break;
     case Quantity::exitance:
       material.exitance = value;
@@ -70,7 +76,7 @@ Material changed(Material material, const MaterialSetting& setting) {
       material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
       break;
     case Quantity::transmittance:
-      if (material.stated_pane && (value == 0).all()) material.reflectance = material.stated_pane->opaque_reflectance;
+      material = is_some ? without_stated_mirror(std::move(material)) : without_stated_pane(std::move(material));
       material.stated_pane.reset();
       material.transmittance = value;
       break;
@@ -78,6 +84,8 @@ Material changed(Material material, const MaterialSetting& setting) {
       material.index = setting.value[0];
       break;
     case Quantity::specular_reflectance:
+      material = is_some ? without_stated_pane(std::move(material)) : without_stated_mirror(std::move(material));
+      material.stated_mirror.reset();
       material.specular_reflectance = value;
       break;
   }

@@ -1,5 +1,6 @@
 #include "input/materials.h"
 
+#include "base/rounded.h"
 #include "input/text.h"
 
 #include <set>
@@ -52,6 +53,14 @@ std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass
   if (mirrors > 0) found.push_back({UnsimulatedProperty::mirror, mirrors});
   if (glass > 0) found.push_back({UnsimulatedProperty::glass, glass});
   return found;
+}
+
+std::string listed_shares(const Spectrum& shares) {
+  constexpr int digits = 4;
+  std::string text = rounded(shares[0], digits);
+  if ((shares == shares[0]).all()) return text;
+  for (Eigen::Index band = 1; band < shares.size(); ++band) text += ", " + rounded(shares[band], digits);
+  return text;
 }
 
 std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names) {

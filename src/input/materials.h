@@ -20,6 +20,9 @@ Scene with_used_materials(Scene scene);
 /// How many materials have properties that are not simulated, those that none has left out.
 std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass);
 
+/// A spectrum of shares for messages: "0.7", or "0.9, 0.5, 0.2" where bands differ.
+std::string listed_shares(const Spectrum& shares);
+
 /// "sentence: a, b", or nothing when there are no names.
 std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names);
 

@@ -14,11 +14,12 @@
 namespace patchlight {
 namespace {
 
-// Kd and Ke of one material, and what lets light through.
+// Kd and Ke of one material, what lets light through, and what reflects it as a mirror does.
 struct Statements {
   std::optional<Spectrum> reflectance;
   std::optional<Spectrum> radiance;
   MtlTransparency transparency;
+  MtlReflection reflection;
 };
 
 // A line of the file, its words, and the file's name for messages.
@@ -59,6 +60,10 @@ void take(Statements& material, const MtlLine& statement) {
   if (key == "d") material.transparency.dissolve = one_number(statement);
   if (key == "Tr") material.transparency.transparency = one_number(statement);
   if (key == "Ni") material.transparency.index = one_number(statement);
+  if (key == "Ks") material.reflection.specular = three_numbers(statement);
+  if (key == "Ns") material.reflection.exponent = one_number(statement);
+  if (key == "Pr") material.reflection.roughness = one_number(statement);
+  if (key == "Pm") material.reflection.metallic = one_number(statement);
 }
 
 // What every material states, read here because tinyobjloader turns what it cannot read into 0 and rounds the rest
@@ -93,6 +98,14 @@ std::vector<std::string> textures_of(const tinyobj::material_t& m) {
   return textures;
 }
 
+std::optional<MtlMirror> mirror_from(const tinyobj::material_t& read, MtlReflection stated, const Spectrum& diffuse) {
+  stated.diffuse = diffuse;
+  stated.illumination = read.illum;
+  stated.has_textures = !read.specular_texname.empty() || !read.specular_highlight_texname.empty() ||
+                        !read.roughness_texname.empty() || !read.metallic_texname.empty();
+  return mtl_mirror(stated);
+}
+
 MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, Statements stated) {
   stated.transparency.illumination = read.illum;
   MtlMaterial material;
@@ -104,6 +117,7 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.is_specular = any(read.specular);
   material.textures = textures_of(read);
   material.pane = mtl_pane(stated.transparency);
+  if (!material.pane) material.mirror = mirror_from(read, stated.reflection, material.reflectance);
   material.is_contradictory = is_contradictory(stated.transparency);
   material.has_cut_outs = !read.alpha_texname.empty();
   material.is_metallic = read.metallic > 0;
@@ -147,23 +161,23 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
     if (!names.empty()) notes.push_back(sentence + ": " + listed(names));
   };
   note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
-  note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular; });
-  note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic; });
+  note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
+  note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
   note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return !m.textures.empty(); });
   note("d and Tr contradict each other, the surface is opaque",
        [](const MtlMaterial& m) { return m.is_contradictory; });
   note("map_d (transparency by a picture) is ignored", [](const MtlMaterial& m) { return m.has_cut_outs; });
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",
-       [](const MtlMaterial& m) { return m.is_mirror_or_glass && !m.pane; });
+       [](const MtlMaterial& m) { return m.is_mirror_or_glass && !m.pane && !m.mirror; });
   return notes;
 }
 
 std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials) {
-  const auto is_mirror = [](const MtlMaterial& m) {
-    return m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.pane);
+  const auto is_gloss = [](const MtlMaterial& m) {
+    return !m.mirror && (m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.pane));
   };
   const auto is_glass = [](const MtlMaterial& m) { return m.has_cut_outs || m.is_contradictory; };
-  return counted(names_with(materials, is_mirror).size(), names_with(materials, is_glass).size());
+  return counted(names_with(materials, is_gloss).size(), names_with(materials, is_glass).size());
 }
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/scene.h"
 
+#include "input/mtl_mirror.h"
 #include "input/mtl_pane.h"
 
 #include <optional>
@@ -22,6 +23,7 @@ struct MtlMaterial {
   bool is_specular = false;           ///< Ks is not 0
   std::vector<std::string> textures;  ///< the files of map_, bump, disp, refl and norm
   std::optional<MtlPane> pane;        ///< what d, Tr, Tf, Ni and illum make of it
+  std::optional<MtlMirror> mirror;    ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
   bool is_contradictory = false;      ///< d and Tr contradict each other
   bool has_cut_outs = false;          ///< map_d is given
   bool is_mirror_or_glass = false;    ///< illum 3 to 9
@@ -29,8 +31,8 @@ struct MtlMaterial {
 };
 
 /// Reads the materials of an MTL file; of materials with the same name the first is kept.
-/// \throws InputError naming `file` and the line when Kd, Ke or Tf is not three finite numbers, or d, Tr or Ni is
-/// not one.
+/// \throws InputError naming `file` and the line when Kd, Ks, Ke or Tf is not three finite numbers, or d, Tr, Ni,
+/// Ns, Pr or Pm is not one.
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file);
 
 /// One sentence per property that these materials have and the simulation ignores.

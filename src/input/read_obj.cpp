@@ -7,6 +7,7 @@
 #include "input/obj_libraries.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
+#include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 
@@ -190,6 +191,9 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
 Material obj_material(const MtlMaterial& read) {
   // Exitance = pi radiance for a Lambertian emitter.
   Material material{read.name, read.reflectance, std::numbers::pi * read.radiance};
+  if (read.mirror)
+    return as_mirror(std::move(material), read.mirror->specular_reflectance, read.mirror->reflectance,
+                     read.mirror->statement);
   if (!read.pane) return material;
   return as_pane(std::move(material), read.pane->transmittance, read.pane->index, read.pane->statement);
 }

@@ -8,6 +8,7 @@
 #include "input/placed.h"
 #include "input/read_model.h"
 #include "input/scene_file.h"
+#include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml_sensors.h"
@@ -105,7 +106,8 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   }
   Scene scene = merge_scenes(std::move(models));
   for (const SceneFile& file : scene_files) scene = with_scene_file(std::move(scene), file);
-  scene = with_stated_panes(with_settings(std::move(scene), options.settings));
+  scene = with_settings(std::move(scene), options.settings);
+  scene = with_stated_mirrors(with_stated_panes(std::move(scene)));
   scene = repair(std::move(scene));
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);

@@ -1,6 +1,7 @@
 #include "input/scene_bytes.h"
 
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 
@@ -85,16 +86,30 @@ Polygon read_polygon(Reader& in) {
   return polygon;
 }
 
+void write_stated(Writer& out, const std::optional<StatedSurface>& stated) {
+  out.plain(stated.has_value());
+  if (!stated) return;
+  out.text(stated->by);
+  out.numbers(stated->matt_reflectance);
+}
+
+std::optional<StatedSurface> read_stated(Reader& in) {
+  if (!in.plain<bool>()) return std::nullopt;
+  StatedSurface stated;
+  stated.by = in.text();
+  stated.matt_reflectance = in.spectrum();
+  return stated;
+}
+
 void write_material(Writer& out, const Material& material) {
   out.text(material.name);
   out.numbers(material.reflectance);
   out.numbers(material.exitance);
   out.numbers(material.transmittance);
   out.plain(material.index);
-  out.plain(material.stated_pane.has_value());
-  if (!material.stated_pane) return;
-  out.text(material.stated_pane->by);
-  out.numbers(material.stated_pane->opaque_reflectance);
+  out.numbers(material.specular_reflectance);
+  write_stated(out, material.stated_pane);
+  write_stated(out, material.stated_mirror);
 }
 
 Material read_material(Reader& in) {
@@ -104,10 +119,9 @@ Material read_material(Reader& in) {
   material.exitance = in.spectrum();
   material.transmittance = in.spectrum();
   material.index = in.plain<double>();
-  if (!in.plain<bool>()) return material;
-  StatedPane& pane = material.stated_pane.emplace();
-  pane.by = in.text();
-  pane.opaque_reflectance = in.spectrum();
+  material.specular_reflectance = in.spectrum();
+  material.stated_pane = read_stated(in);
+  material.stated_mirror = read_stated(in);
   return material;
 }
 

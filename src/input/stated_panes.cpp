@@ -1,6 +1,5 @@
 #include "input/stated_panes.h"
 
-#include "base/rounded.h"
 #include "input/materials.h"
 #include "input/text.h"
 
@@ -11,15 +10,6 @@ namespace patchlight {
 namespace {
 
 bool lets_all_through(const Material& material) { return material.stated_pane && (material.transmittance >= 1).all(); }
-
-// "0.7", or "0.9, 0.5, 0.2" where bands differ.
-std::string shares(const Spectrum& spectrum) {
-  constexpr int digits = 4;
-  std::string text = rounded(spectrum[0], digits);
-  if ((spectrum == spectrum[0]).all()) return text;
-  for (Eigen::Index band = 1; band < spectrum.size(); ++band) text += ", " + rounded(spectrum[band], digits);
-  return text;
-}
 
 std::string note_on_panes(const std::vector<std::string>& panes, const std::string& first) {
   return "materials read as panes, which let light through: " + listed(panes) + "; read.settings " + first +
@@ -38,9 +28,18 @@ double plausible_index(double stated, double otherwise) {
 double highest_transmittance(double index) { return 2 * index / (index * index + 1); }
 
 Material as_pane(Material material, const Spectrum& transmittance, double index, std::string statement) {
-  material.stated_pane = StatedPane{std::move(statement), material.reflectance};
+  material.stated_pane = StatedSurface{std::move(statement), material.reflectance};
   material.transmittance = transmittance.max(0).min(1);
   material.index = index;
+  return material;
+}
+
+Material without_stated_pane(Material material) {
+  if (!material.stated_pane) return material;
+  material.reflectance = material.stated_pane->matt_reflectance;
+  material.transmittance = {};
+  material.index = usual_index;
+  material.stated_pane.reset();
   return material;
 }
 
@@ -51,11 +50,7 @@ Scene without_doubtful_panes(Scene scene) {
   }
   if (2 * names.size() <= scene.materials.size()) return scene;
   for (Material& material : scene.materials) {
-    if (!lets_all_through(material)) continue;
-    material.reflectance = material.stated_pane->opaque_reflectance;
-    material.transmittance = {};
-    material.index = usual_index;
-    material.stated_pane.reset();
+    if (lets_all_through(material)) material = without_stated_pane(std::move(material));
   }
   scene.notes.push_back("most materials would let all light through, so these are taken for opaque: " + listed(names) +
                         "; read.settings " + names[0] + ".transmittance=1 makes one clear");
@@ -71,7 +66,7 @@ Scene with_stated_panes(Scene scene) {
     if (!material.stated_pane || !(material.transmittance > 0).any()) continue;
     if (panes.empty()) first = material.name;
     panes.push_back(material.name + " (" + material.stated_pane->by + ": transmittance " +
-                    shares(material.transmittance) + ")");
+                    listed_shares(material.transmittance) + ")");
     const Spectrum most = 1 - material.transmittance;
     if (!(material.reflectance > most).any()) continue;
     darker.push_back(material.name);

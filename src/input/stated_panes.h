@@ -17,6 +17,9 @@ double highest_transmittance(double index);
 /// becomes the nearest number there.
 Material as_pane(Material material, const Spectrum& transmittance, double index, std::string statement);
 
+/// The material without the pane that a model file makes of it: opaque.
+Material without_stated_pane(Material material);
+
 /// The scene of one model file, of which panes that let all light through are opaque where more than half of the
 /// materials are such: programs write that who mean the contrary. A note says so.
 Scene without_doubtful_panes(Scene scene);

@@ -22,9 +22,11 @@ Json spectrum_part(const Spectrum& spectrum) { return spectrum.size() > 0 ? json
 Json material_part(const MaterialFacts& facts) {
   const Material& material = facts.material;
   const bool is_pane = (material.transmittance > 0).any();
+  const bool is_mirror = (material.specular_reflectance > 0).any();
   Json part;
   part["name"] = material.name;
   part["reflectance"] = json_array(material.reflectance);
+  part["specular_reflectance"] = is_mirror ? spectrum_part(material.specular_reflectance) : Json();
   part["transmittance"] = is_pane ? spectrum_part(material.transmittance) : Json();
   part["index"] = is_pane ? Json(material.index) : Json();
   part["exitance_W_m2"] = json_array(material.exitance);

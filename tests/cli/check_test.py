@@ -115,6 +115,18 @@ class CheckTest(ToolTest):
         for material in self.report("room.obj", "--set", "lamp.transmittance=0")["materials"]:
             self.assertEqual((material["transmittance"], material["index"]), (None, None))
 
+    def test_mirrors_are_listed_with_their_specular_reflectance(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 10 9 8\nKs 0.9 0.8 0.7\nillum 3"))
+        done = self.check("room.obj")
+        self.assertIn("; specular reflectance 0.9, 0.8, 0.7; ", done.stdout)
+        self.assertIn("lamp (illum 3: specular reflectance 0.9, 0.8, 0.7); --set lamp.specular_reflectance=0 makes it "
+                      "matt", done.stdout)
+        found = {material["name"]: material["specular_reflectance"] for material in self.report("room.obj")["materials"]}
+        self.assertEqual(found.pop("lamp"), [0.9, 0.8, 0.7])
+        self.assertEqual(set(found.values()), {None})
+        matt = self.check("room.obj", "--set", "lamp.specular_reflectance=0").stdout
+        self.assertNotIn("specular", matt)
+
     def test_sun_sky_and_ground_are_listed(self):
         self.assertNotIn("sky", self.check("room.obj").stdout)
         report = self.report("room.obj")

@@ -6,7 +6,8 @@ from support import MATERIALS, ROOM, ToolTest, content
 
 GOOD, USAGE, INPUT = 0, 1, 2
 
-EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "closure"]
+EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "mirrors",
+           "closure"]
 
 
 class PlanTest(ToolTest):
@@ -60,9 +61,17 @@ class PlanTest(ToolTest):
     def test_what_is_not_simulated_is_named(self):
         self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.7 0.6 0.5\nKs 0.1 0.1 0.1\nmap_d holes.png"))
         plan = self.plan()["by_effect"]
-        self.assertIn("1 material", plan["mirrors"]["reason"])
+        self.assertIn("1 material", plan["gloss"]["reason"])
         self.assertIn("1 transparent material", plan["glass"]["reason"])
-        self.assertFalse(plan["mirrors"]["simulate"])
+        self.assertFalse(plan["gloss"]["simulate"])
+
+    def test_mirrors_of_the_file_are_no_gloss(self):
+        self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 0.1 0.1 0.1\nKs 0.9 0.8 0.7\nillum 3"))
+        plan = self.plan()["by_effect"]
+        self.assertTrue(plan["mirrors"]["simulate"])
+        self.assertNotIn("gloss", plan)
+        matt = self.plan("--set", "*.specular_reflectance=0")["by_effect"]
+        self.assertFalse(matt["mirrors"]["simulate"])
 
     def test_results_say_what_was_overruled(self):
         done = self.run_tool("solve", "room.obj", "--patches", "200", "--skip", "occlusion", "--report", "report.json")
@@ -124,7 +133,7 @@ class PlanTest(ToolTest):
         self.assert_refused(["--force occlusion", "--form-factors"], *outputs, "--force", "occlusion", "--form-factors",
                             "room.ff")
         self.assert_refused(["shadows", "occlusion"], *outputs, "--skip", "shadows")
-        self.assert_refused(["--skip", "mirrors"], *outputs, "--skip", "mirrors")
+        self.assert_refused(["--skip", "gloss"], *outputs, "--skip", "gloss")
 
     def test_skipping_all_light_is_refused(self):
         self.write("sky.toml", '[[model]]\nfile = "room.obj"\n[sky]\nkind = "uniform"\nirradiance = 10\n')

@@ -18,6 +18,9 @@ void plastic shiny
 5 .5 .5 .5 .1 .05
 void glass pane 0 0 3 .654 .654 .654
 void trans sheet 0 0 7 .8 .8 .8 0 0 .5 .25
+void mirror polished 0 0 3 .9 .8 .7
+void metal chrome 0 0 5 .8 .6 .4 .75 0
+void metal brushed 0 0 5 .8 .6 .4 .75 .1
 void light lamp 0 0 3 5 6 7
 void dielectric water 0 0 5 1 1 1 1.33 0
 void alias paint wall
@@ -126,6 +129,25 @@ class RadianceTest(ToolTest):
         text = (self.folder / "out.mtl").read_text()
         self.assertIn(f"newmtl pane\nKd {1 - through:.9g} ", text)
         self.assertIn(f"Tf {through:.9g} {through:.9g} {through:.9g}\nNi 1.7\n", text)
+
+    def test_mirrors_and_smooth_metals_reflect_without_scattering(self):
+        self.write("scene.rad", SCENE + "".join(
+            f"{name} polygon {name}_face 0 0 9 0 0 {height}  1 0 {height}  0 1 {height}\n"
+            for name, height in (("polished", 3), ("chrome", 4), ("brushed", 5))))
+        done = self.converted()
+        text = (self.folder / "out.mtl").read_text()
+        self.assertIn("newmtl polished\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", text)
+        # Three quarters of what it reflects, in its colour; the rest is scattered.
+        self.assertIn("newmtl chrome\nKd 0.2 0.15 0.1\nKs 0.6 0.45 0.3\nillum 3\n", text)
+        self.assertIn("newmtl brushed\nKd 0.8 0.6 0.4\n", text)
+        self.assertIn("brushed: its gloss (metal) becomes matt\n", done.stderr)
+        self.assertNotIn("chrome", done.stderr)
+        report = self.run_tool("check", "out.obj", "--json", "check.json")
+        self.assertEqual(report.returncode, 0, report.stderr)
+        materials = json.loads((self.folder / "check.json").read_text())["materials"]
+        found = {material["name"]: material["specular_reflectance"] for material in materials}
+        self.assertEqual([found[name] for name in ("polished", "chrome", "brushed")],
+                         [[0.9, 0.8, 0.7], [0.6, 0.45, 0.3], None])
 
     def test_what_is_lost_is_named(self):
         self.assertEqual(self.converted().stderr.splitlines(), [

@@ -14,10 +14,10 @@ using MaterialIndex = std::uint32_t;
 /// The index of refraction of window glass.
 inline constexpr double usual_index = 1.52;
 
-/// What a model file says of a material that it makes a pane.
-struct StatedPane {
-  std::string by;               ///< the statement, for messages: "d 0.3"
-  Spectrum opaque_reflectance;  ///< what the surface reflects if it is taken for opaque
+/// What a model file says of a material that it makes a pane or a mirror.
+struct StatedSurface {
+  std::string by;             ///< the statement, for messages: "d 0.3"
+  Spectrum matt_reflectance;  ///< what the surface reflects diffusely if it is taken for opaque and matt
 };
 
 /// A surface that scatters diffusely (Lambertian), and may let light through or reflect it as a mirror besides; all
@@ -32,8 +32,9 @@ struct Material {
                                ///< at an angle
   Spectrum specular_reflectance{};  ///< in [0, 1]: the share of light that is reflected as by a mirror, at all angles
                                     ///< alike; empty or 0: none, but for what a clear material reflects by its index
-  std::optional<StatedPane> stated_pane{};  ///< where a model file makes it a pane, and no setting has another say
-  bool second_face = false;                 ///< made up, clear in full: that of the second faces of solid panes
+  std::optional<StatedSurface> stated_pane{};    ///< where a model file makes it a pane, and no setting has another say
+  std::optional<StatedSurface> stated_mirror{};  ///< the same of a mirror
+  bool second_face = false;                      ///< made up, clear in full: that of the second faces of solid panes
 };
 
 }  // namespace patchlight

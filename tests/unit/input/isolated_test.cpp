@@ -30,7 +30,9 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   scene.notes = {"a note"};
   scene.materials[1].transmittance = Spectrum::Constant(1, 0.5);
   scene.materials[1].index = 1.4;
-  scene.materials[1].stated_pane = StatedPane{"opacity 0.5", Spectrum::Constant(1, 0.3)};
+  scene.materials[1].stated_pane = StatedSurface{"opacity 0.5", Spectrum::Constant(1, 0.3)};
+  scene.materials[0].specular_reflectance = Spectrum::Constant(1, 0.6);
+  scene.materials[0].stated_mirror = StatedSurface{"a smooth metal", Spectrum::Constant(1, 0.7)};
   const Scene read = read_isolated("room.dae", [&] { return scene; });
   EXPECT_EQ(read.vertices, scene.vertices);
   EXPECT_EQ(read.polygons.size(), scene.polygons.size());
@@ -41,7 +43,13 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   EXPECT_EQ(read.materials[1].index, 1.4);
   ASSERT_TRUE(read.materials[1].stated_pane);
   EXPECT_EQ(read.materials[1].stated_pane->by, "opacity 0.5");
-  EXPECT_EQ(read.materials[1].stated_pane->opaque_reflectance[0], 0.3);
+  EXPECT_EQ(read.materials[1].stated_pane->matt_reflectance[0], 0.3);
+  EXPECT_EQ(read.materials[1].specular_reflectance.size(), 0);
+  EXPECT_FALSE(read.materials[1].stated_mirror);
+  EXPECT_EQ(read.materials[0].specular_reflectance[0], 0.6);
+  ASSERT_TRUE(read.materials[0].stated_mirror);
+  EXPECT_EQ(read.materials[0].stated_mirror->by, "a smooth metal");
+  EXPECT_EQ(read.materials[0].stated_mirror->matt_reflectance[0], 0.7);
 }
 
 TEST(ReadIsolated, ARefusalKeepsItsWords) {
