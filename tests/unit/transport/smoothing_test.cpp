@@ -75,6 +75,25 @@ TEST(Smoothing, KeepsToTheRadiusOfWhatIsNear) {
   for (PatchIndex i = 0; i < mesh.size(); i += 2) EXPECT_EQ(smooth.halves[1](i, 0), field(i, 0));
 }
 
+// The inside of a sheet 1 mm thick, which is dark, and the outside, which looks the same way and is bright: both halves
+// tell that one is not as the other, whatever the distances, of which means are taken, are.
+TEST(Smoothing, CarriesNothingIntoASpaceBehindAFace) {
+  Scene scene = empty_scene({grey(0.5)});
+  for (const double z : {0.0, 0.001})
+    scene = with_quad(std::move(scene), {Point(0, 0, z), Point(2, 0, z), Point(2, 2, z), Point(0, 2, z)});
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.1);
+  const auto irradiance = [&](std::uint64_t half) {
+    return column(mesh, [&](PatchIndex i) { return mesh.polygon[i] == 0 ? 0 : 100 + hash({half, i}) * 0x1p-32; });
+  };
+  const SmoothedHalves smooth = smoothed(mesh, far_away(mesh), {irradiance(1), irradiance(2)});
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const double low = mesh.polygon[i] == 0 ? 0 : 100;
+    EXPECT_GE(smooth.halves[0](i, 0), low);
+    EXPECT_LE(smooth.halves[0](i, 0), low == 0 ? 0 : 101);
+    EXPECT_LT(smooth.variance(i, 0), 1);
+  }
+}
+
 TEST(Smoothing, HasTheSameBitsForAnyNumberOfThreads) {
   const PatchMesh mesh = floor_and_wall();
   const Field field = column(mesh, [](PatchIndex i) { return std::abs(std::sin(3.0 * i)); });
