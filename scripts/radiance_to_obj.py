@@ -80,7 +80,7 @@ class Words:
 
 
 def glass_of(transmissivity, index):
-    """Reflectance and transmittance of a pane, square to it: Fresnel at both faces, and all reflections between.
+    """Transmittance of a pane, square to it: Fresnel at both faces, and all reflections between.
 
     The Radiance Reference Manual (material glass) has the inverse for the index 1.52, the transmissivity of a
     transmittance T: (sqrt(.8402528435 + .0072522239 T^2) - .9166530661) / .0036261119 / T, with (1 - r)^4, 4 r^2,
@@ -88,8 +88,7 @@ def glass_of(transmissivity, index):
     """
     r = ((index - 1) / (index + 1))**2
     through = 1 - (r * transmissivity)**2
-    transmittance = (1 - r)**2 * transmissivity / through
-    return r + r * transmissivity * transmittance, transmittance
+    return (1 - r)**2 * transmissivity / through
 
 
 class Modifier:
@@ -202,7 +201,7 @@ class Scene:
             return black, black, color
         if found.kind == "glass":
             self.index[name] = index = rest[0] if rest else INDEX
-            return (*zip(*(glass_of(t, index) for t in color)), black)
+            return black, [glass_of(t, index) for t in color], black
         if found.kind == "trans":
             return self.sheet(name, color, rest), [c * (1 - rest[0]) * rest[2] * rest[3] for c in color], black
         if found.kind == "mirror":

@@ -160,6 +160,9 @@ void Gather::add_hemisphere(std::size_t quarter, std::span<const Seen> seen, Gat
     const int of_met = quarter_at(mesh_.corner_points(*met), mesh_.normal[*met], hit.point);
     into.met[quarter * seen.size() + k] = 4 * *met + static_cast<PatchIndex>(of_met);
     into.irradiance.row(static_cast<Eigen::Index>(quarter)) += sent_.row(*met);
+    // No ray to a lamp goes over mirrors.
+    if (!lamps_.empty() && hit.reflections > 0)
+      into.irradiance.row(static_cast<Eigen::Index>(quarter)) += exitance_.row(*met);
   }
 }
 

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
+#include <queue>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
 constexpr std::size_t most_mirrors = 16;
-constexpr std::size_t most_chains = 512;
+constexpr std::size_t most_chains = 1024;
 constexpr double least_reflectance = 1e-3;
 
 // What a material reflects at most in a band; of a clear one, of light from all directions alike.
@@ -68,39 +68,72 @@ MirrorChain lengthened(const MirrorChain& chain, const MirrorSide& by) {
   return longer;
 }
 
-// The chains with one mirror more.
-std::vector<MirrorChain> longer_chains(const Scene& scene, std::span<const MirrorChain> chains,
-                                       const std::vector<MirrorSide>& sides) {
-  const double tolerance = 1e-7 * bounds(scene).diagonal().norm();
-  std::vector<MirrorChain> longer;
-  for (const MirrorChain& chain : chains) {
+// Those that reflect most come first, of equal ones those that were found first.
+struct Candidate {
+  MirrorChain chain;
+  std::size_t number = 0;
+
+  bool operator<(const Candidate& other) const {
+    if (chain.reflectance != other.chain.reflectance) return chain.reflectance < other.chain.reflectance;
+    return number > other.number;
+  }
+};
+
+class Candidates {
+ public:
+  Candidates(const Scene& scene, std::vector<MirrorSide> sides)
+      : scene_(scene), sides_(std::move(sides)), tolerance_(1e-7 * bounds(scene).diagonal().norm()) {
+    for (const MirrorSide& side : sides_)
+      if (has_scene_before(side)) add(lengthened({}, side));
+  }
+
+  bool empty() const { return queue_.empty(); }
+
+  MirrorChain next() {
+    MirrorChain chain = queue_.top().chain;
+    queue_.pop();
+    return chain;
+  }
+
+  // The same with one mirror more.
+  void add_longer(const MirrorChain& chain) {
     const MirrorSide& last = chain.mirrors.back();
-    for (const MirrorSide& next : sides) {
-      if (chain.reflectance * next.reflectance < least_reflectance) continue;
-      if (!has_corner_before(scene, next.polygon, last, tolerance)) continue;
-      if (has_corner_before(scene, last.polygon, next, tolerance)) longer.push_back(lengthened(chain, next));
+    for (const MirrorSide& side : sides_) {
+      if (chain.reflectance * side.reflectance < least_reflectance) continue;
+      if (!has_corner_before(scene_, side.polygon, last, tolerance_)) continue;
+      if (has_corner_before(scene_, last.polygon, side, tolerance_)) add(lengthened(chain, side));
     }
   }
-  return longer;
-}
+
+ private:
+  void add(MirrorChain chain) { queue_.push({std::move(chain), number_++}); }
+
+  bool has_scene_before(const MirrorSide& side) const {
+    return std::any_of(scene_.vertices.begin(), scene_.vertices.end(),
+                       [&](const Point& vertex) { return side.normal.dot(vertex - side.on_plane) > tolerance_; });
+  }
+
+  const Scene& scene_;
+  std::vector<MirrorSide> sides_;
+  double tolerance_;
+  std::priority_queue<Candidate> queue_;
+  std::size_t number_ = 0;
+};
 
 }  // namespace
 
 MirrorChains mirror_chains(const Scene& scene) {
-  const std::vector<MirrorSide> sides = mirror_sides(scene);
-  std::vector<MirrorChain> longest;
-  for (const MirrorSide& side : sides) longest.push_back(lengthened({}, side));
+  Candidates candidates(scene, mirror_sides(scene));
   MirrorChains found;
-  for (std::size_t mirrors = 1; !longest.empty() && found.cut_off == 0; ++mirrors) {
-    std::stable_sort(longest.begin(), longest.end(),
-                     [](const MirrorChain& a, const MirrorChain& b) { return a.reflectance > b.reflectance; });
-    const std::size_t room = mirrors > most_mirrors ? 0 : most_chains - found.chains.size();
-    if (longest.size() > room) {
-      found.cut_off = longest[room].reflectance;
-      longest.resize(room);
+  while (!candidates.empty()) {
+    MirrorChain chain = candidates.next();
+    if (found.chains.size() == most_chains) {
+      found.is_cut = true;
+      found.cut_off = chain.reflectance;
+      break;
     }
-    found.chains.insert(found.chains.end(), longest.begin(), longest.end());
-    if (found.cut_off == 0) longest = longer_chains(scene, longest, sides);
+    if (chain.mirrors.size() < most_mirrors) candidates.add_longer(chain);
+    found.chains.push_back(std::move(chain));
   }
   return found;
 }

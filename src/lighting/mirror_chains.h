@@ -24,12 +24,13 @@ struct MirrorChain {
   Eigen::Affine3d image = Eigen::Affine3d::Identity();
 };
 
-/// The chains that light can take over planar mirrors and clear faces, the shortest first, and of those with as many
-/// mirrors the ones that reflect most: up to 16 mirrors in a row, as long as the product of their reflectances is 1e-3
-/// or more, 512 chains at most. Each mirror has something before the plane of the next, and the other way round.
+/// The chains that light can take over planar mirrors and clear faces, those that reflect most first: up to 16 mirrors
+/// in a row, as long as the product of their reflectances is 1e-3 or more, 1,024 chains at most. Each mirror has
+/// something before the plane of the next, and the other way round.
 struct MirrorChains {
   std::vector<MirrorChain> chains;
-  double cut_off = 0;  ///< the largest product of reflectances of a chain that is left out
+  bool is_cut = false;  ///< there are more than that
+  double cut_off = 0;   ///< where it is cut: the product of reflectances of the first that is left out
 };
 MirrorChains mirror_chains(const Scene& scene);
 

@@ -12,13 +12,17 @@ struct MirrorPaths::Way {
 
 namespace {
 
-// Places nearer to a mirror's plane than this, in metres, are on it: the receiver is the mirror.
-constexpr double least_height = 1e-9;
+// Places nearer to a mirror's plane than this share of the scene's extent are on it: the receiver is the mirror.
+constexpr double on_plane_share = 1e-9;
 
 }  // namespace
 
 MirrorPaths::MirrorPaths(const Scene& scene)
-    : chains_(mirror_chains(scene)), sides_(scene), bands_(number_of_bands(scene)), flat_(scene.polygons.size()) {
+    : chains_(mirror_chains(scene)),
+      sides_(scene),
+      bands_(number_of_bands(scene)),
+      least_height_(on_plane_share * bounds(scene).diagonal().norm()),
+      flat_(scene.polygons.size()) {
   for (const MirrorChain& chain : chains_.chains) {
     const PolygonIndex p = chain.mirrors.back().polygon;
     if (flat_[p].corners.empty()) flat_[p] = flat_polygon(corner_points(scene, p));
@@ -38,7 +42,7 @@ std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::s
       const MirrorSide& mirror = chain.mirrors[m];
       const double before = mirror.normal.dot(onward - mirror.on_plane);
       const double behind = -mirror.normal.dot(image - mirror.on_plane);
-      meets_all = before > least_height && behind > least_height;
+      meets_all = before > least_height_ && behind > least_height_;
       if (!meets_all) break;
       way.places[m] = image + behind / (before + behind) * (onward - image);
       meets_all = contains(flat_[mirror.polygon], way.places[m]);

@@ -20,9 +20,6 @@ class MirrorPaths {
 
   const std::vector<MirrorChain>& chains() const { return chains_.chains; }
 
-  /// The largest share of light that a chain which is left out would reflect.
-  double cut_off() const { return chains_.cut_off; }
-
   /// Per segment (row), from a receiver to a source, and band (column), by way of the mirrors of a chain: 0 where the
   /// straight line from the receiver's image to the source misses one of them.
   Field transmittance(const MirrorChain& chain, const LightPaths& paths, std::span<const Segment> segments) const;
@@ -37,6 +34,7 @@ class MirrorPaths {
   MirrorChains chains_;
   PaneSides sides_;
   Eigen::Index bands_;
+  double least_height_;            // metres
   std::vector<FlatPolygon> flat_;  // per polygon; empty where it is no mirror
 };
 

@@ -14,12 +14,20 @@ namespace {
 // A straight line crosses no more clear faces than this.
 constexpr int most_faces_crossed = 64;
 
+constexpr double least_weight = 1e-3;
+
+// The largest mirrors, towards which rays are sent; smaller ones are found by rays over the hemisphere.
+constexpr std::size_t most_targets = 256;
+
 }  // namespace
 
 MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing)
     : sides_(sides), occluder_(tracing.all_faces(scene)) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     if (sides.is_specular(p)) targets_.push_back(opening_at(scene, p));
+  std::stable_sort(targets_.begin(), targets_.end(),
+                   [](const Opening& a, const Opening& b) { return a.area > b.area; });
+  if (targets_.size() > most_targets) targets_.resize(most_targets);
 }
 
 // Roughly as the solid angle of each if it were turned to the receiver.
@@ -55,21 +63,25 @@ double MirrorView::Aim::density(const MirrorView& view, const SurfacePoint& at, 
 }
 
 // Straight on, through clear faces.
-void MirrorView::follow(const SurfacePoint& at, const Vector& direction, double per_density,
-                        std::vector<MirrorRay>& into) const {
-  Ray ray{at.point, direction, at.polygon};
-  Spectrum weight;
+void MirrorView::follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const {
   for (int crossing = 0; crossing < most_faces_crossed; ++crossing) {
     const std::optional<Hit> hit = occluder_.first_hits({&ray, 1}).front();
     if (!hit || !sides_.is_specular(hit->polygon)) return;
-    const Spectrum reflected = sides_.specular_reflectance(hit->polygon, direction);
-    if (weight.size() == 0) weight = Spectrum::Constant(reflected.size(), per_density);
+    const Spectrum reflected = sides_.specular_reflectance(hit->polygon, hit->direction);
     if ((reflected > 0).any())
-      into.push_back({{hit->point, occluder_.mirrored(hit->polygon, direction), hit->polygon}, weight * reflected});
+      into.push_back(
+          {{hit->point, occluder_.mirrored(hit->polygon, hit->direction), hit->polygon}, weight * reflected});
     if (!sides_.is_clear(hit->polygon)) return;
-    weight *= sides_.transmittance(hit->polygon, direction);
-    ray = {hit->point, direction, hit->polygon};
+    weight *= sides_.transmittance(hit->polygon, hit->direction);
+    ray = {hit->point, hit->direction, hit->polygon};
   }
+}
+
+std::vector<MirrorRay> MirrorView::further(std::span<const MirrorRay> rays, double whole) const {
+  std::vector<MirrorRay> met;
+  for (const auto& [ray, weight] : rays) follow(ray, weight, met);
+  std::erase_if(met, [&](const MirrorRay& one) { return one.weight.maxCoeff() < least_weight * whole; });
+  return met;
 }
 
 void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
@@ -89,7 +101,8 @@ void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<dou
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) continue;
     const double density = cosine / std::numbers::pi + aim.density(*this, at, direction);
-    follow(at, direction, cosine / (static_cast<double>(half) * density), into);
+    const double weight = cosine / (static_cast<double>(half) * density);
+    follow({at.point, direction, at.polygon}, Spectrum::Constant(sides_.bands(), weight), into);
   }
 }
 

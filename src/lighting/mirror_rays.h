@@ -29,17 +29,21 @@ class MirrorView {
   void add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
                 std::vector<MirrorRay>& into) const;
 
+  /// The rays that leave mirrors which these meet on their way, straight on or through clear faces; of each as much as
+  /// its weight is, relative to `whole`, 1e-3 or more.
+  std::vector<MirrorRay> further(std::span<const MirrorRay> rays, double whole) const;
+
  private:
   struct Aim {
     std::vector<double> probabilities;  // of each target to be chosen
     double density(const MirrorView& view, const SurfacePoint& at, const Vector& direction) const;
   };
   Aim aim_from(const SurfacePoint& at) const;
-  void follow(const SurfacePoint& at, const Vector& direction, double per_density, std::vector<MirrorRay>& into) const;
+  void follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const;
 
   const PaneSides& sides_;
   const Occluder& occluder_;
-  std::vector<Opening> targets_;  // the mirrors and clear faces, each once
+  std::vector<Opening> targets_;  // the largest mirrors and clear faces
 };
 
 }  // namespace patchlight

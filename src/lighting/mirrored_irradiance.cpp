@@ -21,6 +21,7 @@ namespace {
 
 // Independent estimates of each irradiance: their spread is its standard error.
 constexpr std::uint32_t mirrored_replicates = 8;
+constexpr std::size_t most_mirrors_of_sky = 16;
 constexpr int effort_at_points = 16;
 
 // What one sample of a source gives a place if nothing is in the way.
@@ -77,6 +78,7 @@ struct MirrorSampler {
   std::vector<std::vector<std::array<double, 4>>> points;  // per replicate
 
   Spectrum over_chains(const std::vector<SurfacePoint>& places, SamplePoints samples) const;
+  Spectrum sky_in(std::span<const MirrorRay> rays) const;
   Spectrum of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const;
   Field replicates_at(const Receiver& receiver, std::uint32_t key) const;
 };
@@ -105,26 +107,37 @@ Spectrum MirrorSampler::over_chains(const std::vector<SurfacePoint>& places, Sam
   return sum;
 }
 
-// Over one mirror; the sum over places. A point is one place, with all of the samples.
-Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const {
-  Spectrum sum = Spectrum::Zero(lighting.bands);
-  if (!lighting.sky) return sum;
-  std::vector<MirrorRay> rays;
-  if (is_point) {
-    lighting.mirrors->view.add_rays(places[0], samples, rays);
-    for (MirrorRay& ray : rays) ray.weight *= static_cast<double>(places.size());
-  } else {
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const std::array<std::array<double, 4>, 2> pair{samples[k], samples[(k + 1) % places.size()]};
-      lighting.mirrors->view.add_rays(places[k], pair, rays);
-    }
-  }
+// Light of the sky in rays that leave mirrors.
+Spectrum MirrorSampler::sky_in(std::span<const MirrorRay> rays) const {
   std::vector<Segment> segments;
   for (const auto& [ray, weight] : rays)
     segments.push_back({ray.origin, lighting.paths.beyond(ray.origin, ray.direction), ray.from_polygon, no_polygon});
   const Field share = lighting.paths.transmittance(segments);
+  Spectrum sum = Spectrum::Zero(lighting.bands);
   for (std::size_t k = 0; k < rays.size(); ++k)
     sum += rays[k].weight * radiance(*lighting.sky, rays[k].ray.direction) * share.row(static_cast<Eigen::Index>(k));
+  return sum;
+}
+
+// The sum over places. A point is one place, with all of the samples.
+Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const {
+  Spectrum sum = Spectrum::Zero(lighting.bands);
+  if (!lighting.sky) return sum;
+  const MirrorView& view = lighting.mirrors->view;
+  std::vector<MirrorRay> rays;
+  if (is_point) {
+    view.add_rays(places[0], samples, rays);
+    for (MirrorRay& ray : rays) ray.weight *= static_cast<double>(places.size());
+  } else {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::array<std::array<double, 4>, 2> pair{samples[k], samples[(k + 1) % places.size()]};
+      view.add_rays(places[k], pair, rays);
+    }
+  }
+  for (std::size_t mirrors = 1; mirrors <= most_mirrors_of_sky && !rays.empty(); ++mirrors) {
+    sum += sky_in(rays);
+    rays = view.further(rays, is_point ? 1 : std::numbers::pi);
+  }
   return sum;
 }
 

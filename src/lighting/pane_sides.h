@@ -16,6 +16,8 @@ class PaneSides {
  public:
   explicit PaneSides(const Scene& scene);
 
+  Eigen::Index bands() const { return bands_; }
+
   /// False when no light goes through a polygon from either side.
   bool is_clear(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_clear; }
 

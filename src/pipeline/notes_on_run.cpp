@@ -1,14 +1,33 @@
 #include "pipeline/notes_on_run.h"
 
+#include "lighting/mirror_chains.h"
 #include "plan/close_lamps.h"
 
+#include <sstream>
 #include <utility>
 
 namespace patchlight {
 
+namespace {
+
+std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& tracing) {
+  if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
+  const MirrorChains found = mirror_chains(scene);
+  if (!found.is_cut) return {};
+  std::ostringstream text;
+  text.precision(2);
+  text << "light of lamps, luminaires and sun takes more ways over mirrors and clear faces than the "
+       << found.chains.size() << " that are followed; those left out reflect " << 100 * found.cut_off
+       << " % at most, and no error bar has what they would bring";
+  return {text.str()};
+}
+
+}  // namespace
+
 std::vector<std::string> notes_on_run(const Scene& scene, const Tracing& tracing, const Plan& plan) {
   std::vector<std::string> notes = plan.notes;
   for (const Problem& problem : problems_with_overlaps(scene, tracing.coverings())) notes.push_back(problem.what);
+  for (std::string& note : notes_on_chains(scene, tracing)) notes.push_back(std::move(note));
   if (refines(plan.accuracy)) return notes;
   for (std::string& note : notes_on_close_lamps(scene, tracing.between_patches(), plan.max_edge))
     notes.push_back(std::move(note));

@@ -1,13 +1,11 @@
 #include "pipeline/ray_light.h"
 
-#include "patchlight/base/error.h"
-
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/vectors.h"
-#include "lighting/mirrored_irradiance.h"
 #include "mesh/means_around.h"
 #include "pipeline/conserved_flux.h"
+#include "pipeline/lamps_apart.h"
 #include "solve/scattering.h"
 #include "transport/bright_patches.h"
 #include "transport/row_blocks.h"
@@ -19,53 +17,6 @@
 #include <utility>
 
 namespace patchlight {
-namespace {
-
-// What is bright: so many times the mean over the area. Measured; anything from 2 to 16 does.
-constexpr double bright = 4;
-
-// Pieces of lamps that every patch is sampled with.
-constexpr std::size_t most_pieces = 16;
-constexpr std::size_t most_new_pieces = 64;
-
-Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
-
-struct Lamp {
-  LampSide side;
-  double flux = 0;
-};
-
-// The sides that emit much, the strongest first.
-std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
-  const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
-  const double mean = scalar_product(exitance, problem.area) / total(problem.area);
-  std::vector<Lamp> lamps;
-  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    for (const Side side : {Side::front, Side::back}) {
-      const PatchRange patches = mesh.patches_on(polygon, side);
-      if (patches.begin == patches.end || !(exitance[patches.begin] > bright * mean)) continue;
-      const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
-      lamps.push_back({{polygon, side}, exitance[patches.begin] * problem.area.segment(patches.begin, count).sum()});
-    }
-  }
-  std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
-  return lamps;
-}
-
-}  // namespace
-
-// As many as most_pieces allow.
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
-  std::vector<LampSide> apart;
-  std::size_t pieces = 0;
-  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
-    pieces += piece_count(scene, lamp.side);
-    if (pieces > most_pieces) break;
-    apart.push_back(lamp.side);
-  }
-  return apart;
-}
-
 namespace {
 
 // Half as many towards bright patches as over the hemisphere, in packets of both halves.
@@ -95,57 +46,6 @@ Field direct_of(const RayLight& light) {
   for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
     if (more->size() > 0) direct += *more;
   return direct;
-}
-
-// The factors of the lamps that are apart, without rows.
-RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
-  const std::vector<LampSide> lamps = lamps_apart(run.scene, mesh, problem);
-  RayExchange found;
-  for (const LampSide& lamp : lamps) found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
-  found.lamp_factors = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
-                                    {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
-  return found;
-}
-
-// What is bright and neither apart nor was bright when the rows were traced: their rays would miss most of it.
-std::vector<LampSide> new_lamps(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                const RayExchange& known) {
-  std::vector<LampSide> lamps;
-  std::size_t pieces = 0;
-  for (const Lamp& lamp : bright_sides(run.scene, mesh, problem)) {
-    const PatchRange patches = mesh.patches_on(lamp.side.polygon, lamp.side.side);
-    const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
-    const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
-    if (is_apart || known.rows.directed[patches.begin] != 0) continue;
-    lamps.push_back(lamp.side);
-    pieces += piece_count(run.scene, lamp.side);
-  }
-  if (pieces > most_new_pieces)
-    throw InputError("given.ray_rows", "found rows of rays that were traced when " + std::to_string(lamps.size()) +
-                                           " of the lamps were dark: too many to be found anew. Make the form factors "
-                                           "anew, with these lamps lit");
-  return lamps;
-}
-
-// Another lamp, whose factors are columns of their own.
-LampValues joined(const LampValues& some, const LampValues& more) {
-  LampValues all(more.rows(), some.cols() + more.cols());
-  all << some, more;
-  return all;
-}
-
-// With the lamps that are new.
-RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
-                       const RadiosityProblem& problem) {
-  const std::vector<LampSide> lamps = new_lamps(run, mesh, problem, known);
-  if (lamps.empty()) return known;
-  const LampFactors more = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
-                                        {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
-  LampFactors& factors = known.lamp_factors;
-  for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
-  factors.standard_error = joined(factors.standard_error, more.standard_error);
-  for (const LampSide& lamp : lamps) known.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
-  return known;
 }
 
 // The light of the lamps apart, as means over whole patches.
@@ -196,26 +96,6 @@ Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen
   return exposed;
 }
 
-// What lamps that are apart send over mirrors, which their factors do not have.
-DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh,
-                                  const std::vector<PatchRange>& lamps) {
-  if (lamps.empty() || run.tracing->reflections() == Reflections::kept) return {};
-  Scene scene = run.scene;
-  scene.luminaires.clear();
-  scene.sun.reset();
-  scene.sky.reset();
-  const Lighting lighting = lighting_of(scene, *run.tracing);
-  if (!lighting.mirrors) return {};
-  std::vector<LampFace> faces;
-  for (const PatchRange& patches : lamps) {
-    const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
-    faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
-  }
-  DirectIrradiance found = mirrored_irradiance(lighting, faces, mesh, {.seed = plan.assembly.seed}, run.observer);
-  found.standard_error = with_errors_around(mesh, found.standard_error);
-  return found;
-}
-
 struct ExchangeAndLight {
   RayExchange exchange;
   RayLight light;  // means over whole patches
@@ -259,11 +139,6 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
   const Eigen::ArrayXd exposed = exposed_shares(run, mesh, exchange.rows.area);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
-  if (light.in_mirrors.irradiance.size() > 0) {
-    const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exchange.rows.area);
-    light.in_mirrors.irradiance.colwise() *= factor;
-    light.in_mirrors.standard_error.colwise() *= factor;
-  }
   const Eigen::ArrayXd relative = exposure_errors(lost);
   const Field by_exposure = (0.5 * (light.by_lamps[0] + light.by_lamps[1])).colwise() * relative;
   light.lamp_standard_error = (light.lamp_standard_error.square() + by_exposure.square()).sqrt();
@@ -271,6 +146,12 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
   if (of_direct.size() > 0) {
     const Field off = light.lit.problem.direct_irradiance.colwise() * relative;
     of_direct = (of_direct.square() + off.square()).sqrt();
+  }
+  if (light.in_mirrors.irradiance.size() > 0) {
+    auto& [irradiance, error] = light.in_mirrors;
+    const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exchange.rows.area);
+    irradiance.colwise() *= factor;
+    error = ((error.colwise() * factor).square() + (irradiance.colwise() * relative).square()).sqrt();
   }
   return {std::move(exchange.rows), std::move(light)};
 }

@@ -2,7 +2,6 @@
 
 #include "lighting/direct_irradiance.h"
 #include "pipeline/lit_problem.h"
-#include "transport/lamp_pieces.h"
 #include "transport/ray_exchange.h"
 #include "transport/ray_transport.h"
 
@@ -24,9 +23,6 @@ struct RayLight {
       is_missed;              ///< per patch: bright, but rows that are known have sent no ray there on purpose
   double rays_per_patch = 0;  ///< mean number over the hemisphere
 };
-
-/// The lamps whose light is found apart from rows, the strongest first.
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem);
 
 struct RayTransportAndLight {
   TracedRows rows;

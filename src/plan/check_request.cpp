@@ -28,6 +28,8 @@ Asked on_demand(const Request& request) {
   return {"assembly.storage=on_demand", request.assembly.storage == Storage::on_demand};
 }
 
+Asked tiles(const Request& request) { return {"assembly.storage=tiles", request.assembly.storage == Storage::tiles}; }
+
 Asked rows_of_rays(const Request& request) {
   return {"assembly.storage=rays", request.assembly.storage == Storage::rays};
 }
@@ -99,6 +101,8 @@ void require_consistent_effects(const Request& request, const Given& given) {
   require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
   require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
   require_alone(forced(request, Effect::closure), {rows_of_rays(request)}, "rows of rays are closed one by one");
+  require_alone(forced(request, Effect::mirrors), {tiles(request), on_demand(request)},
+                "form factors of pairs do not see by way of mirrors");
 }
 
 void require_solver_for(const Request& request) {

@@ -169,10 +169,10 @@ Decision mirrors(const EffectFacts& facts, const Request& request) {
   const std::string what = counted_specular(facts);
   if (request.assembly.storage != Storage::rays)
     return {Effect::mirrors, false,
-            "form factors of pairs do not see by way of mirrors: what " + what +
-                " reflect counts as absorbed; assembly.storage=rays follows it",
+            "form factors of pairs do not see by way of mirrors (" + what +
+                "): what these reflect counts as absorbed; assembly.storage=rays follows it",
             "rows of rays instead of pairs"};
-  return overruled({Effect::mirrors, true, what + " reflect light without scattering it",
+  return overruled({Effect::mirrors, true, "light is reflected without being scattered, by " + what,
                     "a ray more for each time that a ray is reflected"},
                    request);
 }

@@ -64,7 +64,8 @@ std::vector<std::uint32_t> drawn_by_weight(std::span<const double> weights, std:
 }
 
 std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kept, const Spectrum& mean,
-                                        const VerifyOptions& options, const Observer& observer) {
+                                        const VerifyOptions& options, bool follows_reflections,
+                                        const Observer& observer) {
   if (options.left_out == 0) return {};
   std::vector<LeftOutSide> sides;
   std::vector<PathReceiver> receivers;
@@ -75,8 +76,9 @@ std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kep
     receivers.push_back(receiver_on(scene, k / 2, side));
   }
   if (sides.empty()) return sides;
-  const PathEstimate paths = trace_irradiance(scene, all_sides(scene, kept), receivers,
-                                              {.paths = options.paths, .seed = options.seed}, observer);
+  const PathEstimate paths = trace_irradiance(
+      scene, all_sides(scene, kept), receivers,
+      {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections}, observer);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     LeftOutSide& side = sides[k];
     side.irradiance = paths.irradiance.row(static_cast<Eigen::Index>(k));

@@ -20,8 +20,9 @@ struct Drawing {
 std::vector<std::uint32_t> drawn_by_weight(std::span<const double> weights, std::size_t count, const Drawing& drawing);
 
 /// VerifyOptions::left_out of the sides that are not kept, with the light that paths find there when all sides are.
-/// `mean` is the mean irradiance of the checked patches, W/m^2. \throws Cancelled.
+/// `mean` is the mean irradiance of the checked patches, W/m^2; reflections as PathOptions has it. \throws Cancelled.
 std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kept, const Spectrum& mean,
-                                        const VerifyOptions& options, const Observer& observer);
+                                        const VerifyOptions& options, bool follows_reflections,
+                                        const Observer& observer);
 
 }  // namespace patchlight

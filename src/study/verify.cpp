@@ -191,13 +191,12 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
   result.irradiance = rows_of(simulation.solution.irradiance, result.patches);
   result.bar = rows_of(bar, result.patches);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
-  result.paths = trace_irradiance(seen, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
-                                  {.paths = options.paths,
-                                   .seed = options.seed,
-                                   .follows_reflections = reflections_of(simulation.plan) == Reflections::followed},
-                                  observer);
+  const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
+  result.paths = trace_irradiance(
+      seen, simulation.plan.sides, receivers_of(simulation.mesh, result.patches),
+      {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections}, observer);
   const Spectrum mean = result.paths.irradiance.colwise().mean();
-  result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, observer);
+  result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, follows_reflections, observer);
 
   for (const Space& space : spaces) result.parts.push_back(part_of(space, result, simulation, bar));
   return judged(std::move(result));

@@ -6,6 +6,7 @@
 #include "verify/exposed.h"
 #include "verify/lamps.h"
 #include "verify/lights.h"
+#include "verify/ray_end.h"
 #include "verify/surfaces.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
@@ -79,8 +80,6 @@ Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
   return shuffled;
 }
 
-double uniform(std::initializer_list<std::uint64_t> counters) { return (hash(counters) + 0.5) * 0x1p-32; }
-
 struct PathTracer {
   std::shared_ptr<const Tracing> tracing;
   const Occluder& occluder;
@@ -101,16 +100,7 @@ struct PathTracer {
                               const std::vector<std::optional<Hit>>& hits) const;
   Step scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
 
-  // The end of a ray, what its light is multiplied with, and the rays that have left mirrors on the way, each with
-  // what its light is multiplied with.
-  struct End {
-    std::optional<Hit> hit;
-    Spectrum factor;
-    std::vector<Ray> mirrored;
-    std::vector<Spectrum> of_mirrored;
-  };
-  End end_of(std::optional<Hit> hit, std::uint32_t seed) const;
-  Spectrum light_in_mirrors(const std::vector<End>& ends, const std::vector<Vertex>& vertices) const;
+  Spectrum light_in_mirrors(const std::vector<RayEnd>& ends, const std::vector<Vertex>& vertices) const;
 };
 
 // Points spread over the exposed part of the receiver.
@@ -190,41 +180,8 @@ Spectrum PathTracer::light_from_outside(const std::vector<Vertex>& vertices, con
   return sum;
 }
 
-// Where a ray ends that goes through each clear face with the probability of its mean transmittance at this angle, is
-// reflected with that of its mean reflectance, and by how much what it carries changes: by the share that goes on over
-// that probability, or by what the face sends out in the ray's direction over what is left.
-PathTracer::End PathTracer::end_of(std::optional<Hit> hit, std::uint32_t seed) const {
-  End end{std::move(hit), Spectrum::Ones(bands), {}, {}};
-  for (std::uint64_t meeting = 0; end.hit && specular[end.hit->polygon] != 0; ++meeting) {
-    const Hit met = *end.hit;
-    const Surface& surface = surfaces.at(met.polygon, met.side);
-    const double cosine = surface.normal.dot(met.direction);
-    const double passing = occluder.transmittance(met.polygon, met.direction);
-    const double reflected = occluder.specular_reflectance(met.polygon, met.direction);
-    const double drawn = uniform({seed, meeting, 6});
-    if (drawn >= passing + reflected) {
-      end.factor *= relative_held(surface, cosine) / (1 - passing - reflected);
-      break;
-    }
-    Ray onward{met.point, met.direction, met.polygon};
-    if (drawn < passing) {
-      end.factor *= transmittance(surface, cosine) / passing;
-    } else {
-      end.factor *= specular_reflectance(surface, cosine) / reflected;
-      onward.direction = occluder.mirrored(met.polygon, met.direction);
-      end.mirrored.push_back(onward);
-      end.of_mirrored.push_back(end.factor);
-    }
-    end.hit = occluder.first_hits({&onward, 1}).front();
-    if (!end.hit) break;
-    end.hit->distance += met.distance;
-    end.hit->reflections = met.reflections + (drawn < passing ? 0 : 1);
-  }
-  return end;
-}
-
 // Light of sky and ground that rays which leave mirrors find. pi L, as directions are distributed as cos(theta) / pi.
-Spectrum PathTracer::light_in_mirrors(const std::vector<End>& ends, const std::vector<Vertex>& vertices) const {
+Spectrum PathTracer::light_in_mirrors(const std::vector<RayEnd>& ends, const std::vector<Vertex>& vertices) const {
   Spectrum sum = Spectrum::Zero(bands);
   if (!lights || !lights->sky) return sum;
   std::vector<Ray> rays;
@@ -252,11 +209,12 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   const auto hits = occluder.first_hits(rays);
 
   Step step{{}, light_from_outside(vertices, rays, hits)};
-  std::vector<End> ends;
-  for (std::size_t k = 0; k < vertices.size(); ++k) ends.push_back(end_of(hits[k], hash({seed, vertices[k].path})));
+  std::vector<RayEnd> ends;
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    ends.push_back(end_of({occluder, surfaces, specular}, hits[k], hash({seed, vertices[k].path})));
   step.irradiance += light_in_mirrors(ends, vertices);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const End& end = ends[k];
+    const RayEnd& end = ends[k];
     if (!end.hit || !surfaces.at(end.hit->polygon, end.hit->side).kept) continue;
     const Vertex& vertex = vertices[k];
     const Hit& hit = *end.hit;

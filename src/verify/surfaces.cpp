@@ -37,6 +37,7 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
   surface.reflectance = material.reflectance;
   surface.panes = panes.panes[of_material];
   surface.held = panes.held[of_material];
+  if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
   surface.reflections = reflections;
   const bool is_mirrored =
       reflections == Reflections::followed && !is_opening(scene, index) && is_mirror(scene, index, side);

@@ -7,8 +7,8 @@
 #include "gather/sensor_places.h"
 #include "lighting/light_paths.h"
 #include "lighting/mirrored_irradiance.h"
+#include "pipeline/lamps_apart.h"
 #include "pipeline/radiosity_errors.h"
-#include "pipeline/ray_light.h"
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
@@ -78,14 +78,13 @@ void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
 
 // What sensors see in mirrors and clear faces: lamps, luminaires, sun and sky over each chain of mirrors, and all other
 // light of patches by rays. Nothing where reflections are not followed.
-std::optional<GatheredIrradiance> seen_in_mirrors(const Scene& scene, const Simulation& simulation,
+std::optional<GatheredIrradiance> seen_in_mirrors(const Scene& scene, const Simulation& simulation, Field sent,
                                                   const std::vector<Sensor>& sensors, const Observer& observer) {
   const Lighting lighting = lighting_of(scene, *simulation.tracing);
   if (!lighting.mirrors) return {};
   const PatchMesh& mesh = simulation.mesh;
-  Field sent = simulation.solution.radiosity;
   std::vector<LampFace> lamps;
-  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem)) {
+  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem, *simulation.tracing)) {
     const auto faces = lamp_faces(scene, polygon, side);
     lamps.insert(lamps.end(), faces.begin(), faces.end());
     const auto [begin, end] = mesh.patches_on(polygon, side);
@@ -111,7 +110,7 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
   const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.assembly.seed;
   const Tracing& tracing = *simulation.tracing;
-  const std::optional<LightPaths> coloured = coloured_paths(whole, tracing);
+  const std::optional<LightPaths> coloured = coloured_paths(scene, tracing);
   GatheredIrradiance gathered = gather_irradiance(
       simulation.mesh, sent, tracing.all_faces(whole), sensors,
       {.seed = seed, .errors = radiosity_errors(simulation), .coloured = coloured ? &*coloured : nullptr}, observer);
@@ -126,7 +125,7 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
     gathered.irradiance += direct.irradiance;
     errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
   }
-  if (const auto mirrored = seen_in_mirrors(scene, simulation, sensors, observer)) add(gathered, *mirrored);
+  if (const auto mirrored = seen_in_mirrors(scene, simulation, sent, sensors, observer)) add(gathered, *mirrored);
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),
                        .standard_error = at_places(errors.total(), places),
                        .errors = {.rays = at_places(errors.rays, places),

@@ -4,6 +4,7 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
+#include "light/pane.h"
 #include "scene/specular_faces.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
@@ -228,9 +229,114 @@ TEST(ConcaveMirror, ThrowsACausticWhoseCuspIsAtHalfItsRadius) {
   }
   EXPECT_NEAR(flux / expected, 1, 0.01);
   // Light falls by the slope on its way: from the upper half of the mirror some gets as far as the focus.
-  // arrives.
   EXPECT_NEAR(cusp.x(), -r / 2, 0.06);
   EXPECT_NEAR(cusp.y(), 0, 0.06);
+}
+
+// Sensors at points, each looking along a normal.
+Scene with_sensors(Scene scene, std::vector<Sensor> sensors) {
+  SensorGroup group;
+  group.name = "sensors";
+  group.sensors = std::move(sensors);
+  scene.sensors = {group};
+  return scene;
+}
+
+// Two mirrors at a right angle show three images of a lamp without extent, one of them over both mirrors, in either
+// order: each half of the floor sees it over one of the two. I cos / d^2 of all four, to rounding.
+TEST(PlanarMirrors, ShowThreeImagesInACorner) {
+  const double R = 0.9;
+  Scene scene = empty_scene({grey(0), mirror(R)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 9, 0), Point(0, 9, 9), Point(0, 0, 9)}, 1);
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 0, 9), Point(9, 0, 9), Point(9, 0, 0)}, 1);
+  Luminaire lamp;
+  lamp.position = Point(1.2, 0.7, 2);
+  lamp.light = PointLight{Spectrum::Constant(1, 100)};
+  scene.luminaires = {lamp};
+  std::vector<Sensor> sensors;
+  for (const Point& at : {Point(0.3, 2.5, 0), Point(2, 1, 0), Point(3.1, 3.3, 0)})
+    sensors.push_back({at, Vector::UnitZ()});
+  const Simulation simulation = simulate(with_sensors(scene, sensors), fronts(200));
+  const Readings readings = read_sensors(with_sensors(scene, sensors), simulation).readings;
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    double expected = 0;
+    for (const double x : {1.2, -1.2}) {
+      for (const double y : {0.7, -0.7}) {
+        const Vector way = Point(x, y, 2) - sensors[k].point;
+        expected += (x < 0 ? R : 1) * (y < 0 ? R : 1) * 100 * way.z() / std::pow(way.norm(), 3);
+      }
+    }
+    EXPECT_NEAR(readings.irradiance(static_cast<Eigen::Index>(k), 0) / expected, 1, 1e-9) << k;
+  }
+}
+
+// A mirror of 200 x 200 m below a sensor that looks down on it from 1 m, under an even sky of radiance L: pi L R, less
+// the hundredth of a hundredth that it does not fill. Of the sky's samples the standard error is known.
+TEST(PlanarMirror, ShowsTheSky) {
+  Scene scene = empty_scene({grey(0), mirror(0.8)});
+  scene = with_quad(std::move(scene),
+                    {Point(-100, -100, 0), Point(100, -100, 0), Point(100, 100, 0), Point(-100, 100, 0)}, 1);
+  scene = with_quad(std::move(scene), {Point(50, 50, 3), Point(51, 50, 3), Point(51, 51, 3), Point(50, 51, 3)});
+  scene.sky = Sky{};
+  scene.sky->kind = SkyKind::uniform;
+  scene.sky->zenith_radiance = Spectrum::Constant(1, 10);
+  scene.sky->ground_radiance = Spectrum::Zero(1);
+  scene = with_sensors(std::move(scene), {{Point(0, 0, 1), -Vector::UnitZ()}});
+  const Readings readings = read_sensors(scene, simulate(scene, fronts(100))).readings;
+  const double expected = std::numbers::pi * 10 * 0.8;
+  EXPECT_NEAR(readings.irradiance(0, 0), expected, 4 * readings.standard_error(0, 0) + 1e-3 * expected);
+  EXPECT_LT(readings.standard_error(0, 0), 0.01 * expected);
+}
+
+// A wall with the radiosity 5 is behind a sensor that looks at a mirror: 5 R F(x, image of the wall).
+TEST(PlanarMirror, ShowsAWallBehindTheSensor) {
+  const double R = 0.7;
+  Scene scene = empty_scene({grey(0, 5), mirror(R)});
+  scene = with_quad(std::move(scene), {Point(3, -2, -2), Point(3, 2, -2), Point(3, 2, 2), Point(3, -2, 2)});
+  std::swap(scene.polygons[0].corners[1], scene.polygons[0].corners[3]);
+  scene = with_quad(std::move(scene), {Point(0, -9, -9), Point(0, 9, -9), Point(0, 9, 9), Point(0, -9, 9)}, 1);
+  scene = with_sensors(std::move(scene), {{Point(1, 0.3, 0.2), -Vector::UnitX()}});
+  const Simulation simulation = simulate(scene, fronts(100));
+  const std::vector<Point> image = mirrored_at_low_x(corner_points(scene, 0));
+  const double expected = 5 * R * point_to_polygon(Point(1, 0.3, 0.2), -Vector::UnitX(), image);
+  const Readings readings = read_sensors(scene, simulation).readings;
+  EXPECT_GT(expected, 0.5);
+  EXPECT_NEAR(readings.irradiance(0, 0), expected, 4 * readings.standard_error(0, 0) + 1e-6);
+  EXPECT_LT(readings.standard_error(0, 0), 0.02 * expected);
+}
+
+// What a pane reflects at 0 to 80 degrees of a lamp without extent on the same side: I cos / d^2 R(theta).
+TEST(Pane, ReflectsByItsAngle) {
+  Material glass = grey(0);
+  glass.transmittance = Spectrum::Constant(1, 0.8);
+  Scene scene = empty_scene({grey(0), glass});
+  scene = with_quad(std::move(scene), {Point(0, -90, -90), Point(0, 90, -90), Point(0, 90, 90), Point(0, -90, 90)}, 1);
+  scene = with_quad(std::move(scene), {Point(9, -1, -1), Point(9, 1, -1), Point(9, 1, 1), Point(9, -1, 1)});
+  Luminaire lamp;
+  lamp.position = Point(1, 0, 0);
+  lamp.light = PointLight{Spectrum::Constant(1, 100)};
+  scene.luminaires = {lamp};
+  std::vector<Sensor> sensors;
+  for (const double degrees : {0.0, 30.0, 60.0, 80.0})
+    sensors.push_back({Point(1, 2 * std::tan(degrees * std::numbers::pi / 180), 0.01), -Vector::UnitX()});
+  scene = with_sensors(std::move(scene), sensors);
+  const Readings readings = read_sensors(scene, simulate(scene, fronts(100))).readings;
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const Vector way = Point(-1, 0, 0) - sensors[k].point;
+    const double cosine = -way.x() / way.norm();
+    const double expected = 100 * cosine / way.squaredNorm() * specular_reflectance(pane_of(1.52, 0.8), cosine);
+    EXPECT_NEAR(readings.irradiance(static_cast<Eigen::Index>(k), 0) / expected, 1, 1e-9) << k;
+  }
+}
+
+TEST(Mirrors, AreLeftOutOnDemand) {
+  Request request = fronts(300);
+  request.effects.skip = {Effect::mirrors};
+  const Simulation without = simulate(furnished_with_mirror(0.9), request);
+  const Simulation black = simulate(furnished_with_mirror(0), fronts(300));
+  EXPECT_EQ(without.plan.assembly.storage, Storage::tiles);
+  EXPECT_TRUE((without.solution.radiosity == black.solution.radiosity).all()) << "what they reflect is absorbed";
 }
 
 TEST(Mirrors, AreRefusedWhereTheyReflectMoreThanArrives) {
