@@ -54,7 +54,7 @@ TEST(ErrorsWithinParents, AreTheDifferenceFromTheSolutionOnParents) {
   const NestedMesh mesh = nest(tessellate(scene, kept_sides(scene, Sides::front), 0.5));
   const RayTransport transport = pairs_of_near_faces(mesh);
   const PatchIndex size = mesh.patches.size();
-  ASSERT_EQ(size, 4 * mesh.parents.size());
+  ASSERT_EQ(mesh.parents.size(), size / 4);
   RadiosityProblem problem{
       {Field::Constant(size, 1, 0.97)}, Field::Zero(size, 1), Eigen::VectorXd::Map(mesh.patches.area.data(), size)};
   for (PatchIndex i = 0; i < size; ++i) problem.exitance(i, 0) = mesh.parent[i] % 5 == 0 ? 1 : 0;
