@@ -47,7 +47,7 @@ Field errors_within_parents(const NestedMesh& mesh, const RayTransport& transpor
   };
   const Field square = through_reflections(0) * through_reflections(1);
   // Where the two differ in sign the error is not known any better than that.
-  return scale * mean_around(mesh.patches, problem.area, square).abs().sqrt();
+  return scale * square.abs().max(mean_around(mesh.patches, problem.area, square).abs()).sqrt();
 }
 
 }  // namespace patchlight

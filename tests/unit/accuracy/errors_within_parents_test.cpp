@@ -54,7 +54,7 @@ TEST(ErrorsWithinParents, AreTheDifferenceFromTheSolutionOnParents) {
   const NestedMesh mesh = nest(tessellate(scene, kept_sides(scene, Sides::front), 0.5));
   const RayTransport transport = pairs_of_near_faces(mesh);
   const PatchIndex size = mesh.patches.size();
-  ASSERT_EQ(size, 4 * mesh.parents.size());
+  ASSERT_EQ(mesh.parents.size(), size / 4);
   RadiosityProblem problem{
       {Field::Constant(size, 1, 0.97)}, Field::Zero(size, 1), Eigen::VectorXd::Map(mesh.patches.area.data(), size)};
   for (PatchIndex i = 0; i < size; ++i) problem.exitance(i, 0) = mesh.parent[i] % 5 == 0 ? 1 : 0;
@@ -63,7 +63,7 @@ TEST(ErrorsWithinParents, AreTheDifferenceFromTheSolutionOnParents) {
 
   const Field larger = direct_solution(OfParents(mesh, transport, problem.area), problem);
   const Field difference = transport.apply(solution.radiosity - larger) / (std::pow(2.0, mesh_order) - 1);
-  const Field expected = mean_around(mesh.patches, problem.area, difference.square()).sqrt();
+  const Field expected = difference.abs().max(mean_around(mesh.patches, problem.area, difference.square()).sqrt());
   const Field found = errors_within_parents(mesh, transport, {problem, solution});
   EXPECT_LT(area_norm(found - expected, problem.area)[0], 0.05 * area_norm(expected, problem.area)[0]);
 }
