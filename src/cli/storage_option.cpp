@@ -18,7 +18,7 @@ Storage storage_named(const std::string& text) {
 void add_rays_option(CLI::App& command, Request& request) {
   add(command, "--rays", "N",
       "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
-      "default 64",
+      "default 64; 256 where the plan takes rays for mirrors",
       [&request](const std::string& text) {
         request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
         if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;

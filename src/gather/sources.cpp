@@ -112,7 +112,11 @@ RayCounts ray_counts(double rays) {
 }
 
 ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured)
-    : mesh_(mesh), occluder_(occluder), coloured_(coloured), seed_(seed), points_(scrambled_sobol(most_points, hash({seed}))) {}
+    : mesh_(mesh),
+      occluder_(occluder),
+      coloured_(coloured),
+      seed_(seed),
+      points_(scrambled_sobol(most_points, hash({seed}))) {}
 
 // Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
 ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> sources,

@@ -69,19 +69,19 @@ MirrorChain lengthened(const MirrorChain& chain, const MirrorSide& by) {
 }
 
 // Those that reflect most come first, of equal ones those that were found first.
-struct Candidate {
+struct QueuedChain {
   MirrorChain chain;
   std::size_t number = 0;
 
-  bool operator<(const Candidate& other) const {
+  bool operator<(const QueuedChain& other) const {
     if (chain.reflectance != other.chain.reflectance) return chain.reflectance < other.chain.reflectance;
     return number > other.number;
   }
 };
 
-class Candidates {
+class ChainQueue {
  public:
-  Candidates(const Scene& scene, std::vector<MirrorSide> sides)
+  ChainQueue(const Scene& scene, std::vector<MirrorSide> sides)
       : scene_(scene), sides_(std::move(sides)), tolerance_(1e-7 * bounds(scene).diagonal().norm()) {
     for (const MirrorSide& side : sides_)
       if (has_scene_before(side)) add(lengthened({}, side));
@@ -116,23 +116,23 @@ class Candidates {
   const Scene& scene_;
   std::vector<MirrorSide> sides_;
   double tolerance_;
-  std::priority_queue<Candidate> queue_;
+  std::priority_queue<QueuedChain> queue_;
   std::size_t number_ = 0;
 };
 
 }  // namespace
 
 MirrorChains mirror_chains(const Scene& scene) {
-  Candidates candidates(scene, mirror_sides(scene));
+  ChainQueue queued(scene, mirror_sides(scene));
   MirrorChains found;
-  while (!candidates.empty()) {
-    MirrorChain chain = candidates.next();
+  while (!queued.empty()) {
+    MirrorChain chain = queued.next();
     if (found.chains.size() == most_chains) {
       found.is_cut = true;
       found.cut_off = chain.reflectance;
       break;
     }
-    if (chain.mirrors.size() < most_mirrors) candidates.add_longer(chain);
+    if (chain.mirrors.size() < most_mirrors) queued.add_longer(chain);
     found.chains.push_back(std::move(chain));
   }
   return found;

@@ -255,7 +255,7 @@ TEST(PlanarMirrors, ShowThreeImagesInACorner) {
   lamp.light = PointLight{Spectrum::Constant(1, 100)};
   scene.luminaires = {lamp};
   std::vector<Sensor> sensors;
-  for (const Point& at : {Point(0.3, 2.5, 0), Point(2, 1, 0), Point(3.1, 3.3, 0)})
+  for (const Point& at : {Point(0.3, 2.5, 0.01), Point(2, 1, 0.01), Point(3.1, 3.3, 0.01)})
     sensors.push_back({at, Vector::UnitZ()});
   const Simulation simulation = simulate(with_sensors(scene, sensors), fronts(200));
   const Readings readings = read_sensors(with_sensors(scene, sensors), simulation).readings;

@@ -172,7 +172,8 @@ TEST(JoinedRooms, AreLitThroughAPaneAsByPaths) {
        {PolygonIndex{5}, PolygonIndex{8}, static_cast<PolygonIndex>(scene.polygons.size() - 1)}) {
     const std::vector<Point> corners = corner_points(scene, p);
     const PathReceiver receiver{{corners[0], corners[1], corners[2], corners[3]}, p, Side::front};
-    const PathEstimate paths = trace_irradiance(scene, sides, {&receiver, 1}, {.paths = 1 << 15, .follows_reflections = false});
+    const PathEstimate paths =
+        trace_irradiance(scene, sides, {&receiver, 1}, {.paths = 1 << 15, .follows_reflections = false});
     double flux = 0;
     double area = 0;
     const PatchRange range = simulation.mesh.patches_on(p, Side::front);

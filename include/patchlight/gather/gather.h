@@ -29,7 +29,7 @@ struct GatherOptions {
   double wanted_error = 0.01;  ///< relative standard error of a sensor
   std::uint64_t seed = 1;
   RadiosityErrors errors = {};
-  const LightPaths* coloured = nullptr;  ///< what each band's light meets on its way; null where all bands meet the same
+  const LightPaths* coloured = nullptr;  ///< what each band meets on its way; null where all meet the same
 };
 
 /// Standard errors of irradiances by where they come from, W/m^2.
