@@ -70,6 +70,12 @@ std::string pane_part(const Material& material) {
   return "; transmittance " + listed(material.transmittance, ", ") + ", index " + rounded(material.index, digits);
 }
 
+// "; diffuse transmittance 0.4" of a sheet.
+std::string sheet_part(const Material& material) {
+  if (!(material.diffuse_transmittance > 0).any()) return {};
+  return "; diffuse transmittance " + listed(material.diffuse_transmittance, ", ");
+}
+
 std::string material_lines(const SceneReport& report) {
   std::size_t width = 0;
   for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
@@ -78,8 +84,8 @@ std::string material_lines(const SceneReport& report) {
   text << "materials:\n";
   for (const MaterialFacts& facts : report.materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
-         << "  reflectance " << listed(facts.material.reflectance, ", ") << pane_part(facts.material) << "; "
-         << counted(facts.faces, "face") << ", " << rounded(facts.area, digits) << " m^2\n";
+         << "  reflectance " << listed(facts.material.reflectance, ", ") << pane_part(facts.material)
+         << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }

@@ -91,6 +91,8 @@ void write_material(Writer& out, const Material& material) {
   out.numbers(material.exitance);
   out.numbers(material.transmittance);
   out.plain(material.index);
+  out.numbers(material.specular_reflectance);
+  out.numbers(material.diffuse_transmittance);
   out.plain(material.stated_pane.has_value());
   if (!material.stated_pane) return;
   out.text(material.stated_pane->by);
@@ -104,6 +106,8 @@ Material read_material(Reader& in) {
   material.exitance = in.spectrum();
   material.transmittance = in.spectrum();
   material.index = in.plain<double>();
+  material.specular_reflectance = in.spectrum();
+  material.diffuse_transmittance = in.spectrum();
   if (!in.plain<bool>()) return material;
   StatedPane& pane = material.stated_pane.emplace();
   pane.by = in.text();

@@ -34,7 +34,8 @@ Scene with_spectra(Scene scene, const Change& change) {
   };
   for (Material& material : scene.materials) {
     for (Spectrum* s :
-         {&material.reflectance, &material.transmittance, &material.specular_reflectance, &material.exitance})
+         {&material.reflectance, &material.transmittance, &material.specular_reflectance,
+          &material.diffuse_transmittance, &material.exitance})
       apply(*s);
   }
   for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
