@@ -168,7 +168,9 @@ std::vector<Material> materials_of(const Json& json) {
       material.diffuse_transmittance = spectrum_of(entry.at("diffuse_transmittance"));
     material.second_face = entry.value("second_face", false);
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
-    const auto none_or_all = [bands](const Spectrum& spectrum) { return spectrum.size() == 0 || spectrum.size() == bands; };
+    const auto none_or_all = [bands](const Spectrum& spectrum) {
+      return spectrum.size() == 0 || spectrum.size() == bands;
+    };
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
                 none_or_all(material.transmittance) && none_or_all(material.specular_reflectance) &&
                 none_or_all(material.diffuse_transmittance),

@@ -85,7 +85,8 @@ std::string material_lines(const SceneReport& report) {
   for (const MaterialFacts& facts : report.materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
          << "  reflectance " << listed(facts.material.reflectance, ", ") << pane_part(facts.material)
-         << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", " << rounded(facts.area, digits) << " m^2\n";
+         << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", " << rounded(facts.area, digits)
+         << " m^2\n";
   }
   return text.str();
 }

@@ -16,9 +16,9 @@ namespace patchlight {
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back, Reflections reflections = Reflections::kept);
 
-/// The scattering with what goes through sheets, for patches with these exposed areas, m^2. Where something lies against
-/// one side, what gets through there is absorbed: t_i is the sheet's transmittance times min(A_i, A_j) / A_i, j the patch
-/// on the other side. Nothing goes through where one side of a sheet takes no part.
+/// The scattering with what goes through sheets, for patches with these exposed areas, m^2. Where something lies
+/// against one side, what gets through there is absorbed: t_i is the sheet's transmittance times min(A_i, A_j) / A_i, j
+/// the patch on the other side. Nothing goes through where one side of a sheet takes no part.
 Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMesh& mesh,
                        const Eigen::VectorXd& exposed_area);
 

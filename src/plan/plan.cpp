@@ -61,9 +61,11 @@ std::vector<std::string> notes_on_sun(const Scene& scene) {
 
 std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
   if (facts.sheets == 0) return {};
-  return {std::to_string(facts.sheets) + (facts.sheets == 1 ? " face is a translucent sheet, both sides of which take"
-                                                            : " faces are translucent sheets, both sides of which take") +
-          " part; equations are solved by gmres, bicgstab or jacobi, as what their sides scatter depends on each other"};
+  return {
+      std::to_string(facts.sheets) +
+      (facts.sheets == 1 ? " face is a translucent sheet, both sides of which take"
+                         : " faces are translucent sheets, both sides of which take") +
+      " part; equations are solved by gmres, bicgstab or jacobi, as what their sides scatter depends on each other"};
 }
 
 // Every kept side takes a patch at least. Of a model with many small faces the large ones have to be cut as well, as

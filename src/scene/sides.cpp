@@ -142,8 +142,8 @@ KeptSides without(KeptSides kept, DarkSides dark, const KeptInTheDark& wanted) {
 DarkSides with_whole_sheets(DarkSides dark, const Scene& scene) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const std::size_t front = at(p, Side::front), back = at(p, Side::back);
-    const bool all_dark = (dark.unreached[front] | dark.turned_away[front]) != 0 &&
-                          (dark.unreached[back] | dark.turned_away[back]) != 0;
+    const bool all_dark =
+        (dark.unreached[front] | dark.turned_away[front]) != 0 && (dark.unreached[back] | dark.turned_away[back]) != 0;
     if (all_dark || !is_sheet(scene, p)) continue;
     for (const std::size_t side : {front, back}) dark.unreached[side] = dark.turned_away[side] = 0;
   }

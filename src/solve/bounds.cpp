@@ -56,7 +56,7 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
   const RadiosityProblem glowing{problem.scattering, ones, problem.area};
   const bool is_symmetric = transport.is_reciprocal() && problem.scattering.is_diagonal();
   const auto [v, applications] = is_symmetric ? glowing_radiosity(transport, glowing, most_iterations)
-                                                           : glowing_by_bounces(transport, glowing, most_iterations);
+                                              : glowing_by_bounces(transport, glowing, most_iterations);
   PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), applications + 1};
   if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
   return weights;

@@ -10,7 +10,8 @@ namespace patchlight {
 // What solvers and error bars ask of R beyond Scattering's own functions. Solvers know no more of R: the parents'
 // problem, squares in accuracy/, reports and files take rho as it is.
 
-/// (R H)_i of a diagonal R, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at once.
+/// (R H)_i of a diagonal R, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at
+/// once.
 inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const Field& irradiance) {
   return scattering.reflectance.row(patch) * irradiance;
 }
@@ -43,8 +44,9 @@ Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index
 /// True when R is the same in both bands.
 bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b);
 
-/// The square root of a diagonal R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D = R^1/2
-/// A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is symmetric.
+/// The square root of a diagonal R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D
+/// = R^1/2 A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is
+/// symmetric.
 class SymmetricRoot {
  public:
   SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd& area);

@@ -150,8 +150,8 @@ void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
 /// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
-/// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not two
-/// of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.
+/// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not
+/// two of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.
 /// \throws InputError naming the file and line, or the material.
 void check(const Scene& scene);
 

@@ -11,13 +11,14 @@
 namespace patchlight {
 
 /// R of B = E + R H: how patches scatter the light that arrives, evenly. (R H)_i = rho_i H_i + t_i H_j, j the patch on
-/// the other side of a translucent sheet. R is its own adjoint in the inner product sum_i A_i x_i y_i: A_i t_i = A_j t_j.
+/// the other side of a translucent sheet. R is its own adjoint in the inner product sum_i A_i x_i y_i: A_i t_i = A_j
+/// t_j.
 struct Scattering {
   Field reflectance;                     ///< rho, in [0, 1]: one row per patch, one column per band
-  std::vector<PatchIndex> other_side{};  ///< per patch the one on the other side of its sheet; itself, with t = 0, where
-                                         ///< there is none; empty where there are no sheets
-  Field transmittance{};                 ///< t, the share of light that leaves the other side, rho + t <= 1; empty where
-                                         ///< there are no sheets
+  std::vector<PatchIndex> other_side{};  ///< per patch the one on the other side of its sheet; itself, with t = 0,
+                                         ///< where there is none; empty where there are no sheets
+  Field transmittance{};  ///< t, the share of light that leaves the other side, rho + t <= 1; empty where
+                          ///< there are no sheets
 
   /// False where there are sheets: then R is not diagonal.
   bool is_diagonal() const { return other_side.empty(); }

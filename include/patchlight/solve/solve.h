@@ -40,12 +40,12 @@ bool takes_rows(Solver solver);
 /// True for those that take a transport with A_i F_ij = A_j F_ji alone: conjugate gradients.
 bool takes_reciprocity(Solver solver);
 
-/// True for those that take patches which scatter each by itself, without translucent sheets: all but GMRES, BiCGSTAB and
-/// Jacobi's iteration.
+/// True for those that take patches which scatter each by itself, without translucent sheets: all but GMRES, BiCGSTAB
+/// and Jacobi's iteration.
 bool takes_diagonal(Solver solver);
 
-/// The solver that does well in any room: conjugate gradients, or GMRES where these do not hold, as form factors are not
-/// reciprocal or R is not diagonal.
+/// The solver that does well in any room: conjugate gradients, or GMRES where these do not hold, as form factors are
+/// not reciprocal or R is not diagonal.
 Solver usual_solver(const TransportOperator& transport, const RadiosityProblem& problem);
 
 /// The solver's relative error when none is asked for.
