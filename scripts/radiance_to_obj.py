@@ -6,7 +6,7 @@ usage: scripts/radiance_to_obj.py OUT.obj SCENE.rad...
 The files are read in their order, as by oconv: materials first. Polygons are carried over with their outlines as they
 are (holes by coincident edges), and files that !xform lines name. A material becomes its reflectance, a light its
 radiance (Ke), glass a pane (Tf, Ni, illum 7), mirror and smooth metal a mirror (Ks, illum 3). What trans lets straight
-through is printed as the --set that does so. What cannot be carried over is named on stderr; what cannot be read is
+through, or, if nothing goes straight, scatters through, is printed as the --set that does so. What cannot be carried over is named on stderr; what cannot be read is
 refused with file and line.
 """
 import math
@@ -104,6 +104,7 @@ class Scene:
     def __init__(self):
         self.modifiers = {}
         self.materials = {}  # name: (reflectance, transmittance, radiance)
+        self.scattered_through = {}  # the diffuse transmittance of translucent sheets
         self.index = {}      # of refraction, of those that are glass
         self.specular = {}   # reflectance, of those that are mirrors
         self.left_out = {}   # kind: names
@@ -220,7 +221,9 @@ class Scene:
         gloss, _, through, straight = rest
         if gloss > 0:
             self.complain(f"{name}: its gloss (trans) becomes matt")
-        if through * (1 - straight) > 0:
+        if straight == 0 and through > 0:
+            self.scattered_through[name] = [c * (1 - gloss) * through for c in color]
+        elif through * (1 - straight) > 0:
             self.complain(f"{name}: the light it lets through scattered is lost")
         return [c * (1 - gloss) * (1 - through) + gloss for c in color]
 
@@ -296,10 +299,12 @@ def main():
         print(complaint, file=sys.stderr)
     lamps = sum(any(light) for _, _, light in scene.materials.values())
     print(f"{target}: {scene.polygons} polygons, {len(scene.materials)} materials, {lamps} of them lamps")
-    for name, (_, tau, _) in scene.materials.items():
-        if any(tau) and name not in scene.index:
-            bands = tau[:1] if len(set(tau)) == 1 else tau
-            print(f"--set {name}.transmittance={','.join(f'{t:.4g}' for t in bands)}")
+    straight = {name: tau for name, (_, tau, _) in scene.materials.items() if name not in scene.index}
+    for quantity, shares in (("transmittance", straight), ("diffuse_transmittance", scene.scattered_through)):
+        for name, tau in shares.items():
+            if any(tau):
+                bands = tau[:1] if len(set(tau)) == 1 else tau
+                print(f"--set {name}.{quantity}={','.join(f'{t:.4g}' for t in bands)}")
 
 
 if __name__ == "__main__":

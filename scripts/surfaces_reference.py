@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares irradiances behind panes with closed forms and with an unrelated program.
+"""Compares irradiances behind panes, sheets and in mirrors with closed forms and with an unrelated program.
 
 usage: scripts/surfaces_reference.py TOOL FOLDER [--patches 10000] [--threads 2]
 
@@ -19,10 +19,11 @@ import sys
 import tempfile
 
 CASES = ["pane_black_clear", "pane_black_coloured", "daylight_black_over", "daylight_overcast", "daylight_clear_dec",
-         "two_rooms_clear", "mirror_black"]
+         "two_rooms_clear", "mirror_black", "sheet_black"]
 BANDS = "rgb"
 # What the scene files do not set.
-SETTINGS = {"pane_black_coloured": ["--set", "pane.transmittance=0.9,0.5,0.2"]}
+SETTINGS = {"pane_black_coloured": ["--set", "pane.transmittance=0.9,0.5,0.2"],
+            "sheet_black": ["--set", "sheet.diffuse_transmittance=0.4"]}
 
 
 def rows_of(file):

@@ -45,9 +45,27 @@ Field dark_differences(const LostShare& lost, const SolvedProblem& solved) {
   return (solved.solution.radiosity - solved.problem.exitance).colwise() * share;
 }
 
+namespace {
+
+// Sheets are cut alike on both sides, so that the patches of a parent have those of one other on their other side.
+Scattering scattering_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
+  const Scattering& scattering = problem.scattering;
+  Scattering of_parents{means_by_parent(mesh, scattering.reflectance, problem.area)};
+  if (scattering.is_diagonal()) return of_parents;
+  of_parents.transmittance = means_by_parent(mesh, scattering.transmittance, problem.area);
+  of_parents.other_side.resize(mesh.parents.size());
+  for (PatchIndex g = 0; g < mesh.parents.size(); ++g) of_parents.other_side[g] = g;
+  for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
+    if (scattering.other_side[i] != i) of_parents.other_side[mesh.parent[i]] = mesh.parent[scattering.other_side[i]];
+  }
+  return of_parents;
+}
+
+}  // namespace
+
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem) {
   RadiosityProblem of_parents;
-  of_parents.scattering = {means_by_parent(mesh, problem.scattering.reflectance, problem.area)};
+  of_parents.scattering = scattering_of_parents(mesh, problem);
   of_parents.exitance = means_by_parent(mesh, problem.exitance, problem.area);
   if (problem.direct_irradiance.size() > 0)
     of_parents.direct_irradiance = means_by_parent(mesh, problem.direct_irradiance, problem.area);

@@ -12,7 +12,7 @@
 
 namespace patchlight {
 
-/// Such bars as one figure: ||rho o bar||_A / ||B - E||_A, the worst band; infinite where there is an error
+/// Such bars as one figure: ||R bar||_A / ||B - E||_A, the worst band; infinite where there is an error
 /// and no reflected light. Patches of weight 0 do not count.
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
                     const Eigen::VectorXd& weight);

@@ -57,7 +57,7 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
 
 Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance) {
   const RadiosityProblem of_irradiance{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
-  const Solver solver = transport.is_reciprocal() ? Solver::cg : Solver::gmres;
+  const Solver solver = usual_solver(transport, problem);
   return irradiance + solve(transport, of_irradiance, {.solver = solver, .relative_error = 0.05}).irradiance;
 }
 

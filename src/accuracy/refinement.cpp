@@ -84,7 +84,7 @@ Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityPr
   // With y = R psi it reads y = R interest + R F y.
   const Field wanted = interest.array().replicate(1, problem.exitance.cols());
   const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
-  const Solver solver = transport.is_reciprocal() ? Solver::cg : Solver::gmres;
+  const Solver solver = usual_solver(transport, problem);
   const Solution found = solve(transport, adjoint, {.solver = solver, .relative_error = 0.05});
   const Field psi = found.irradiance.colwise() + interest.array();
   return psi.rowwise().maxCoeff().matrix();

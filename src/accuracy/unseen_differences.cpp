@@ -3,7 +3,7 @@
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
 #include "mesh/means_around.h"
-#include "solve/scattering.h"
+#include "mesh/quarters.h"
 
 #include <cmath>
 #include <cstddef>
@@ -41,11 +41,30 @@ Field differences_of_irradiance(const GatheredQuarters& rays, const FieldView& i
   return difference;
 }
 
-Field reflected_by_quarters(const Scattering& scattering, const Field& irradiance) {
-  Field reflected(irradiance.rows(), irradiance.cols());
-  for (Eigen::Index q = 0; q < irradiance.rows(); ++q)
-    reflected.row(q) = reflect_at(scattering, q / 4, Field(irradiance.row(q)));
-  return reflected;
+// Every value four times.
+Field of_quarters(const Field& of_patches) {
+  Field values(4 * of_patches.rows(), of_patches.cols());
+  for (Eigen::Index q = 0; q < values.rows(); ++q) values.row(q) = of_patches.row(q / 4);
+  return values;
+}
+
+// The quarter that lies on the other side of a sheet from this one of a patch.
+PatchIndex quarter_behind(const PatchMesh& mesh, PatchIndex quarter, PatchIndex other_patch) {
+  if (other_patch == quarter / 4) return quarter;
+  const PatchCorners corners = quarter_of(mesh.corner_points(quarter / 4), static_cast<int>(quarter % 4));
+  const PatchCorners behind = mesh.corner_points(other_patch);
+  return 4 * other_patch +
+         static_cast<PatchIndex>(quarter_at(behind, mesh.normal[other_patch], area_centroid(corners)));
+}
+
+// R of the quarters of patches.
+Scattering scattering_of_quarters(const PatchMesh& mesh, const Scattering& scattering) {
+  Scattering by_quarters{of_quarters(scattering.reflectance)};
+  if (scattering.is_diagonal()) return by_quarters;
+  by_quarters.transmittance = of_quarters(scattering.transmittance);
+  for (PatchIndex q = 0; q < 4 * mesh.size(); ++q)
+    by_quarters.other_side.push_back(quarter_behind(mesh, q, scattering.other_side[q / 4]));
+  return by_quarters;
 }
 
 // What part of the mean over its patch one ray from each quarter is.
@@ -82,12 +101,12 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-Differences find_differences(GatheredQuarters rays, const Field& direct, const Scattering& scattering) {
+Differences find_differences(GatheredQuarters rays, const Field& direct, const Scattering& by_quarters) {
   const Field irradiance = direct.size() > 0 ? Field(rays.irradiance + direct) : rays.irradiance;
   Differences found{std::move(rays), {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols()), {}};
   found.part_of_ray = parts_of_rays(found.rays);
   found.of_irradiance = differences_of_irradiance(found.rays, irradiance);
-  found.of_quarters = reflected_by_quarters(scattering, found.of_irradiance);
+  found.of_quarters = by_quarters.reflect(found.of_irradiance);
   for (PatchIndex q = 0; q < found.of_quarters.rows(); ++q) {
     for (const PatchIndex met : found.met_from(q))
       if (met != no_patch) found.at_patches.row(q / 4) += found.part_of_ray[q] * found.of_quarters.row(met);
@@ -115,9 +134,10 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   const SolvedProblem& solved = patches.solved;
   const Eigen::VectorXd& area = solved.problem.area;
   // 1. Twice, with other rays.
+  const Scattering by_quarters = scattering_of_quarters(patches.mesh, solved.problem.scattering);
   const auto found = [&](std::size_t half) {
     GatheredQuarters rays = gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
-    return find_differences(std::move(rays), look.direct[half], solved.problem.scattering);
+    return find_differences(std::move(rays), look.direct[half], by_quarters);
   };
   const Differences one = found(0);
   const Differences other = found(1);

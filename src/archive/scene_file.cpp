@@ -64,6 +64,7 @@ Json materials_part(const Scene& scene) {
                     {"transmittance", json_of(material.transmittance)},
                     {"index", material.index},
                     {"specular_reflectance", json_of(material.specular_reflectance)},
+                    {"diffuse_transmittance", json_of(material.diffuse_transmittance)},
                     {"second_face", material.second_face}});
   }
   return part;
@@ -163,11 +164,16 @@ std::vector<Material> materials_of(const Json& json) {
                       entry.value("index", usual_index)};
     if (entry.contains("specular_reflectance"))
       material.specular_reflectance = spectrum_of(entry.at("specular_reflectance"));
+    if (entry.contains("diffuse_transmittance"))
+      material.diffuse_transmittance = spectrum_of(entry.at("diffuse_transmittance"));
     material.second_face = entry.value("second_face", false);
     const Eigen::Index bands = materials.empty() ? material.reflectance.size() : materials[0].reflectance.size();
+    const auto none_or_all = [bands](const Spectrum& spectrum) {
+      return spectrum.size() == 0 || spectrum.size() == bands;
+    };
     require(bands > 0 && material.reflectance.size() == bands && material.exitance.size() == bands &&
-                (material.transmittance.size() == 0 || material.transmittance.size() == bands) &&
-                (material.specular_reflectance.size() == 0 || material.specular_reflectance.size() == bands),
+                none_or_all(material.transmittance) && none_or_all(material.specular_reflectance) &&
+                none_or_all(material.diffuse_transmittance),
             "the materials do not all have the same bands");
     materials.push_back(std::move(material));
   }

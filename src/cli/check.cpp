@@ -76,6 +76,12 @@ std::string mirror_part(const Material& material) {
   return "; specular reflectance " + listed(material.specular_reflectance, ", ");
 }
 
+// "; diffuse transmittance 0.4" of a sheet.
+std::string sheet_part(const Material& material) {
+  if (!(material.diffuse_transmittance > 0).any()) return {};
+  return "; diffuse transmittance " + listed(material.diffuse_transmittance, ", ");
+}
+
 std::string material_lines(const SceneReport& report) {
   std::size_t width = 0;
   for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
@@ -85,8 +91,8 @@ std::string material_lines(const SceneReport& report) {
   for (const MaterialFacts& facts : report.materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
          << "  reflectance " << listed(facts.material.reflectance, ", ") << mirror_part(facts.material)
-         << pane_part(facts.material) << "; " << counted(facts.faces, "face") << ", " << rounded(facts.area, digits)
-         << " m^2\n";
+         << pane_part(facts.material) << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", "
+         << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
 }

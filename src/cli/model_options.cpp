@@ -64,9 +64,9 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
       .add_option("--set", settings,
                   "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "
                   "specular_reflectance (as "
-                  "of a\nmirror) or transmittance (0 to 1), exitance (W/m^2),\nradiance (W/(m^2 sr)) or index (of "
-                  "refraction, 1 "
-                  "or more, one\nvalue); may be repeated; default: as in the model")
+                  "of a\nmirror), transmittance (straight) or diffuse_transmittance (of\na translucent sheet; 0 to 1), "
+                  "exitance (W/m^2), radiance\n(W/(m^2 sr)) or index (of refraction, 1 or more, one value);\nmay be "
+                  "repeated; default: as in the model")
       ->allow_extra_args(false)
       ->option_text("MATERIAL.QUANTITY=R,G,B");
 }

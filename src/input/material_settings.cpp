@@ -28,9 +28,10 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "transmittance") return Quantity::transmittance;
   if (name == "index") return Quantity::index;
   if (name == "specular_reflectance") return Quantity::specular_reflectance;
+  if (name == "diffuse_transmittance") return Quantity::diffuse_transmittance;
   refuse_setting(text, "'" + name +
                            "' cannot be set; expected reflectance, specular_reflectance, exitance, radiance, "
-                           "transmittance or index");
+                           "transmittance, diffuse_transmittance or index");
 }
 
 Spectrum comma_separated(const std::string& list, const std::string& text) {
@@ -88,6 +89,9 @@ Material changed(Material material, const MaterialSetting& setting) {
       material.stated_mirror.reset();
       material.specular_reflectance = value;
       break;
+    case Quantity::diffuse_transmittance:
+      material.diffuse_transmittance = value;
+      break;
   }
   return material;
 }
@@ -125,7 +129,7 @@ void require_transmittance(const std::vector<Material>& materials, const Materia
 
 bool is_share(MaterialSetting::Quantity quantity) {
   return quantity == Quantity::reflectance || quantity == Quantity::specular_reflectance ||
-         quantity == Quantity::transmittance;
+         quantity == Quantity::transmittance || quantity == Quantity::diffuse_transmittance;
 }
 
 bool is_index(const Spectrum& value) { return value.size() == 1 && value[0] >= 1; }
@@ -167,7 +171,7 @@ MaterialSetting parse_material_setting(const std::string& text) {
     refuse_setting(
         text,
         "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, specular_reflectance, exitance, radiance, "
-        "transmittance, index");
+        "transmittance, diffuse_transmittance, index");
   }
   MaterialSetting setting;
   setting.material = text.substr(0, dot);

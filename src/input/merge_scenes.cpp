@@ -9,12 +9,13 @@
 namespace patchlight {
 namespace {
 
+bool same_values(const Spectrum& a, const Spectrum& b) { return a.size() == b.size() && (a == b).all(); }
+
 bool same_values(const Material& a, const Material& b) {
-  return a.reflectance.size() == b.reflectance.size() && (a.reflectance == b.reflectance).all() &&
-         (a.exitance == b.exitance).all() && a.transmittance.size() == b.transmittance.size() &&
-         (a.transmittance == b.transmittance).all() && a.index == b.index &&
-         a.specular_reflectance.size() == b.specular_reflectance.size() &&
-         (a.specular_reflectance == b.specular_reflectance).all();
+  return same_values(a.reflectance, b.reflectance) && same_values(a.exitance, b.exitance) &&
+         same_values(a.transmittance, b.transmittance) && a.index == b.index &&
+         same_values(a.specular_reflectance, b.specular_reflectance) &&
+         same_values(a.diffuse_transmittance, b.diffuse_transmittance);
 }
 
 std::vector<Material>::const_iterator find(const std::vector<Material>& materials, const std::string& name) {

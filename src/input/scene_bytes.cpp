@@ -108,6 +108,7 @@ void write_material(Writer& out, const Material& material) {
   out.numbers(material.transmittance);
   out.plain(material.index);
   out.numbers(material.specular_reflectance);
+  out.numbers(material.diffuse_transmittance);
   write_stated(out, material.stated_pane);
   write_stated(out, material.stated_mirror);
 }
@@ -120,6 +121,7 @@ Material read_material(Reader& in) {
   material.transmittance = in.spectrum();
   material.index = in.plain<double>();
   material.specular_reflectance = in.spectrum();
+  material.diffuse_transmittance = in.spectrum();
   material.stated_pane = read_stated(in);
   material.stated_mirror = read_stated(in);
   return material;

@@ -112,13 +112,15 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
 }
 
 std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
-  allow_keys(table, {"name", "reflectance", "specular_reflectance", "transmittance", "index", "exitance", "radiance"});
+  allow_keys(table, {"name", "reflectance", "specular_reflectance", "transmittance", "diffuse_transmittance", "index",
+                     "exitance", "radiance"});
   const TomlValue& name = required(table, "name", "the name of materials, or a pattern with * and ?");
   std::vector<MaterialSetting> settings;
   for (const auto& [key, quantity] :
        {std::pair("reflectance", Quantity::reflectance),
         std::pair("specular_reflectance", Quantity::specular_reflectance),
-        std::pair("transmittance", Quantity::transmittance), std::pair("index", Quantity::index),
+        std::pair("transmittance", Quantity::transmittance),
+        std::pair("diffuse_transmittance", Quantity::diffuse_transmittance), std::pair("index", Quantity::index),
         std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance)}) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;

@@ -10,6 +10,7 @@ PatchMesh without_patches(const PatchMesh& mesh, std::span<const std::uint8_t> i
   assert(is_left_out.size() == mesh.size() && mesh.middles.empty());
   constexpr std::uint32_t none = ~std::uint32_t{0};
   PatchMesh kept;
+  kept.sheets = mesh.sheets;
   std::vector<std::uint32_t> number(mesh.vertices.size(), none);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     for (const std::uint32_t vertex : mesh.corners[i]) number[vertex] = is_left_out[i] ? number[vertex] : 0;

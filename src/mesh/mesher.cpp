@@ -119,6 +119,9 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge
   std::copy(front.points.begin(), front.points.end(), mesh.vertices.begin());
   std::copy(back.points.begin(), back.points.end(),
             mesh.vertices.begin() + static_cast<std::ptrdiff_t>(front.points.size()));
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (sides.front[p] && sides.back[p] && is_sheet(scene, p)) mesh.sheets.push_back(p);
+  }
   parallel_for(2 * pieces.meshes.size(), [&](std::size_t slot) {
     if (is_kept(sides, slot)) fill_slot(mesh, scene, pieces, slot);
   });

@@ -1,5 +1,7 @@
 #include "mesh/refine.h"
 
+#include "mesh/other_sides.h"
+
 #include <algorithm>
 #include <cassert>
 #include <map>
@@ -42,10 +44,21 @@ bool has_quarters(const std::vector<Edge>& edges, const Middles& middles, const 
   });
 }
 
+// The marks with those that keep the sides of sheets alike.
+std::vector<std::uint8_t> on_both_sides(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
+  std::vector<std::uint8_t> all(marked.begin(), marked.end());
+  const std::vector<PatchIndex> other_side = other_sides(mesh);
+  for (PatchIndex i = 0; i < other_side.size(); ++i) {
+    if (marked[i]) all[other_side[i]] = 1;
+  }
+  return all;
+}
+
 // The marks with those that keep neighbours one level apart.
 std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
-  std::vector<std::uint8_t> all(marked.begin(), marked.end());
+  std::vector<std::uint8_t> all = on_both_sides(mesh, marked);
   if (mesh.middles.empty()) return all;
+  const std::vector<PatchIndex> other_side = other_sides(mesh);
   const Middles middles = middles_of(mesh);
   std::set<Edge> to_cut;
   const auto mark = [&](PatchIndex patch) {
@@ -60,6 +73,7 @@ std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::u
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       if (all[i] || !has_quarters(edges_of(mesh, i), middles, to_cut)) continue;
       mark(i);
+      if (!other_side.empty()) mark(other_side[i]);
       changed = true;
     }
   }
@@ -72,6 +86,7 @@ class Cutter {
   explicit Cutter(const PatchMesh& mesh) : middles_(middles_of(mesh)) {
     result_.mesh.vertices = mesh.vertices;
     result_.mesh.middles = mesh.middles;
+    result_.mesh.sheets = mesh.sheets;
   }
 
   void add(const PatchMesh& from, PatchIndex patch, const CornerIndices& corners) {

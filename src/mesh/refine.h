@@ -15,7 +15,8 @@ struct Refinement {
 };
 
 /// Cuts the marked patches into four by the middles of their edges, and besides them those that would otherwise have a
-/// neighbour a quarter of whose edge is shared: neighbours differ by one level at most. The four parts of a patch
+/// neighbour a quarter of whose edge is shared: neighbours differ by one level at most. Of sheets both sides are cut
+/// alike. The four parts of a patch
 /// follow each other in its place; neighbours that share an edge share its middle. `marked` has an entry for each
 /// patch.
 Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked);

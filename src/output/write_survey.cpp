@@ -29,6 +29,8 @@ Json material_part(const MaterialFacts& facts) {
   part["specular_reflectance"] = is_mirror ? spectrum_part(material.specular_reflectance) : Json();
   part["transmittance"] = is_pane ? spectrum_part(material.transmittance) : Json();
   part["index"] = is_pane ? Json(material.index) : Json();
+  const bool is_translucent = (material.diffuse_transmittance > 0).any();
+  part["diffuse_transmittance"] = is_translucent ? spectrum_part(material.diffuse_transmittance) : Json();
   part["exitance_W_m2"] = json_array(material.exitance);
   part["faces"] = facts.faces;
   part["area_m2"] = facts.area;

@@ -41,24 +41,26 @@ constexpr std::array<std::array<const char*, 2>, 23> units_of_arrays = {
 
 // How far the radiance may be off, by where it comes from; of the solver alone where that is all that is known.
 void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
+  // dL = R dH / pi
+  const auto scattered = [&](const Field& irradiance) -> Field {
+    return simulation.problem.scattering.reflect(irradiance) / std::numbers::pi;
+  };
   const Field& of_lights = simulation.direct_standard_error;
   if (of_lights.size() > 0) cell_data.AddArray(floats("error_direct_irradiance", of_lights));
   if (!simulation.error_bars) {
     const Field& of_solver = simulation.solution.error;
     if (of_solver.size() > 0) cell_data.AddArray(floats("error_solver", of_solver / std::numbers::pi));
     const Field& of_rays = simulation.ray_standard_error;
-    const Field& rho = simulation.problem.scattering.reflectance;
-    if (of_rays.size() > 0) cell_data.AddArray(floats("error_form_factor", rho * of_rays / std::numbers::pi));
+    if (of_rays.size() > 0) cell_data.AddArray(floats("error_form_factor", scattered(of_rays)));
     return;
   }
   const ErrorBars& bars = *simulation.error_bars;
   const Field total = bars.total();
-  const Field per_irradiance = simulation.problem.scattering.reflectance / std::numbers::pi;  // dL = rho dH / pi
-  cell_data.AddArray(floats("error_mesh", per_irradiance * bars.mesh));
-  cell_data.AddArray(floats("error_form_factor", per_irradiance * bars.form_factor));
-  cell_data.AddArray(floats("error_solver", per_irradiance * bars.solver));
-  cell_data.AddArray(floats("error_total", per_irradiance * total));
-  cell_data.AddArray(floats("display_error", per_irradiance * bars.display));
+  cell_data.AddArray(floats("error_mesh", scattered(bars.mesh)));
+  cell_data.AddArray(floats("error_form_factor", scattered(bars.form_factor)));
+  cell_data.AddArray(floats("error_solver", scattered(bars.solver)));
+  cell_data.AddArray(floats("error_total", scattered(total)));
+  cell_data.AddArray(floats("display_error", scattered(bars.display)));
   cell_data.AddArray(floats("error_irradiance", total));
 }
 

@@ -1,6 +1,10 @@
 #include "pipeline/problem_of.h"
 
+#include "mesh/other_sides.h"
 #include "plan/planned_scene.h"
+
+#include <algorithm>
+#include <utility>
 
 namespace patchlight {
 
@@ -8,7 +12,7 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
                             bool emit_from_back, Reflections reflections) {
   const Eigen::Index bands = number_of_bands(scene);
   const SpecularFaces specular(scene, reflections);
-  RadiosityProblem problem{Field(mesh.size(), bands), Field::Zero(mesh.size(), bands), exposed_area};
+  RadiosityProblem problem{{Field(mesh.size(), bands)}, Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
     problem.scattering.reflectance.row(i) = material.reflectance;
@@ -18,7 +22,22 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
     problem.scattering.reflectance.row(i) = (problem.scattering.reflectance.row(i) / held).min(1.0);
     problem.exitance.row(i) /= held;
   }
+  problem.scattering = with_sheets(std::move(problem.scattering), scene, mesh, exposed_area);
   return problem;
+}
+
+Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMesh& mesh,
+                       const Eigen::VectorXd& exposed_area) {
+  scattering.other_side = other_sides(mesh);
+  if (scattering.is_diagonal()) return scattering;
+  scattering.transmittance = Field::Zero(mesh.size(), scattering.reflectance.cols());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const PatchIndex j = scattering.other_side[i];
+    if (j == i || !(exposed_area[i] > 0)) continue;
+    const Spectrum& tau = scene.materials[scene.polygons[mesh.polygon[i]].material].diffuse_transmittance;
+    scattering.transmittance.row(i) = tau * (std::min(exposed_area[i], exposed_area[j]) / exposed_area[i]);
+  }
+  return scattering;
 }
 
 Simulation of_whole_patches(Simulation simulation, const Scene& scene) {

@@ -6,6 +6,7 @@
 #include "mesh/means_around.h"
 #include "pipeline/conserved_flux.h"
 #include "pipeline/lamps_apart.h"
+#include "pipeline/problem_of.h"
 #include "solve/scattering.h"
 #include "transport/bright_patches.h"
 #include "transport/row_blocks.h"
@@ -135,7 +136,9 @@ RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh
 
   // 2. Means over the exposed part of each patch, which is known but for its own error.
   const LostShare& lost = exchange.rows.lost;
-  light.lit.problem.area = exchange.rows.area;
+  RadiosityProblem& problem = light.lit.problem;
+  problem.area = exchange.rows.area;
+  problem.scattering = with_sheets(std::move(problem.scattering), run.scene, mesh, problem.area);
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
   const Eigen::ArrayXd exposed = exposed_shares(run, mesh, exchange.rows.area);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;

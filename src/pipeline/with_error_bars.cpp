@@ -35,9 +35,10 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
                            const RadiosityProblem& problem) {
   const RadiosityProblem coarse = problem_of_parents(mesh, problem);
   SolverOptions options = plan.solver;
-  options.solver = Solver::cg;
+  const auto transport = dense_transport(std::move(of_parents), coarse.area);
+  options.solver = usual_solver(*transport, coarse);
   options.max_rows.reset();
-  return solve(*dense_transport(std::move(of_parents), coarse.area), coarse, options).radiosity;
+  return solve(*transport, coarse, options).radiosity;
 }
 
 // How far two independent values of the irradiance straight from the lamps are apart.

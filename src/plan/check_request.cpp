@@ -122,6 +122,18 @@ void require_solver_for(const Request& request) {
     throw InputError("solver.reference", "found a solution to be met; before there is a mesh expected none");
 }
 
+// Conjugate gradients stand where nothing is asked for: the plan takes gmres for them.
+void require_solver_for_sheets(const Request& request, const Scene& scene) {
+  const Solver solver = request.solver.solver;
+  if (solver == Solver::cg || !takes_diagonal(solver)) return;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!is_sheet(scene, p)) continue;
+    throw InputError(std::string("solver.solver=") + name_of(solver),
+                     "found with a translucent sheet of material '" + scene.materials[scene.polygons[p].material].name +
+                         "', the sides of which do not scatter each by itself; expected gmres, bicgstab or jacobi");
+  }
+}
+
 // Rows on demand are found by the automatic estimator, and cannot be closed, as that takes all; rows of rays take the
 // place of any estimator.
 void require_rows_possible(const Request& request, const Given& given) {
@@ -196,6 +208,7 @@ std::optional<std::string> part_without_error_bars(const Request& request, const
 
 void check(const Request& request, const Scene& scene, const Given& given) {
   check(request, given);
+  require_solver_for_sheets(request, scene);
   require_names(scene, request.accuracy.interest);
 }
 

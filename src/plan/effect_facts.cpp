@@ -33,10 +33,20 @@ bool has_grey_passage(const Material& material) {
   return is_constant(material.transmittance) && is_constant(material.specular_reflectance);
 }
 
+bool is_grey(const Material& material) {
+  return is_constant(material.reflectance) && is_constant(material.diffuse_transmittance);
+}
+
+// The largest share that is scattered, to either side.
+double highest_scattered(const Material& material) {
+  if (material.diffuse_transmittance.size() == 0) return material.reflectance.maxCoeff();
+  return (material.reflectance + material.diffuse_transmittance).maxCoeff();
+}
+
 // A place behind which there is no light stays as it is: transmittances of faces that take no part colour daylight,
 // too.
 bool is_grey(const Scene& scene, const std::vector<const Material*>& in_use) {
-  return std::all_of(in_use.begin(), in_use.end(), [](const Material* m) { return is_constant(m->reflectance); }) &&
+  return std::all_of(in_use.begin(), in_use.end(), [](const Material* m) { return is_grey(*m); }) &&
          std::all_of(scene.materials.begin(), scene.materials.end(),
                      [](const Material& m) { return has_grey_passage(m); });
 }
@@ -110,6 +120,7 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
     facts.openings += is_opening(scene, p) && !scene.materials[scene.polygons[p].material].second_face;
+    facts.sheets += is_sheet(scene, p);
     facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
   }
   facts.luminaires = scene.luminaires.size();
@@ -132,7 +143,7 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
 
   const std::vector<const Material*> in_use = materials_in_use(scene, kept);
   for (const Material* material : in_use)
-    facts.highest_reflectance = std::max(facts.highest_reflectance, material->reflectance.maxCoeff());
+    facts.highest_reflectance = std::max(facts.highest_reflectance, highest_scattered(*material));
   facts.bands = number_of_bands(scene);
   facts.grey = is_grey(scene, in_use);
   facts.coloured_specular = static_cast<std::size_t>(

@@ -13,7 +13,7 @@ namespace patchlight {
 struct EffectFacts {
   std::size_t polygons = 0;
   std::size_t inside_hull = 0;     ///< polygons that can stand between two others
-  double highest_reflectance = 0;  ///< of the kept sides, worst band
+  double highest_reflectance = 0;  ///< of the kept sides, worst band, with what sheets scatter to their other side
   Eigen::Index bands = 0;
   bool grey = false;                     ///< reflectances and transmittances are the same in all bands
   std::optional<Spectrum> lamp_colour;   ///< the spectrum of which all lights are multiples, relative to its brightest
@@ -28,6 +28,7 @@ struct EffectFacts {
   bool sky = false;
   std::size_t openings = 0;           ///< clear faces, of a solid pane one
   bool sees_out = true;               ///< some kept side does not face the inside of a closed solid
+  std::size_t sheets = 0;             ///< translucent polygons
   std::size_t mirrors = 0;            ///< polygons of which a side is a mirror
   std::size_t coloured_specular = 0;  ///< materials whose transmittance or specular reflectance differs by band
   std::size_t gloss = 0;              ///< materials that a file says are partly mirrors

@@ -59,6 +59,15 @@ std::vector<std::string> notes_on_sun(const Scene& scene) {
   return {text.str()};
 }
 
+std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
+  if (facts.sheets == 0) return {};
+  return {
+      std::to_string(facts.sheets) +
+      (facts.sheets == 1 ? " face is a translucent sheet, both sides of which take"
+                         : " faces are translucent sheets, both sides of which take") +
+      " part; equations are solved by gmres, bicgstab or jacobi, as what their sides scatter depends on each other"};
+}
+
 // Every kept side takes a patch at least. Of a model with many small faces the large ones have to be cut as well, as
 // the light varies over them: a quarter more patches than the least goes to these.
 std::size_t enough_patches(std::size_t asked, std::size_t least) {
@@ -169,7 +178,9 @@ SolverOptions decided(SolverOptions solver) {
   return solver;
 }
 
-SolverOptions decided(SolverOptions solver, bool every_band, Storage storage) {
+// Of sheets R is not diagonal, and may have negative eigenvalues.
+SolverOptions decided(SolverOptions solver, bool every_band, Storage storage, const EffectFacts& facts) {
+  if (facts.sheets > 0 && solver.solver == Solver::cg) solver.solver = Solver::gmres;
   if (storage == Storage::rays && !solver.relative_error) solver.relative_error = default_ray_tolerance;
   solver.every_band = solver.every_band || every_band;
   return decided(std::move(solver));
@@ -207,13 +218,13 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .graded_edges = asked.mesh.graded_edges,
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
-          .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage),
+          .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage, facts),
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = std::move(decisions),
           .lamp_colour = !in_colour && one_colour ? *facts.lamp_colour : Spectrum(),
           .notes = joined({std::move(size.notes), std::move(notes_on_contacts), notes_on_overruling(facts, request),
-                           notes_on_sun(scene), notes_on_luminaires_behind(scene),
+                           notes_on_sun(scene), notes_on_sheets(facts), notes_on_luminaires_behind(scene),
                            request.mesh.kept_sides ? left_out() : std::vector<std::string>()})};
 }
 

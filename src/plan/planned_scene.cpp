@@ -33,8 +33,8 @@ Scene with_spectra(Scene scene, const Change& change) {
     if (spectrum.size() > 0) spectrum = change(spectrum);
   };
   for (Material& material : scene.materials) {
-    for (Spectrum* s :
-         {&material.reflectance, &material.transmittance, &material.specular_reflectance, &material.exitance})
+    for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.specular_reflectance,
+                        &material.diffuse_transmittance, &material.exitance})
       apply(*s);
   }
   for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);

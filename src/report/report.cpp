@@ -1,6 +1,7 @@
 #include "patchlight/report/report.h"
 
 #include "accuracy/errors.h"
+#include "solve/scattering.h"
 #include "transport/worst_rows.h"
 
 #include <algorithm>
@@ -31,6 +32,7 @@ SceneFacts scene_facts(const Scene& scene) {
 
 std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& simulation) {
   const Field& irradiance = simulation.solution.irradiance;
+  const Field absorbed = absorb(simulation.problem.scattering, irradiance);
   const Spectrum zero = Spectrum::Zero(irradiance.cols());
   const Spectrum infinite = Spectrum::Constant(irradiance.cols(), std::numeric_limits<double>::infinity());
   std::vector<MaterialLight> all;
@@ -50,7 +52,7 @@ std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& 
     of_material.area += area;
     of_material.emitted += area * simulation.problem.exitance.row(i);
     of_material.mean += area * irradiance.row(i);
-    of_material.absorbed += area * (1 - simulation.problem.scattering.reflectance.row(i)) * irradiance.row(i);
+    of_material.absorbed += area * absorbed.row(i);
     of_material.lowest = of_material.lowest.min(irradiance.row(i));
     of_material.highest = of_material.highest.max(irradiance.row(i));
   }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -51,6 +52,45 @@ void check_specular_reflectance(const Scene& scene, const Material& material) {
                                      material.name + ".specular_reflectance=0");
 }
 
+// A sheet scatters all that it does not absorb.
+void check_diffuse_transmittance(const Scene& scene, const Material& material) {
+  for (Eigen::Index band = 0; band < material.diffuse_transmittance.size(); ++band) {
+    const double tau = material.diffuse_transmittance[band];
+    if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
+    throw InputError(scene.file, "material '" + material.name + "' has diffuse transmittance " + shortest(tau) +
+                                     " and reflectance " + shortest(material.reflectance[band]) +
+                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     material.name + ".reflectance=R,G,B");
+  }
+  if (!(material.diffuse_transmittance > 0).any()) return;
+  for (const auto& [other, name] : {std::pair(&material.transmittance, "transmittance"),
+                                    std::pair(&material.specular_reflectance, "specular_reflectance")}) {
+    if (!(*other > 0).any()) continue;
+    throw InputError(scene.file, "material '" + material.name + "' has both a diffuse transmittance and a " + name +
+                                     "; expected one of them, as sheets scatter all that they do not absorb. Use "
+                                     "read.settings " +
+                                     material.name + "." + name + "=0");
+  }
+}
+
+// What gets through a sheet is the same both ways.
+void check_sheet(const Scene& scene, PolygonIndex index) {
+  const Polygon& polygon = scene.polygons[index];
+  if (!polygon.back_material) return;
+  const Material& front = scene.materials[polygon.material];
+  const Material& back = scene.materials[*polygon.back_material];
+  const auto through = [&](const Material& material) -> Spectrum {
+    if (material.diffuse_transmittance.size() > 0) return material.diffuse_transmittance;
+    return Spectrum::Zero(number_of_bands(scene));
+  };
+  if ((through(front) == through(back)).all()) return;
+  throw InputError(place_of(scene, polygon), "this face has material '" + front.name + "' on its front and '" +
+                                                 back.name +
+                                                 "' on its back, and their diffuse transmittances differ; expected the "
+                                                 "same, as what gets through a sheet is the same both ways. Set both "
+                                                 "with read.settings MATERIAL.diffuse_transmittance=R,G,B");
+}
+
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
@@ -73,6 +113,7 @@ void check_material(const Scene& scene, const Material& material) {
     throw InputError(scene.file, message.str());
   }
   check_specular_reflectance(scene, material);
+  check_diffuse_transmittance(scene, material);
   if (!(material.index >= 1 && std::isfinite(material.index))) {
     throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
                                      "; expected a number of 1 or more. Use read.settings " + material.name +
@@ -98,6 +139,7 @@ void check_size(const Scene& scene) {
 
 void check_polygon(const Scene& scene, PolygonIndex index) {
   const Polygon& polygon = scene.polygons[index];
+  check_sheet(scene, index);
   if (polygon.corners.size() < 3) {
     throw InputError(place_of(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
                                                    " corners; expected at least three. Remove the face");
@@ -165,6 +207,10 @@ bool is_opening(const Scene& scene, PolygonIndex polygon) {
     return (scene.materials[material_on(scene.polygons[polygon], side)].transmittance > 0).any();
   };
   return is_clear(Side::front) || is_clear(Side::back);
+}
+
+bool is_sheet(const Scene& scene, PolygonIndex polygon) {
+  return (scene.materials[scene.polygons[polygon].material].diffuse_transmittance > 0).any();
 }
 
 bool has_lamp(const Scene& scene) {

@@ -138,13 +138,25 @@ KeptSides without(KeptSides kept, DarkSides dark, const KeptInTheDark& wanted) {
   return with_sides(std::move(kept), dark.turned_away, wanted.turned_away);
 }
 
+// Light that arrives on one side of a sheet leaves the other: both are in the dark, or none.
+DarkSides with_whole_sheets(DarkSides dark, const Scene& scene) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::size_t front = at(p, Side::front), back = at(p, Side::back);
+    const bool all_dark =
+        (dark.unreached[front] | dark.turned_away[front]) != 0 && (dark.unreached[back] | dark.turned_away[back]) != 0;
+    if (all_dark || !is_sheet(scene, p)) continue;
+    for (const std::size_t side : {front, back}) dark.unreached[side] = dark.turned_away[side] = 0;
+  }
+  return dark;
+}
+
 // What is lit of a solid.
 struct Lit {
   bool inside = false;
   bool outside = false;
 };
 
-// Clear faces let light through, in and out.
+// Clear faces and sheets let light through, in and out.
 Lit lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
   const bool from_outside = daylight || lamps.outside;
   const bool gets_out = lamps.inside && solid.has_opening;
@@ -188,7 +200,8 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   const SideMask unreached = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
   SideMask turned_away = sides_outside(scene, shells, around_all_lamps);
   if (any_light && !daylight) turned_away = either(std::move(turned_away), sides_before_nothing(scene, extent));
-  return without(std::move(kept), {unreached, std::move(turned_away)}, in_the_dark);
+  DarkSides dark_sides = with_whole_sheets({unreached, std::move(turned_away)}, scene);
+  return without(std::move(kept), std::move(dark_sides), in_the_dark);
 }
 
 }  // namespace
@@ -209,8 +222,9 @@ KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_th
   if (sides == Sides::automatic) return automatic_sides(scene, in_the_dark);
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 1);
-  for (const Polygon& polygon : scene.polygons) {
-    kept.back.push_back(sides == Sides::both || polygon.back_material.has_value() ? 1 : 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const bool has_back = scene.polygons[p].back_material.has_value() || is_sheet(scene, p);
+    kept.back.push_back(sides == Sides::both || has_back ? 1 : 0);
   }
   kept.emit_from_back = sides == Sides::both;
   if (kept.emit_from_back) kept.notes.push_back("lamps emit from both sides: twice the flux of their front sides");

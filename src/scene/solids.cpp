@@ -83,7 +83,7 @@ std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> poly
   solid.triangles = std::move(lids);
   for (const PolygonIndex p : polygons) {
     std::vector<Point> corners = corner_points(scene, p);
-    solid.has_opening = solid.has_opening || is_opening(scene, p);
+    solid.has_opening = solid.has_opening || is_opening(scene, p) || is_sheet(scene, p);
     for (const Point& corner : corners) solid.box.extend(corner);
     if (shells.turned[p]) std::reverse(corners.begin(), corners.end());
     for (const auto& [a, b, c] : triangulate(corners)) solid.triangles.push_back({corners[a], corners[b], corners[c]});

@@ -16,7 +16,7 @@ namespace patchlight {
 struct Solid {
   std::vector<PolygonIndex> polygons;
   bool fronts_face_inside = false;  ///< those of the polygons that are not turned
-  bool has_opening = false;
+  bool has_opening = false;         ///< a clear face or a sheet: light gets in and out
   Box box;
   std::vector<std::array<Point, 3>> triangles;  ///< oriented as the polygons
 };

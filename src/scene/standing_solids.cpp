@@ -87,7 +87,7 @@ bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex s
   std::size_t triangles = 0;
   tree.for_each(query, [&](PolygonIndex p) {
     if (shells.shell[p] == shell || left.empty() || triangles > most_lid_triangles) return;
-    if (is_opening(scene, p) || !shares_plane(p, outline)) return;
+    if (is_opening(scene, p) || is_sheet(scene, p) || !shares_plane(p, outline)) return;
     for (const Triangle& triangle : triangles_of(corner_points(scene, p))) {
       if (++triangles <= most_lid_triangles) left = beside(left, triangle, near);
     }

@@ -17,7 +17,7 @@ constexpr double least_escape = 1e-6;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
-// v = 1 + K v by Jacobi's iteration, until no residual is above 1/2: for rows that are not reciprocal.
+// v = 1 + K v by Jacobi's iteration, until no residual is above 1/2: for rows that are not reciprocal, and for sheets.
 GlowingRadiosity glowing_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
                                     int most_iterations) {
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
@@ -54,8 +54,9 @@ std::optional<PatchWeights> patch_weights(const TransportOperator& transport, co
   constexpr int most_iterations = 60;
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
   const RadiosityProblem glowing{problem.scattering, ones, problem.area};
-  const auto [v, applications] = transport.is_reciprocal() ? glowing_radiosity(transport, glowing, most_iterations)
-                                                           : glowing_by_bounces(transport, glowing, most_iterations);
+  const bool is_symmetric = transport.is_reciprocal() && problem.scattering.is_diagonal();
+  const auto [v, applications] = is_symmetric ? glowing_radiosity(transport, glowing, most_iterations)
+                                              : glowing_by_bounces(transport, glowing, most_iterations);
   PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), applications + 1};
   if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
   return weights;

@@ -2,16 +2,40 @@
 
 #include "base/vectors.h"
 
+#include <cassert>
+#include <limits>
+
 namespace patchlight {
+namespace {
 
-Field Scattering::reflect(const Field& irradiance) const { return reflectance * irradiance; }
+// The values of the patches on the other sides of sheets; nothing where there are none.
+Field on_other_side(const Scattering& scattering, const Field& values) {
+  Field others(values.rows(), values.cols());
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+    others.row(i) = values.row(scattering.other_side[static_cast<std::size_t>(i)]);
+  return others;
+}
 
-Field Scattering::adjoint(const Field& radiosity) const { return reflectance * radiosity; }
+// The share of light that is scattered, to either side.
+Field scattered_share(const Scattering& scattering) {
+  if (scattering.is_diagonal()) return scattering.reflectance;
+  return scattering.reflectance + scattering.transmittance;
+}
 
-Eigen::ArrayXd Scattering::norm_bound() const { return highest(reflectance); }
+}  // namespace
+
+Field Scattering::reflect(const Field& irradiance) const {
+  if (is_diagonal()) return reflectance * irradiance;
+  return reflectance * irradiance + transmittance * on_other_side(*this, irradiance);
+}
+
+Field Scattering::adjoint(const Field& radiosity) const { return reflect(radiosity); }
+
+// R is similar to a symmetric matrix, the norm of which is its spectral radius: no row sum of R is below it.
+Eigen::ArrayXd Scattering::norm_bound() const { return highest(scattered_share(*this)); }
 
 Field radiosity_from(const RadiosityProblem& problem, const Field& irradiance) {
-  return problem.exitance + problem.scattering.reflectance * irradiance;
+  return plus_reflected(problem.exitance, problem.scattering, irradiance);
 }
 
 Field source_radiosity(const RadiosityProblem& problem) {
@@ -20,50 +44,69 @@ Field source_radiosity(const RadiosityProblem& problem) {
 }
 
 Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradiance) {
-  return scaled(scattering.reflectance, irradiance);
+  return scaled(scattered_share(scattering), irradiance);
 }
 
 Field plus_reflected(Field radiosity, const Scattering& scattering, const Field& irradiance) {
   radiosity += scattering.reflectance * irradiance;
+  if (!scattering.is_diagonal()) radiosity += scattering.transmittance * on_other_side(scattering, irradiance);
   return radiosity;
 }
 
 Field absorb(const Scattering& scattering, const Field& irradiance) {
-  return (1 - scattering.reflectance) * irradiance;
+  return (1 - scattered_share(scattering)) * irradiance;
 }
 
 Field irradiance_behind(const Scattering& scattering, const Field& reflected, const Field& otherwise) {
   const Field& rho = scattering.reflectance;
-  return (rho > 0).select(reflected / rho, otherwise);
+  if (scattering.is_diagonal()) return (rho > 0).select(reflected / rho, otherwise);
+  return (rho > 0 && scattering.transmittance == 0).select(reflected / rho, otherwise);
 }
 
 Field irradiance_errors(const Scattering& scattering, const Field& error) {
-  const Field of_reflecting = irradiance_behind(scattering, error, Field::Zero(error.rows(), error.cols()));
-  const Field largest_of_all = highest(of_reflecting).transpose().replicate(error.rows(), 1);
-  return irradiance_behind(scattering, error, largest_of_all);
+  const Field& rho = scattering.reflectance;
+  const Field unknown = Field::Constant(error.rows(), error.cols(), std::numeric_limits<double>::infinity());
+  Field bound = (rho > 0).select(error / rho, unknown);
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> is_known = rho > 0;
+  if (!scattering.is_diagonal()) {
+    // What |dB_i| = rho_i |dH_i| + t_i |dH_j| and |dB_j| say of |dH_i|: at most |dB_i| / rho_i, and |dB_j| / t_j.
+    const Field t = on_other_side(scattering, scattering.transmittance);
+    bound = bound.min((t > 0).select(on_other_side(scattering, error) / t, unknown)).eval();
+    is_known = is_known || t > 0;
+  }
+  const Field largest_of_all = highest(is_known.select(bound, 0.0)).transpose().replicate(error.rows(), 1);
+  return is_known.select(bound, largest_of_all);
 }
 
 Field reflected_variance(const Scattering& scattering, const Field& variance) {
-  return scattering.reflectance.square() * variance;
+  const Field by_reflection = scattering.reflectance.square() * variance;
+  if (scattering.is_diagonal()) return by_reflection;
+  return by_reflection + scattering.transmittance.square() * on_other_side(scattering, variance);
 }
 
 Eigen::ArrayXd reflected_square(const Scattering& scattering, const Field& irradiance, const Eigen::VectorXd& area) {
-  return area_sum(scattering.reflectance * irradiance.square(), area);
+  if (scattering.is_diagonal()) return area_sum(scattering.reflectance * irradiance.square(), area);
+  return area_sum(irradiance * scattering.reflect(irradiance), area);
 }
 
 Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index>& bands) {
-  Scattering some{Field(scattering.reflectance.rows(), static_cast<Eigen::Index>(bands.size()))};
-  for (std::size_t k = 0; k < bands.size(); ++k)
-    some.reflectance.col(static_cast<Eigen::Index>(k)) = scattering.reflectance.col(bands[k]);
-  return some;
+  const auto chosen = [&bands](const Field& field) {
+    Field columns(field.rows(), static_cast<Eigen::Index>(field.size() > 0 ? bands.size() : 0));
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = field.col(bands[static_cast<std::size_t>(k)]);
+    return columns;
+  };
+  return {chosen(scattering.reflectance), scattering.other_side, chosen(scattering.transmittance)};
 }
 
 bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b) {
-  return (scattering.reflectance.col(a) == scattering.reflectance.col(b)).all();
+  const auto is_same = [a, b](const Field& field) { return (field.col(a) == field.col(b)).all(); };
+  return is_same(scattering.reflectance) && (scattering.is_diagonal() || is_same(scattering.transmittance));
 }
 
 SymmetricRoot::SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd& area)
     : radiosity_(scattering.reflectance.sqrt().colwise() / area.array().sqrt()),
-      from_irradiance_(scattering.reflectance.sqrt().colwise() * area.array().sqrt()) {}
+      from_irradiance_(scattering.reflectance.sqrt().colwise() * area.array().sqrt()) {
+  assert(scattering.is_diagonal());
+}
 
 }  // namespace patchlight

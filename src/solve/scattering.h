@@ -10,7 +10,8 @@ namespace patchlight {
 // What solvers and error bars ask of R beyond Scattering's own functions. Solvers know no more of R: the parents'
 // problem, squares in accuracy/, reports and files take rho as it is.
 
-/// (R H)_i, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at once.
+/// (R H)_i of a diagonal R, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at
+/// once.
 inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const Field& irradiance) {
   return scattering.reflectance.row(patch) * irradiance;
 }
@@ -24,11 +25,11 @@ Field plus_reflected(Field radiosity, const Scattering& scattering, const Field&
 /// (1 - R) H: what is absorbed of an irradiance, W/m^2.
 Field absorb(const Scattering& scattering, const Field& irradiance);
 
-/// The irradiance H for which R H is `reflected`; that of `otherwise` where nothing is reflected.
+/// The irradiance H for which R H is `reflected`; that of `otherwise` where nothing is reflected, and on sheets.
 Field irradiance_behind(const Scattering& scattering, const Field& reflected, const Field& otherwise);
 
 /// How far irradiances may be off when radiosities are by `error`, |dB| = R |dH|, W/m^2; for patches that reflect
-/// nothing the largest of the others.
+/// nothing the largest of the others. On sheets the smaller of what either side tells.
 Field irradiance_errors(const Scattering& scattering, const Field& error);
 
 /// The variances of R H, from those of irradiances that do not depend on each other.
@@ -43,8 +44,9 @@ Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index
 /// True when R is the same in both bands.
 bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b);
 
-/// The square root of R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D = R^1/2
-/// A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is symmetric.
+/// The square root of a diagonal R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D
+/// = R^1/2 A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is
+/// symmetric.
 class SymmetricRoot {
  public:
   SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd& area);

@@ -75,6 +75,14 @@ void require_reciprocity(const TransportOperator& transport, Solver solver) {
                    "errors; expected gmres, bicgstab, jacobi or chebyshev");
 }
 
+// What sheets scatter depends on both sides.
+void require_diagonal(const Scattering& scattering, Solver solver) {
+  if (scattering.is_diagonal() || !takes_diagonal(solver)) return;
+  throw InputError(name_of(solver),
+                   "takes patches that scatter each by itself, which the sides of translucent sheets do not; expected "
+                   "gmres, bicgstab or jacobi");
+}
+
 // F E, where there are rows from those of the lamps alone.
 Field from_lamps(const TransportOperator& transport, const RowTransport* rows, const Field& exitance) {
   if (rows == nullptr) return transport.apply(exitance);
@@ -156,6 +164,14 @@ bool takes_rows(Solver solver) {
 
 bool takes_reciprocity(Solver solver) { return solver == Solver::cg || solver == Solver::deflated_cg; }
 
+bool takes_diagonal(Solver solver) {
+  return takes_rows(solver) || takes_reciprocity(solver) || solver == Solver::chebyshev;
+}
+
+Solver usual_solver(const TransportOperator& transport, const RadiosityProblem& problem) {
+  return transport.is_reciprocal() && problem.scattering.is_diagonal() ? Solver::cg : Solver::gmres;
+}
+
 bool is_shooting(Solver solver) { return solver == Solver::progressive || solver == Solver::overshooting; }
 
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { return inner_product(x, x, area).sqrt(); }
@@ -182,6 +198,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
 
   const RowTransport* const rows = rows_of(transport, options.solver);
   require_reciprocity(transport, options.solver);
+  require_diagonal(problem.scattering, options.solver);
 
   // 1. Light that comes from no patch is a source where it is first reflected: B = S + rho o F B. Only the bands that
   //    need it.

@@ -153,7 +153,7 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                   const SolverOptions& usual, const Observer& watch) {
     SolverOptions exact = usual;
-    exact.solver = Solver::cg;
+    exact.solver = usual_solver(transport, problem);
     exact.relative_error = std::max(1e-13, margin * options.relative_error);
     Solution reference = solve(transport, problem, exact, watch);
     comparison.reference_residual = reference.history.back().relative_residual;

@@ -34,6 +34,8 @@
 // Luminaires without extent, spheres and the sun meet no scattered ray: shadow rays alone find them. The sky is found
 // by scattered rays alone, those that leave the scene, through clear openings or where nothing is.
 //
+// A sheet has B(y) = E(y) + rho(y) H(y) + tau(y) H(y, other side): a path that meets it goes on from either side.
+//
 // A ray that meets a mirror or a clear face goes on through it, or as from a mirror, or ends there, by chance. Lamps
 // behind mirrors are found by such rays alone; luminaires and sun by shadow rays over each chain of mirrors.
 
@@ -50,6 +52,12 @@ struct Vertex {
   Side side = Side::front;
   std::uint32_t path = 0;
   Spectrum throughput;  // share of the irradiance here that gets to the receiver
+};
+
+// A path, and the seed of its numbers at this length.
+struct PathSeed {
+  std::uint32_t path = 0;
+  std::uint64_t seed = 0;
 };
 
 // What a batch of paths has found, or a step of it.
@@ -98,6 +106,7 @@ struct PathTracer {
   Spectrum light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
   Spectrum light_from_outside(const std::vector<Vertex>& vertices, const std::vector<Ray>& rays,
                               const std::vector<std::optional<Hit>>& hits) const;
+  std::optional<Vertex> next_vertex(const Hit& hit, const Spectrum& throughput, const PathSeed& path) const;
   Step scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
 
   Spectrum light_in_mirrors(const std::vector<RayEnd>& ends, const std::vector<Vertex>& vertices) const;
@@ -235,13 +244,27 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
       if (a > 0) step.irradiance += throughput * there.exitance * (a / (by_area + a));
     }
 
-    // 2. What it reflects: go on with the probability of the band that carries most, which then carries all it did
-    const Spectrum reflected = throughput * there.reflectance;
-    const double survival = std::min(reflected.maxCoeff(), highest_survival);
-    if (uniform({seed, vertex.path}) >= survival) continue;
-    step.vertices.push_back({hit.point, hit.polygon, hit.side, vertex.path, reflected / survival});
+    // 2. What it scatters
+    const std::optional<Vertex> next = next_vertex(hit, throughput, {vertex.path, seed});
+    if (next) step.vertices.push_back(*next);
   }
   return step;
+}
+
+// Go on with the probability of the band that carries most, which then carries all it did: on the side that the ray has
+// met, or on the other side of a sheet, from where light comes through.
+std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& throughput, const PathSeed& path) const {
+  const Surface& there = surfaces.at(hit.polygon, hit.side);
+  const Spectrum reflected = throughput * there.reflectance;
+  const Spectrum through = throughput * there.scattered_through;
+  const double survival = std::min((reflected + through).maxCoeff(), highest_survival);
+  const double drawn = uniform({path.seed, path.path});
+  if (drawn >= survival) return std::nullopt;
+  const double on_this_side = survival * (reflected.maxCoeff() / (reflected.maxCoeff() + through.maxCoeff()));
+  if (drawn < on_this_side) return Vertex{hit.point, hit.polygon, hit.side, path.path, reflected / on_this_side};
+  const Side other = hit.side == Side::front ? Side::back : Side::front;
+  if (occluder.is_covered(hit.polygon, other, hit.point)) return std::nullopt;
+  return Vertex{hit.point, hit.polygon, other, path.path, through / (survival - on_this_side)};
 }
 
 std::size_t PathTracer::rays_of_vertex() const {

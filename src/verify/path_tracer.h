@@ -42,8 +42,9 @@ struct PathEstimate {
 /// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
 /// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. Luminaires and
 /// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected goes
-/// on through clear openings, too, and over mirrors, per band. The mean is over the part of a receiver that is not
-/// covered (docs/theory.md section 2). The same bits for any number of threads. \throws Cancelled.
+/// on through clear openings, too, and over mirrors, per band; and out of the other side of translucent sheets. The
+/// mean is over the part of a receiver that is not covered (docs/theory.md section 2). The same bits for any number of
+/// threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 

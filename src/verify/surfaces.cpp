@@ -43,6 +43,10 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
       reflections == Reflections::followed && !is_opening(scene, index) && is_mirror(scene, index, side);
   surface.mirrored =
       is_mirrored ? material.specular_reflectance : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  const bool both_kept = kept.front[index] != 0 && kept.back[index] != 0;
+  surface.scattered_through = both_kept && is_sheet(scene, index)
+                                  ? material.diffuse_transmittance
+                                  : Spectrum(Spectrum::Zero(material.reflectance.size()));
   const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
   surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
   return surface;

@@ -22,7 +22,8 @@ struct Surface {
   Spectrum mirrored;  ///< the share of light that is reflected as by a mirror at all angles; 0 of a clear one, and
                       ///< where reflections are not followed
   Reflections reflections = Reflections::kept;
-  Spectrum exitance;  ///< W/m^2; 0 for a side that does not emit
+  Spectrum scattered_through;  ///< the share of light that is scattered out of the other side; 0 unless both are kept
+  Spectrum exitance;           ///< W/m^2; 0 for a side that does not emit
 };
 
 /// The share that a side lets straight through at an angle to its normal with this cosine, per band.

@@ -28,7 +28,7 @@ Field lamps(const PatchMesh& mesh) {
 }
 
 RadiosityProblem problem_in(const PatchMesh& mesh, const Eigen::VectorXd& area) {
-  RadiosityProblem problem{Field(mesh.size(), 2), lamps(mesh), area};
+  RadiosityProblem problem{{Field(mesh.size(), 2)}, lamps(mesh), area};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     problem.scattering.reflectance(i, 0) = mesh.normal[i].z() > 0.9 ? 0.3 : 0.8;
     problem.scattering.reflectance(i, 1) = 0.99;

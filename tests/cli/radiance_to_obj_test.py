@@ -100,6 +100,13 @@ class RadianceTest(ToolTest):
         self.assertIn("--set sheet.transmittance=0.1\n", done.stdout)
         self.assertIn("newmtl lamp\nKd 0 0 0\nKe 5 6 7\n", text)
 
+    def test_trans_that_lets_nothing_straight_through_is_a_sheet(self):
+        self.write("materials.mat", MATERIALS.replace("0 0 .5 .25", "0 0 .5 0"))
+        done = self.converted()
+        self.assertIn("--set sheet.diffuse_transmittance=0.4\n", done.stdout)
+        self.assertNotIn("sheet.transmittance", done.stdout)
+        self.assertNotIn("scattered is lost", done.stderr)
+
     def test_a_pane_lets_through_what_goes_through_both_faces(self):
         """Added up: r is reflected where the light meets a face, t is left after a way through the glass."""
         r, t = (0.52 / 2.52)**2, 0.654

@@ -51,7 +51,7 @@ Assembled in_two_bands(Assembled room, double second_reflectance) {
   reflectance << grey.scattering.reflectance, (grey.scattering.reflectance > 0).cast<double>() * second_reflectance;
   exitance.col(0) = grey.exitance.col(0);
   exitance(0, 1) = 3;
-  room.problem = {reflectance, exitance, grey.area};
+  room.problem = {{reflectance}, exitance, grey.area};
   return room;
 }
 

@@ -26,7 +26,7 @@ inline Room made_up(PatchIndex n, double reflectance, double openness = 1) {
     }
   }
   const Eigen::VectorXd area = openness * row_sums(S);
-  RadiosityProblem problem{Field::Constant(n, 3, reflectance), Field::Zero(n, 3), area};
+  RadiosityProblem problem{{Field::Constant(n, 3, reflectance)}, Field::Zero(n, 3), area};
   // Two lamps of different colour; the third band has no light at all; one patch is black.
   problem.exitance(1, 0) = 5;
   problem.exitance(n - 1, 1) = 2;

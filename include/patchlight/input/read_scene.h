@@ -12,7 +12,15 @@ namespace patchlight {
 
 /// A change to materials, applied after reading: "light.radiance=17,12,4".
 struct MaterialSetting {
-  enum class Quantity { reflectance, exitance, radiance, transmittance, index, specular_reflectance };
+  enum class Quantity {
+    reflectance,
+    exitance,
+    radiance,
+    transmittance,
+    index,
+    specular_reflectance,
+    diffuse_transmittance
+  };
   std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
   Spectrum value;                       ///< one value stands for all bands; an index has one
@@ -20,7 +28,7 @@ struct MaterialSetting {
 };
 
 /// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance=, .transmittance=,
-/// .specular_reflectance=, or .index= with one value.
+/// .diffuse_transmittance=, .specular_reflectance=, or .index= with one value.
 /// \throws InputError naming read.settings.
 MaterialSetting parse_material_setting(const std::string& text);
 

@@ -30,8 +30,10 @@ struct Material {
                              ///< through the glass of a window; empty or 0: opaque
   double index = usual_index;  ///< n, 1 or more: the index of refraction, by which a clear material lets less through
                                ///< at an angle
-  Spectrum specular_reflectance{};  ///< in [0, 1]: the share of light that is reflected as by a mirror, at all angles
-                                    ///< alike; empty or 0: none, but for what a clear material reflects by its index
+  Spectrum specular_reflectance{};   ///< in [0, 1]: the share of light that is reflected as by a mirror, at all angles
+                                     ///< alike; empty or 0: none, but for what a clear material reflects by its index
+  Spectrum diffuse_transmittance{};  ///< tau, in [0, 1]: the share of light that a translucent sheet scatters out of
+                                     ///< its other side, evenly; empty or 0: none
   std::optional<StatedSurface> stated_pane{};    ///< where a model file makes it a pane, and no setting has another say
   std::optional<StatedSurface> stated_mirror{};  ///< the same of a mirror
   bool second_face = false;                      ///< made up, clear in full: that of the second faces of solid panes

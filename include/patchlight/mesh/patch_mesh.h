@@ -40,6 +40,8 @@ struct PatchMesh {
   std::vector<Side> side;               ///< the side of that polygon which is the patch's front
   std::vector<PatchIndex> first_patch;  ///< per 2 * polygon + side: its first patch; one more entry at the end
 
+  std::vector<PolygonIndex> sheets;  ///< the translucent polygons with both sides, whose patches lie back to back
+
   std::vector<Middle> middles;  ///< of all edges that were cut. Where a neighbour was not, the edge is one of its own
                                 ///< still, and the vertex hangs on it
 

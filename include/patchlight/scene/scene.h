@@ -126,6 +126,10 @@ bool is_opening(const Scene& scene, PolygonIndex polygon);
 /// True when this side of the polygon is a mirror: its specular reflectance is above 0 in some band.
 bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side);
 
+/// True when the polygon is a translucent sheet: what arrives on one side is scattered out of the other as well, as the
+/// material of its front has a diffuse transmittance above 0 in some band. check() has that of its back the same.
+bool is_sheet(const Scene& scene, PolygonIndex polygon);
+
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
 /// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
 /// whose files do not say.
@@ -146,8 +150,9 @@ void check_vertices(const Scene& scene);
 
 /// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
 /// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
-/// transmittance or specular reflectance not negative and with the reflectance at most 1, not both of them, exitance
-/// finite and not negative. \throws InputError naming the file and line, or the material.
+/// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not
+/// two of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.
+/// \throws InputError naming the file and line, or the material.
 void check(const Scene& scene);
 
 }  // namespace patchlight

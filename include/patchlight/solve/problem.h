@@ -10,9 +10,18 @@
 
 namespace patchlight {
 
-/// R of B = E + R H: how patches scatter the light that arrives. R is diagonal: each reflects by itself, diffusely.
+/// R of B = E + R H: how patches scatter the light that arrives, evenly. (R H)_i = rho_i H_i + t_i H_j, j the patch on
+/// the other side of a translucent sheet. R is its own adjoint in the inner product sum_i A_i x_i y_i: A_i t_i = A_j
+/// t_j.
 struct Scattering {
-  Field reflectance;  ///< rho, in [0, 1]: one row per patch, one column per band
+  Field reflectance;                     ///< rho, in [0, 1]: one row per patch, one column per band
+  std::vector<PatchIndex> other_side{};  ///< per patch the one on the other side of its sheet; itself, with t = 0,
+                                         ///< where there is none; empty where there are no sheets
+  Field transmittance{};  ///< t, the share of light that leaves the other side, rho + t <= 1; empty where
+                          ///< there are no sheets
+
+  /// False where there are sheets: then R is not diagonal.
+  bool is_diagonal() const { return other_side.empty(); }
 
   /// R H: the radiosity by an irradiance, both in W/m^2.
   Field reflect(const Field& irradiance) const;
@@ -38,7 +47,7 @@ Field source_radiosity(const RadiosityProblem& problem);
 
 /// The light that a solver has found, and how good it is.
 struct Solution {
-  Field radiosity;          ///< B, W/m^2; B = E + rho o H
+  Field radiosity;          ///< B, W/m^2; B = E + R H
   Field irradiance;         ///< H, W/m^2
   Field direct_irradiance;  ///< F E + H_direct, W/m^2: the part of H that comes straight from the lamps
   Field ambient;  ///< progressive refinement's estimate of the irradiance still under way, for display; else empty

@@ -40,6 +40,14 @@ bool takes_rows(Solver solver);
 /// True for those that take a transport with A_i F_ij = A_j F_ji alone: conjugate gradients.
 bool takes_reciprocity(Solver solver);
 
+/// True for those that take patches which scatter each by itself, without translucent sheets: all but GMRES, BiCGSTAB
+/// and Jacobi's iteration.
+bool takes_diagonal(Solver solver);
+
+/// The solver that does well in any room: conjugate gradients, or GMRES where these do not hold, as form factors are
+/// not reciprocal or R is not diagonal.
+Solver usual_solver(const TransportOperator& transport, const RadiosityProblem& problem);
+
 /// The solver's relative error when none is asked for.
 inline constexpr double default_tolerance = 1e-6;
 
@@ -66,14 +74,14 @@ struct SolverOptions {
 /// The relative error at which a solver with these options stops.
 inline double tolerance_of(const SolverOptions& options) { return options.relative_error.value_or(default_tolerance); }
 
-/// Solves B = E + rho o F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
+/// Solves B = E + R F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
 /// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times
 /// the largest row sum of F, of docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of
 /// the same section; where that is not known either, by the relative residual, with an infinite error_bound in the
 /// history. What cannot converge ends after max_iterations with converged = false and its history; a singular system at
 /// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled; InputError, before
 /// any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it is not reciprocal:
-/// then there is no kappa, and the bound is that of every patch.
+/// then there is no kappa, and the bound is that of every patch; or takes_diagonal() and there are sheets.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

@@ -53,7 +53,7 @@ TEST(ErrorBars, AddUpInQuadrature) {
 
 // ||rho bar||_A / ||B - E||_A, by hand: A = 1, 3; rho = .5, 1; bar = 2, 1; B - E = 3, 4.
 TEST(RelativeBar, IsRelativeToTheReflectedLight) {
-  const RadiosityProblem problem{Eigen::Array2d(0.5, 1), Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
+  const RadiosityProblem problem{{Eigen::Array2d(0.5, 1)}, Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
   Solution solution;
   solution.radiosity = Eigen::Array2d(10, 4);
   const Field bar = Eigen::Array2d(2, 1);
@@ -64,7 +64,7 @@ TEST(RelativeBar, IsRelativeToTheReflectedLight) {
 
 // An error that nothing bounds is infinite, also where one of the patches reflects nothing of it.
 TEST(RelativeBar, IsInfiniteWhereNoBoundIsKnown) {
-  const RadiosityProblem problem{Eigen::Array2d(0.5, 0), Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
+  const RadiosityProblem problem{{Eigen::Array2d(0.5, 0)}, Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
   Solution solution;
   solution.radiosity = Eigen::Array2d(10, 0);
   solution.irradiance = Eigen::Array2d(6, 1);

@@ -36,6 +36,8 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same(a.materials[m].reflectance, b.materials[m].reflectance));
     EXPECT_TRUE(same(a.materials[m].exitance, b.materials[m].exitance));
     EXPECT_TRUE(same(a.materials[m].transmittance, b.materials[m].transmittance));
+    EXPECT_TRUE(same(a.materials[m].specular_reflectance, b.materials[m].specular_reflectance));
+    EXPECT_TRUE(same(a.materials[m].diffuse_transmittance, b.materials[m].diffuse_transmittance));
     EXPECT_EQ(a.materials[m].index, b.materials[m].index);
     EXPECT_EQ(a.materials[m].second_face, b.materials[m].second_face);
   }
@@ -88,6 +90,7 @@ Scene odd_scene() {
   scene.materials[0].name =
       "stra\xdf"
       "e";
+  scene.materials[0].diffuse_transmittance = Spectrum::Constant(1, 0x1p-60);
   scene.materials[1].name = "\xff\x00\"\n";
   scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
   scene.materials[1].index = 4.0 / 3;

@@ -30,6 +30,7 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   scene.notes = {"a note"};
   scene.materials[1].transmittance = Spectrum::Constant(1, 0.5);
   scene.materials[1].index = 1.4;
+  scene.materials[1].diffuse_transmittance = Spectrum::Constant(1, 0.25);
   scene.materials[1].stated_pane = StatedSurface{"opacity 0.5", Spectrum::Constant(1, 0.3)};
   scene.materials[0].specular_reflectance = Spectrum::Constant(1, 0.6);
   scene.materials[0].stated_mirror = StatedSurface{"a smooth metal", Spectrum::Constant(1, 0.7)};
@@ -41,6 +42,8 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   EXPECT_EQ(read.materials[0].transmittance.size(), 0);
   EXPECT_EQ(read.materials[1].transmittance[0], 0.5);
   EXPECT_EQ(read.materials[1].index, 1.4);
+  EXPECT_EQ(read.materials[0].diffuse_transmittance.size(), 0);
+  EXPECT_EQ(read.materials[1].diffuse_transmittance[0], 0.25);
   ASSERT_TRUE(read.materials[1].stated_pane);
   EXPECT_EQ(read.materials[1].stated_pane->by, "opacity 0.5");
   EXPECT_EQ(read.materials[1].stated_pane->matt_reflectance[0], 0.3);

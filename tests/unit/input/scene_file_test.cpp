@@ -93,6 +93,13 @@ TEST_F(SceneFile, MaterialsHaveAnIndexOfRefraction) {
   EXPECT_TRUE((scene.materials[1].transmittance == 0.8).all());
 }
 
+TEST_F(SceneFile, MaterialsMayBeTranslucent) {
+  const Scene scene = read(std::string(room) +
+                           "[[material]]\nname = \"lamp\"\nreflectance = 0.3\ndiffuse_transmittance = [0.5, 0.4, 0]\n");
+  EXPECT_EQ(scene.materials[0].diffuse_transmittance.size(), 0);
+  EXPECT_TRUE((scene.materials[1].diffuse_transmittance == rgb(0.5, 0.4, 0)).all());
+}
+
 // First the model's own unit and up axis, then scale, rotation and translation: (4, 0, 0) in the file.
 TEST_F(SceneFile, TransformsInTheStatedOrder) {
   const auto corner = [&](const std::string& keys) { return Point(read(room + keys).vertices[1]); };

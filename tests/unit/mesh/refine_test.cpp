@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 #include "mesh/interpolate.h"
 #include "mesh/mesher.h"
+#include "mesh/other_sides.h"
 #include "support/polygon_shapes.h"
 
 #include <algorithm>
@@ -184,6 +185,25 @@ TEST(Refine, CutsBesidesTheMarkedOnlyWhatBalanceTakes) {
     }
   }
   EXPECT_GT(beside, 0);
+}
+
+// Of any shape, also where one side alone is marked.
+TEST(Refine, CutsBothSidesOfASheetAlike) {
+  for (const tiny::Shape& shape : tiny::polygon_shapes()) {
+    if (shape.thickness < 1) continue;
+    Scene scene = shape.scene;
+    for (Material& material : scene.materials)
+      material.diffuse_transmittance = Spectrum::Constant(material.reflectance.size(), 0.5);
+    const PatchMesh mesh = refined_at_random(tessellate(scene, kept_sides(scene, Sides::both), 0.7), 4);
+    EXPECT_EQ(mesh.sheets.size(), scene.polygons.size());
+    const std::vector<PatchIndex> other_side = other_sides(mesh);
+    ASSERT_EQ(other_side.size(), mesh.size()) << shape.name;
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      ASSERT_NE(mesh.side[other_side[i]], mesh.side[i]) << shape.name;
+      EXPECT_EQ(other_side[other_side[i]], i);
+      EXPECT_EQ(mesh.polygon[other_side[i]], mesh.polygon[i]);
+    }
+  }
 }
 
 // What is drawn between vertices has no step at an edge with a hanging vertex.

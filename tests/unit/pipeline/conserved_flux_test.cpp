@@ -24,7 +24,7 @@ const Eigen::VectorXd area = Eigen::Vector3d(1, 1.5, 2);
 RadiosityProblem lit(double reflectance) {
   Field exitance = Field::Zero(3, 2);
   exitance(0, 0) = 10;  // the second band is dark
-  return {Field::Constant(3, 2, reflectance), exitance, area};
+  return {{Field::Constant(3, 2, reflectance)}, exitance, area};
 }
 
 Solution solved(const Rows& rows, const RadiosityProblem& problem) {

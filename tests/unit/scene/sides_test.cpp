@@ -158,6 +158,25 @@ TEST(KeptSides, DaylightGetsInThroughOpeningsOnly) {
   expect_all(automatic(scene), 0, 6, both_sides);
 }
 
+TEST(KeptSides, LightGetsThroughSheetsBothSidesOfWhichTakePart) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  Material paper{"paper", rgb(0.3, 0.3, 0.3), rgb(0, 0, 0)};
+  paper.diffuse_transmittance = rgb(0, 0, 0.5);
+  scene.materials.push_back(paper);
+  scene.polygons[3].material = 2;
+  const Scene dark = scene;
+  scene.sky = Sky{};
+  expect_all(automatic(scene), 0, 6, both_sides);
+  // A lamp inside: of the sides that look out of the solid, with nothing before them, that of the sheet is kept alone.
+  const KeptSides lit = automatic(with_lamp(dark, {0, 0, 0.2}));
+  for (std::size_t p = 0; p < 6; ++p) {
+    EXPECT_TRUE(lit.front[p]);
+    EXPECT_EQ(lit.back[p] != 0, p == 3) << p;
+  }
+  const KeptSides fronts = kept_sides(dark, Sides::front);
+  EXPECT_EQ(fronts.back, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0}));
+}
+
 TEST(KeptSides, ASolidAroundOneOfTwoLampsKeepsBothSides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   scene = among_others(with_lamp(with_lamp(std::move(scene), {0, 0, 0.2}), {0, 0, 2}));

@@ -21,7 +21,7 @@ struct Sphere {
 
 // Two bands, areas and reflectances of all kinds.
 Sphere sphere(Eigen::Index n, double arrives) {
-  Sphere sphere{{Field(n, 2), Field::Zero(n, 2), Eigen::VectorXd(n)}, arrives};
+  Sphere sphere{{{Field(n, 2)}, Field::Zero(n, 2), Eigen::VectorXd(n)}, arrives};
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto x = static_cast<double>(i);
     sphere.problem.area[i] = 1.5 + std::sin(1.7 * x);

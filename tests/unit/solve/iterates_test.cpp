@@ -22,7 +22,7 @@ std::unique_ptr<RowTransport> closed_transport() {
 }
 
 RadiosityProblem lamp_and_walls() {
-  RadiosityProblem problem{Field::Constant(4, 2, 0.5), Field::Zero(4, 2), Eigen::Vector4d(1, 1.5, 1, 1)};
+  RadiosityProblem problem{{Field::Constant(4, 2, 0.5)}, Field::Zero(4, 2), Eigen::Vector4d(1, 1.5, 1, 1)};
   problem.scattering.reflectance.row(0).setZero();
   problem.exitance.row(0) << 8, 4;
   return problem;

@@ -8,7 +8,7 @@ namespace {
 
 // Two patches of 1 and 4 m^2, two bands; the first patch emits 10 W/m^2 in the first band.
 struct RelativeError : testing::Test {
-  RadiosityProblem problem{Field::Constant(2, 2, 0.5), Field::Zero(2, 2), Eigen::Vector2d(1, 4)};
+  RadiosityProblem problem{{Field::Constant(2, 2, 0.5)}, Field::Zero(2, 2), Eigen::Vector2d(1, 4)};
   Field reference = Field::Zero(2, 2);
   RelativeError() {
     problem.exitance(0, 0) = 10;

@@ -1,5 +1,10 @@
 #include "solve/scattering.h"
 
+#include "patchlight/solve/solve.h"
+
+#include "base/vectors.h"
+
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace patchlight::scattering_test {
@@ -14,23 +19,39 @@ Scattering grey_and_coloured() {
 
 const Eigen::VectorXd areas = Eigen::VectorXd::LinSpaced(size, 1, 2);
 
+// The first two patches are the sides of a sheet, and the last two; nothing lies behind the others.
+Scattering with_sheets() {
+  Scattering scattering = grey_and_coloured();
+  scattering.reflectance.row(1) << 0.1, 0.5;
+  scattering.other_side = {1, 0, 2, 3, 5, 4};
+  scattering.transmittance = Field::Zero(size, 2);
+  for (const Eigen::Index i : {0, 1, 4, 5}) {
+    const auto j = static_cast<Eigen::Index>(scattering.other_side[static_cast<std::size_t>(i)]);
+    const double both = std::min(areas[i], areas[j]) / areas[i];
+    scattering.transmittance.row(i) << (i < 2 ? 0.4 : 0.875) * both, (i < 2 ? 0.5 : 0.25) * both;
+  }
+  return scattering;
+}
+
 Eigen::ArrayXd product(const Field& x, const Field& y) {
   return ((x * y).colwise() * areas.array()).colwise().sum().transpose();
 }
 
 // <R x, y> = <x, R* y>.
 TEST(Scattering, TheAdjointGivesTheSameProducts) {
-  const Scattering R = grey_and_coloured();
-  const Field x = Field::Random(size, 2);
-  const Field y = Field::Random(size, 2);
-  EXPECT_TRUE(((product(R.reflect(x), y) - product(x, R.adjoint(y))).abs() < 1e-14).all());
+  for (const Scattering& R : {grey_and_coloured(), with_sheets()}) {
+    const Field x = Field::Random(size, 2);
+    const Field y = Field::Random(size, 2);
+    EXPECT_TRUE(((product(R.reflect(x), y) - product(x, R.adjoint(y))).abs() < 1e-14).all());
+  }
 }
 
 TEST(Scattering, NoFieldGrowsByMoreThanTheBound) {
-  const Scattering R = grey_and_coloured();
-  for (int k = 0; k < 20; ++k) {
-    const Field x = Field::Random(size, 2);
-    EXPECT_TRUE((area_norm(R.reflect(x), areas) <= R.norm_bound() * area_norm(x, areas) * (1 + 1e-14)).all());
+  for (const Scattering& R : {grey_and_coloured(), with_sheets()}) {
+    for (int k = 0; k < 20; ++k) {
+      const Field x = Field::Random(size, 2);
+      EXPECT_TRUE((area_norm(R.reflect(x), areas) <= R.norm_bound() * area_norm(x, areas) * (1 + 1e-14)).all());
+    }
   }
 }
 
@@ -38,6 +59,35 @@ TEST(Scattering, WhatIsNotReflectedIsAbsorbed) {
   const Scattering R = grey_and_coloured();
   const Field H = Field::Random(size, 2).abs();
   EXPECT_TRUE(((R.reflect(H) + absorb(R, H) - H).abs() < 1e-15).all());
+}
+
+// A sheet sends some of it out of the other side: the flux is the same.
+TEST(Scattering, OfSheetsWhatIsNotScatteredIsAbsorbed) {
+  const Scattering R = with_sheets();
+  const Field H = Field::Random(size, 2).abs();
+  const Field ones = Field::Ones(size, 2);
+  EXPECT_TRUE(((product(R.reflect(H) + absorb(R, H), ones) - product(H, ones)).abs() < 1e-14).all());
+  EXPECT_TRUE((absorb(R, H) >= -1e-15).all());
+  EXPECT_TRUE((reflect_even(R, Eigen::Array2d(2, 3)) == R.reflect(scaled(ones, Eigen::Array2d(2, 3)))).all());
+  EXPECT_TRUE(((reflected_square(R, H, areas) - product(H, R.reflect(H))).abs() < 1e-14).all());
+}
+
+// |dH| is no more than what follows from bounds on |dB| = R |dH|.
+TEST(Scattering, ErrorsOfIrradianceAreBoundedByThoseOfRadiosity) {
+  const Scattering R = with_sheets();
+  for (int k = 0; k < 20; ++k) {
+    const Field off = Field::Random(size, 2).abs();
+    const Field bound = irradiance_errors(R, R.reflect(off));
+    const auto scatters = R.reflectance > 0 || R.transmittance > 0;
+    EXPECT_TRUE((!scatters || bound >= off * (1 - 1e-14)).all());
+  }
+}
+
+TEST(Scattering, VariancesOfBothSidesOfASheetAddUp) {
+  const Scattering R = with_sheets();
+  Field one = Field::Zero(size, 2);
+  one.row(4).setOnes();
+  EXPECT_TRUE(((reflected_variance(R, one) - R.reflect(one).square()).abs() < 1e-15).all());
 }
 
 TEST(Scattering, TheIrradianceIsFoundFromWhatItIsReflectedTo) {
@@ -65,6 +115,10 @@ TEST(Scattering, BandsCanBeTakenApart) {
   EXPECT_TRUE(same_in_bands(twice, 0, 1));
   EXPECT_FALSE(same_in_bands(twice, 1, 2));
   EXPECT_TRUE((twice.reflectance.col(2) == R.reflectance.col(0)).all());
+  const Scattering sheets = of_bands(with_sheets(), {1, 0, 0});
+  EXPECT_TRUE(same_in_bands(sheets, 1, 2));
+  EXPECT_FALSE(same_in_bands(sheets, 0, 1));
+  EXPECT_TRUE((sheets.transmittance.col(0) == with_sheets().transmittance.col(1)).all());
 }
 
 }  // namespace patchlight::scattering_test

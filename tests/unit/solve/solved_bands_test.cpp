@@ -6,7 +6,7 @@ namespace patchlight::solved_bands_test {
 namespace {
 
 RadiosityProblem two_patches(const Field& reflectance, const Field& exitance) {
-  return {reflectance, exitance, Eigen::Vector2d(1, 2)};
+  return {{reflectance}, exitance, Eigen::Vector2d(1, 2)};
 }
 
 TEST(SolvedBands, LeaveOutBandsWithoutLight) {

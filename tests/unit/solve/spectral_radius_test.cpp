@@ -25,7 +25,7 @@ ExchangeAreas made_up() {
 
 // Half of the patches dark, half bright; the third band reflects nothing.
 RadiosityProblem problem_in(const Eigen::VectorXd& area) {
-  RadiosityProblem problem{Field::Constant(size, 3, 0.9), Field::Zero(size, 3), area};
+  RadiosityProblem problem{{Field::Constant(size, 3, 0.9)}, Field::Zero(size, 3), area};
   problem.scattering.reflectance.topRows(size / 2) = 0.2;
   problem.scattering.reflectance.col(1) = 0.5;
   problem.scattering.reflectance.col(2) = 0;
@@ -69,7 +69,7 @@ TEST(SpectralRadius, OfTwoPlatesHasEigenvaluesOfBothSigns) {
   ExchangeAreas S(2);
   S.set(0, 1, 1);
   const auto transport = dense_transport(keep_exchange_areas(std::move(S), "test"), Eigen::Vector2d(1, 1));
-  RadiosityProblem problem{Field(2, 1), Field::Zero(2, 1), Eigen::Vector2d(1, 1)};
+  RadiosityProblem problem{{Field(2, 1)}, Field::Zero(2, 1), Eigen::Vector2d(1, 1)};
   problem.scattering.reflectance << 0.2, 0.8;
   EXPECT_NEAR(spectral_radius(*transport, problem, 2)[0], 0.4, 1e-14);
 }
@@ -79,7 +79,7 @@ TEST(SpectralRadius, OfAClosedRoomIsItsReflectance) {
   const ExchangeAreas S = made_up();
   const Eigen::VectorXd area = row_sums(S);
   const auto transport = dense_transport(keep_exchange_areas(S, "test"), area);
-  const RadiosityProblem problem{Field::Constant(size, 1, 0.7), Field::Zero(size, 1), area};
+  const RadiosityProblem problem{{Field::Constant(size, 1, 0.7)}, Field::Zero(size, 1), area};
   EXPECT_NEAR(spectral_radius(*transport, problem, 1)[0], 0.7, 1e-14);
 }
 

@@ -23,7 +23,7 @@ constexpr StudyOptions quick{.sizes = 3, .adaptive = false, .estimators = false}
 
 // B = E + rho o H of a furnace by definition: B = c everywhere if E = c (1 - rho).
 TEST(Furnace, IsSeenByItsMaterials) {
-  RadiosityProblem problem{Field::Constant(3, 1, 0.25), Field::Constant(3, 1, 1.5), Eigen::Vector3d(1, 2, 3)};
+  RadiosityProblem problem{{Field::Constant(3, 1, 0.25)}, Field::Constant(3, 1, 1.5), Eigen::Vector3d(1, 2, 3)};
   ASSERT_TRUE(furnace_radiosity(problem));
   EXPECT_DOUBLE_EQ((*furnace_radiosity(problem))[0], 2);
   problem.scattering.reflectance(1, 0) = 0.75;
