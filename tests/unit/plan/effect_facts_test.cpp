@@ -86,7 +86,7 @@ TEST(SurveyEffects, CountsMaterialsThatAreNotSimulated) {
   Scene scene = cube_room(0.5, 1);
   scene.unsimulated = {
       {UnsimulatedProperty::mirror, 2}, {UnsimulatedProperty::glass, 1}, {UnsimulatedProperty::mirror, 3}};
-  EXPECT_EQ(facts_of(scene).mirrors, 5U);
+  EXPECT_EQ(facts_of(scene).gloss, 5U);
   EXPECT_EQ(facts_of(scene).glass, 1U);
 }
 
