@@ -79,9 +79,9 @@ Field irradiance_errors(const Scattering& scattering, const Field& error) {
 }
 
 Field reflected_variance(const Scattering& scattering, const Field& variance) {
-  const Field by_reflection = scattering.reflectance.square() * variance;
-  if (scattering.is_diagonal()) return by_reflection;
-  return by_reflection + scattering.transmittance.square() * on_other_side(scattering, variance);
+  Field reflected = scattering.reflectance.square() * variance;
+  if (!scattering.is_diagonal()) reflected += scattering.transmittance.square() * on_other_side(scattering, variance);
+  return reflected;
 }
 
 Eigen::ArrayXd reflected_square(const Scattering& scattering, const Field& irradiance, const Eigen::VectorXd& area) {
