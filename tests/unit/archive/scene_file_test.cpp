@@ -90,11 +90,12 @@ Scene odd_scene() {
   scene.materials[0].name =
       "stra\xdf"
       "e";
-  scene.materials[0].diffuse_transmittance = Spectrum::Constant(1, 0x1p-60);
   scene.materials[1].name = "\xff\x00\"\n";
   scene.materials[1].transmittance = Spectrum::Constant(1, 1.0 / 3);
   scene.materials[1].index = 4.0 / 3;
   scene.materials[1].second_face = true;
+  scene.materials.push_back({"paper", Spectrum::Constant(1, 0.3), Spectrum::Zero(1)});
+  scene.materials.back().diffuse_transmittance = Spectrum::Constant(1, 1.0 / 7);
   scene.bands = {{"650 nm", 1.0 / 3, {1, 0, 0}}};
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";

@@ -192,8 +192,7 @@ TEST(Refine, CutsBothSidesOfASheetAlike) {
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
     if (shape.thickness < 1) continue;
     Scene scene = shape.scene;
-    for (Material& material : scene.materials)
-      material.diffuse_transmittance = Spectrum::Constant(material.reflectance.size(), 0.5);
+    for (Material& material : scene.materials) material.diffuse_transmittance = Spectrum::Constant(1, 0.5);
     const PatchMesh mesh = refined_at_random(tessellate(scene, kept_sides(scene, Sides::both), 0.7), 4);
     EXPECT_EQ(mesh.sheets.size(), scene.polygons.size());
     const std::vector<PatchIndex> other_side = other_sides(mesh);
