@@ -144,7 +144,8 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
              const Vector& up, const RenderOptions& options, const Observer& observer) {
   const PicturePlane plane = picture_plane(camera, up);
   const PatchLookup lookup(mesh);
-  const auto rays_per_pixel = static_cast<std::size_t>(options.rays_per_pixel_edge * options.rays_per_pixel_edge);
+  const auto rays_per_edge = static_cast<std::size_t>(options.rays_per_pixel_edge);
+  const std::size_t rays_per_pixel = rays_per_edge * rays_per_edge;
   Image image{options.width, options.height,
               Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, radiance.at_vertices.cols())};
 

@@ -148,7 +148,7 @@ std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, 
   std::vector<std::uint8_t> within(2 * scene.polygons.size(), 0);
   for (const Solid& solid : solids) {
     for (const PolygonIndex p : solid.polygons) {
-      within[2 * p + static_cast<std::size_t>(inner_side(solid, shells, p))] = 1;
+      within[2 * std::size_t{p} + static_cast<std::size_t>(inner_side(solid, shells, p))] = 1;
     }
   }
   return within;
@@ -170,7 +170,7 @@ std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells,
       tests += 2.0 * static_cast<double>((scene.polygons[p].corners.size() + 1) * solid.triangles.size());
       if (tests > most_tests) return within;
       for (const Side side : {Side::front, Side::back}) {
-        std::uint8_t& is_within = within[2 * p + static_cast<std::size_t>(side)];
+        std::uint8_t& is_within = within[2 * std::size_t{p} + static_cast<std::size_t>(side)];
         if (!is_within && lies_within(scene, p, side, solid)) is_within = 1;
       }
     }

@@ -78,7 +78,7 @@ using Samples = std::vector<std::array<double, 4>>;
 // A stratified sample for each path. Samples of different seeds are in unrelated orders, or the same path would get the
 // same strata each time (Burley 2020, section 5). `count` is a power of two.
 Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
-  const Samples ordered = scrambled_sobol(count, seed);
+  Samples ordered = scrambled_sobol(count, seed);
   if (count == 1) return ordered;
   const int unused = std::countl_zero(count - 1);
   Samples shuffled(count);
