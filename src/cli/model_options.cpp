@@ -2,6 +2,7 @@
 
 #include "cli/add_option.h"
 #include "cli/arguments.h"
+#include "cli/daylight_options.h"
 #include "cli/parse_value.h"
 
 #include <algorithm>
@@ -15,6 +16,21 @@ std::string formats(const std::string& separator) {
   std::string list;
   for (const std::string& format : readable_formats()) list += (list.empty() ? "" : separator) + format;
   return list;
+}
+
+void add_choice_options(CLI::App& command, ModelOptions& options) {
+  command
+      .add_option("--only", options.only,
+                  "only faces of objects, groups or materials of this name take\npart (* and ? stand for any letters: "
+                  "'IfcWall*'); may be\nrepeated; default: all")
+      ->allow_extra_args(false)
+      ->option_text("NAME");
+  command
+      .add_option("--leave-out", options.leave_out,
+                  "faces of objects, groups or materials of this name do not take\npart; may be repeated; default: all "
+                  "do")
+      ->allow_extra_args(false)
+      ->option_text("NAME");
 }
 
 }  // namespace
@@ -41,7 +57,9 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
           "length of one model unit; default m")
       ->option_text("m|cm|mm|in|ft");
   add_set_option(command, options.settings);
+  add_choice_options(command, options);
   add_up_option(command, options.up);
+  add_daylight_options(command, options.daylight);
   add(command, "--confine", "FOLDER",
       "reads no file outside of this folder, whatever the model names\nand wherever links lead; default: any file",
       [&options](const std::string& text) {
@@ -85,6 +103,9 @@ ReadOptions read_options(const ModelOptions& options) {
   read.format = options.format;
   read.up = options.up;
   read.confine = options.confine;
+  read.only = options.only;
+  read.leave_out = options.leave_out;
+  read.daylight = options.daylight;
   read.settings = material_settings(options.settings);
   return read;
 }

@@ -17,11 +17,13 @@ struct ModelOptions {
   std::vector<std::string> settings;
   double metres_per_unit = 1;
   std::optional<Vector> up;
+  std::vector<std::string> only, leave_out;
+  DaylightSetting daylight;
   std::string confine;
 };
 
-/// Adds MODEL, --format, --unit, --set, --up and --confine to a command. What is parsed lands in `options`, which must
-/// outlive it.
+/// Adds MODEL, --format, --unit, --set, --only, --leave-out, --up, --confine and the daylight to a command. What is
+/// parsed lands in `options`, which must outlive it.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 /// Adds --set alone.

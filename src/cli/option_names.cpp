@@ -15,6 +15,16 @@ namespace {
 // Fields with a value come before the same without one.
 const std::vector<OptionName>& usual_names() {
   static const std::vector<OptionName> names = {{"read.settings", "--set"},
+                                                {"read.daylight.sky=", "--sky "},
+                                                {"read.daylight.sky", "--sky"},
+                                                {"read.daylight.sun=", "--sun "},
+                                                {"read.daylight.sun", "--sun"},
+                                                {"read.daylight.weather=", "--weather "},
+                                                {"read.daylight.weather", "--weather"},
+                                                {"read.daylight.ground=", "--ground "},
+                                                {"read.daylight.ground", "--ground"},
+                                                {"read.only", "--only"},
+                                                {"read.leave_out", "--leave-out"},
                                                 {"read.confine", "--confine"},
                                                 {"read.metres_per_unit=0.0254", "--unit in"},
                                                 {"read.metres_per_unit=0.3048", "--unit ft"},

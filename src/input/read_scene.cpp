@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
+#include "input/daylight_setting.h"
 #include "input/material_settings.h"
 #include "input/merge_scenes.h"
 #include "input/placed.h"
@@ -54,6 +55,7 @@ Scene read_entry(const ModelEntry& model, const std::filesystem::path& confine) 
   const std::string format = format_of(model.file);
   if (format == "toml") throw InputError(model.where, "a scene file cannot name another one; expected a model file");
   Scene scene = read_model(model.file, format, model.metres_per_unit, confine);
+  scene = with_chosen_faces(std::move(scene), model.choice, model.where + ": model");
   return model.placement ? placed(std::move(scene), *model.placement) : scene;
 }
 
@@ -68,6 +70,15 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   scene.up_stated = scene.up_stated || file.up;
   scene.cameras.insert(scene.cameras.end(), file.cameras.begin(), file.cameras.end());
   return with_settings(std::move(scene), file.settings);
+}
+
+// The daylight that is asked for beside the files.
+Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
+  if (!asks_for_daylight(options.daylight)) return scene;
+  LightEntries lights = lights_of(options.daylight, options.confine);
+  if (has_north) lights.north = scene.north;
+  if (options.daylight.weather) scene.inputs.push_back(options.daylight.weather->file);
+  return with_lights(std::move(scene), lights);
 }
 
 // The sensors that a scene file asks for.
@@ -106,6 +117,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   }
   Scene scene = merge_scenes(std::move(models));
   for (const SceneFile& file : scene_files) scene = with_scene_file(std::move(scene), file);
+  scene = with_chosen_faces(std::move(scene), {options.only, options.leave_out}, "read");
   scene = with_settings(std::move(scene), options.settings);
   scene = with_stated_mirrors(with_stated_panes(std::move(scene)));
   scene = repair(std::move(scene));
@@ -115,6 +127,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   for (const SceneFile& file : scene_files) {
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);
   }
+  scene = with_daylight(std::move(scene), options, !scene_files.empty());
   check_limits(scene);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);

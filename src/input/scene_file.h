@@ -4,6 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 
+#include "input/chosen_faces.h"
 #include "input/scene_lights.h"
 
 #include <filesystem>
@@ -20,6 +21,7 @@ struct ModelEntry {
   std::string where;                         ///< "room.toml:3", for messages
   double metres_per_unit = 1;                ///< of the model file
   std::optional<Eigen::Affine3d> placement;  ///< metres to metres
+  FaceChoice choice;                         ///< what of it takes part
 };
 
 /// A grid of sensors over a floor, which is known once the models are read.

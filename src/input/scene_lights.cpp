@@ -56,7 +56,7 @@ Luminaire luminaire_of(const LuminaireEntry& entry, const Scene& scene, Eigen::I
 
 Vector direction_of(const SunEntry& sun, const Scene& scene) {
   if (sun.direction) return *sun.direction;
-  return direction_to(solar_position(sun.place, sun.instant), scene.up, scene.north);
+  return direction_to(sun.position.value_or(solar_position(sun.place, sun.instant)), scene.up, scene.north);
 }
 
 Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Index bands) {
@@ -101,7 +101,7 @@ Scene with_lights(Scene scene, const LightEntries& lights) {
   for (const LuminaireEntry& entry : lights.luminaires) scene.luminaires.push_back(luminaire_of(entry, scene, bands));
   if (!lights.sun && !lights.sky && !lights.weather) return scene;
   if (scene.sun || scene.sky)
-    throw InputError(lights.where, "an earlier scene file has sun or sky; expected them once");
+    throw InputError(lights.where, "a scene file read before has sun or sky; expected them once");
   Daylight daylight = daylight_of(lights, scene, bands);
   if (daylight.sky) {
     // L = rho E / pi

@@ -22,7 +22,8 @@ struct LuminaireEntry {
 /// Where the sun stands and, unless it only shapes the sky, how strong it is.
 struct SunEntry {
   std::optional<Vector> direction;
-  Place place;  ///< with instant, where there is no direction
+  std::optional<SolarPosition> position;  ///< instead of a direction
+  Place place;                            ///< with instant, where there is neither
   Instant instant;
   Spectrum normal_irradiance;  ///< may be empty, or of one band
 };

@@ -100,14 +100,25 @@ std::optional<Eigen::Affine3d> placement_of(const TomlValue& table, const TomlFr
   return placement;
 }
 
+// One pattern, or a list of them.
+std::vector<std::string> patterns(const TomlValue& value) {
+  const std::string expected = "a name of objects, groups or materials, a pattern with * and ?, or a list of such";
+  if (value.kind != TomlValue::Kind::list) return {text(value, expected)};
+  std::vector<std::string> all;
+  for (const TomlValue& item : value.items) all.push_back(text(item, expected));
+  return all;
+}
+
 ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
-  allow_keys(table, {"file", "unit", "up", "scale", "rotate", "translate", "matrix"});
+  allow_keys(table, {"file", "unit", "up", "scale", "rotate", "translate", "matrix", "only", "leave_out"});
   ModelEntry model;
   const TomlValue& file = required(table, "file", "the name of a model file");
   model.file = named_file(file, frame);
   model.where = file.where;
   if (const TomlValue* const unit = find(table, "unit")) model.metres_per_unit = unit_length(*unit);
   model.placement = placement_of(table, frame);
+  if (const TomlValue* const only = find(table, "only")) model.choice.only = patterns(*only);
+  if (const TomlValue* const rest = find(table, "leave_out")) model.choice.leave_out = patterns(*rest);
   return model;
 }
 

@@ -135,7 +135,9 @@ std::string setting_for(const LampHint& hint) {
 }  // namespace
 
 std::string advice_without_lamp(const Scene& scene) {
-  const std::string by_scene_file = "; luminaires, sun and sky stand in a scene file (.toml, docs/lights.md)";
+  const std::string by_scene_file =
+      "; read.daylight.sky=overcast:10000lx gives it daylight; luminaires stand in a scene file (.toml, "
+      "docs/lights.md)";
   const std::vector<LampHint> hints = possible_lamps(scene);
   if (hints.empty()) {
     std::vector<std::string> names;

@@ -32,13 +32,41 @@ struct MaterialSetting {
 /// \throws InputError naming read.settings.
 MaterialSetting parse_material_setting(const std::string& text);
 
+/// Daylight that is asked for beside what the files say; nothing by default. What is measured or known from a weather
+/// file brings the sun's strength with it.
+struct DaylightSetting {
+  /// Where the sun stands, degrees.
+  struct SunPlace {
+    double altitude = 45;  ///< above the horizon
+    double azimuth = 180;  ///< from north over east
+    int day_of_year = 80;  ///< for its distance, with `measured`
+  };
+  /// An hour of an EnergyPlus weather file (EPW), which says where the place is.
+  struct WeatherFile {
+    std::filesystem::path file;
+    int month = 1;
+    int day = 1;
+    int hour = 12;  ///< at which it begins, local standard time, 0 to 23
+  };
+  std::optional<SkyKind> sky;
+  double sky_illuminance = 10'000;                ///< of open level ground by the sky alone, lx
+  std::optional<SolarIrradiance> measured;        ///< for a Perez sky; its day of the year is that of `sun`
+  std::optional<SunPlace> sun;                    ///< needed by clear and Perez skies
+  double sun_illuminance = 0;                     ///< across its rays, lx; 0: it only tells where the sky is bright
+  std::optional<WeatherFile> weather;             ///< instead of sky and sun
+  std::optional<double> ground_reflectance = {};  ///< 0.2 if not given, where there is a sky
+};
+
 /// How a model file is to be taken.
 struct ReadOptions {
   double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
   std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
   std::vector<MaterialSetting> settings = {};
-  std::filesystem::path confine = {};  ///< a folder outside of which nothing is read; if empty, any file may be
-  std::string format = {};             ///< an extension without its dot; if empty, that of the file
+  std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be
+  std::vector<std::string> only = {};       ///< objects, groups or materials, nothing else takes part; empty: all
+  std::vector<std::string> leave_out = {};  ///< those that do not; both names, or patterns with * and ?
+  DaylightSetting daylight = {};
+  std::string format = {};  ///< an extension without its dot; if empty, that of the file
 };
 
 /// The extensions of the formats that can be read, without dots.

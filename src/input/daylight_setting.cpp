@@ -1,0 +1,74 @@
+#include "input/daylight_setting.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/text.h"
+#include "light/photometry.h"
+
+namespace patchlight {
+namespace {
+
+// What is seen of the ground of most places.
+constexpr double usual_ground = 0.2;
+
+Spectrum irradiance_for(double illuminance) { return Spectrum::Constant(1, illuminance / luminous_efficacy); }
+
+// What cannot be together, or is missing.
+void require_consistent(const DaylightSetting& setting) {
+  if (setting.weather && (setting.sky || setting.sun))
+    throw InputError("read.daylight.weather", std::string("found with ") +
+                                                  (setting.sky ? "read.daylight.sky" : "read.daylight.sun") +
+                                                  "; a weather file has both sun and sky: leave one of the two out");
+  if (setting.ground_reflectance && !setting.sky && !setting.weather)
+    throw InputError("read.daylight.ground",
+                     "found without a sky; the ground is lit by one: add read.daylight.sky=overcast:10000lx");
+  const bool needs_sun = setting.sky == SkyKind::cie_clear || setting.sky == SkyKind::perez;
+  if (needs_sun && !setting.sun)
+    throw InputError("read.daylight.sky",
+                     "found a sky that is brightest around the sun, without a sun; say where it stands, as in "
+                     "read.daylight.sun=2024-06-21T12:00:00Z@52.5,13.4 or read.daylight.sun=40,180");
+  const bool shapes_only = setting.sun && !(setting.sun_illuminance > 0) && !needs_sun;
+  if (shapes_only)
+    throw InputError("read.daylight.sun",
+                     "found no strength; expected one in lx across its rays, as in read.daylight.sun=40,180:80000lx");
+  if (setting.measured && setting.sun_illuminance > 0)
+    throw InputError("read.daylight.sun", "found a strength, which is known from what was measured; leave it out");
+}
+
+SunEntry sun_of(const DaylightSetting& setting) {
+  SunEntry sun;
+  sun.position = SolarPosition{setting.sun->altitude, setting.sun->azimuth};
+  if (setting.sun_illuminance > 0) sun.normal_irradiance = irradiance_for(setting.sun_illuminance);
+  return sun;
+}
+
+SkyEntry sky_of(const DaylightSetting& setting) {
+  if (setting.sky != SkyKind::perez) return {*setting.sky, irradiance_for(setting.sky_illuminance), {}};
+  SolarIrradiance measured = setting.measured.value_or(SolarIrradiance{});
+  measured.day_of_year = setting.sun->day_of_year;
+  return {SkyKind::perez, {}, measured};
+}
+
+}  // namespace
+
+bool asks_for_daylight(const DaylightSetting& setting) {
+  return setting.sky || setting.sun || setting.weather || setting.ground_reflectance;
+}
+
+LightEntries lights_of(const DaylightSetting& setting, const std::filesystem::path& confine) {
+  require_consistent(setting);
+  LightEntries lights;
+  lights.photometric = true;
+  lights.where = setting.sky ? "read.daylight.sky" : setting.sun ? "read.daylight.sun" : "read.daylight.weather";
+  if (setting.weather) {
+    require_within(confine, setting.weather->file, "read.daylight.weather");
+    lights.weather =
+        read_epw(setting.weather->file, setting.weather->month, setting.weather->day, setting.weather->hour);
+  }
+  if (setting.sun) lights.sun = sun_of(setting);
+  if (setting.sky) lights.sky = sky_of(setting);
+  if (setting.sky || setting.weather) lights.ground_reflectance = setting.ground_reflectance.value_or(usual_ground);
+  return lights;
+}
+
+}  // namespace patchlight
