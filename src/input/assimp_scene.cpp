@@ -6,12 +6,15 @@
 #include "input/materials.h"
 #include "input/stated_panes.h"
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 namespace patchlight {
@@ -93,6 +96,45 @@ Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
 // Names that assimp makes up for the IFC relations between two objects.
 bool is_made_up(const std::string& name) { return name.starts_with("$Rel") || name.starts_with("IfcMappedItem"); }
 
+using Seam = std::array<std::array<float, 3>, 2>;
+
+std::array<float, 3> coordinates(const aiVector3D& p) { return {p.x, p.y, p.z}; }
+
+Seam between(const aiVector3D& a, const aiVector3D& b) {
+  Seam seam = {coordinates(a), coordinates(b)};
+  if (seam[1] < seam[0]) std::swap(seam[0], seam[1]);
+  return seam;
+}
+
+const aiVector3D& corner_of(const aiMesh& mesh, const aiFace& face, unsigned int k) {
+  return mesh.mVertices[std::min(face.mIndices[k % face.mNumIndices], mesh.mNumVertices - 1)];
+}
+
+// The seams that faces walk both ways to a hole in them.
+std::set<Seam> seams_of(const aiMesh& mesh) {
+  constexpr unsigned int fewest_corners = 8;  // of two triangles and the ends of a seam
+  std::set<Seam> seams;
+  for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices < fewest_corners) continue;
+    std::set<Seam> edges;
+    for (unsigned int k = 0; k < face.mNumIndices; ++k) {
+      const Seam edge = between(corner_of(mesh, face, k), corner_of(mesh, face, k + 1));
+      if (!edges.insert(edge).second) seams.insert(edge);
+    }
+  }
+  return seams;
+}
+
+// An extruded profile has a pair of walls along each seam, which are no faces of the solid.
+bool stands_on_seam(const aiMesh& mesh, const aiFace& face, const std::set<Seam>& seams) {
+  if (seams.empty() || face.mNumIndices != 4) return false;
+  for (unsigned int k = 0; k < 4; ++k) {
+    if (seams.contains(between(corner_of(mesh, face, k), corner_of(mesh, face, k + 1)))) return true;
+  }
+  return false;
+}
+
 // Collects the faces of all nodes.
 class AssimpCollector {
  public:
@@ -122,6 +164,7 @@ class AssimpCollector {
       const aiVector3D& p = mesh.mVertices[v];
       scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
     }
+    const std::set<Seam> seams = seams_of(mesh);
     // A mirrored copy keeps its front where it was: the corners run the other way.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
@@ -130,6 +173,7 @@ class AssimpCollector {
         ++other_primitives_;
         continue;
       }
+      if (stands_on_seam(mesh, face, seams)) continue;
       Polygon polygon;
       for (unsigned int k = 0; k < face.mNumIndices; ++k) {
         const unsigned int corner = face.mIndices[mirrored ? face.mNumIndices - 1 - k : k];

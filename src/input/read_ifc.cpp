@@ -2,6 +2,7 @@
 
 #include "files/sha256.h"
 #include "input/assimp_scene.h"
+#include "input/ifc_voids.h"
 #include "input/isolated.h"
 #include "input/text.h"
 
@@ -22,6 +23,11 @@ Eigen::Matrix3d back_to_z_up() {
   return turn;
 }
 
+std::string note_on_voids(std::size_t profiles) {
+  return std::to_string(profiles) + (profiles == 1 ? " profile has" : " profiles have") +
+         " voids with curved outlines, which are not cut: frames made of them are read as boards";
+}
+
 }  // namespace
 
 Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
@@ -29,8 +35,10 @@ Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
   AssimpFormat format;
   format.extension = "ifc";
   format.turn = back_to_z_up();
+  const JoinedVoids joined = with_joined_voids(bytes);
   Scene scene =
-      read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
+      read_isolated(file.string(), [&] { return assimp_scene(joined.text, file.string(), format, metres_per_unit); });
+  if (joined.left > 0) scene.notes.push_back(note_on_voids(joined.left));
   scene.up = Vector::UnitZ();
   scene.up_stated = true;
   scene.sha256 = sha256({&bytes, 1});

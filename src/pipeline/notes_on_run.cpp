@@ -10,8 +10,18 @@ namespace patchlight {
 
 namespace {
 
+// The light of a sky comes by rays from where it falls.
+bool has_lamps_apart_from_sky(const Scene& scene) {
+  if (scene.sun || !scene.luminaires.empty()) return true;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_lamp(scene, p)) return true;
+  }
+  return false;
+}
+
 std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& tracing) {
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
+  if (!has_lamps_apart_from_sky(scene)) return {};
   const MirrorChains found = mirror_chains(scene);
   if (!found.is_cut) return {};
   std::ostringstream text;

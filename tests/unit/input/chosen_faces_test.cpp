@@ -1,0 +1,69 @@
+#include "patchlight/input/read_scene.h"
+
+#include "model_files.h"
+
+namespace patchlight::chosen_faces_test {
+namespace {
+
+class ChosenFaces : public ModelFiles {
+ protected:
+  ChosenFaces() {
+    write("room.mtl", "newmtl wood\nKd .5 .4 .3\nnewmtl paint\nKd .8 .8 .8\n");
+    write("room.obj",
+          "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 3\nv 3 0 3\nv 3 1 3\nv 0 1 3\n"
+          "g floor\nusemtl wood\nf 1 2 3 4\ng IfcTable_1\nusemtl wood\nf 1 2 6 5\n"
+          "g ceiling\nusemtl paint\nf 5 8 7 6\n");
+  }
+  Scene with(const std::vector<std::string>& only, const std::vector<std::string>& leave_out) const {
+    ReadOptions options;
+    options.only = only;
+    options.leave_out = leave_out;
+    return read_scene(folder_ / "room.obj", options);
+  }
+};
+
+std::vector<std::string> names_of(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Polygon& polygon : scene.polygons) names.push_back(group_name(scene, polygon.group));
+  return names;
+}
+
+TEST_F(ChosenFaces, AreThoseOfTheNamesAndPatterns) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names_of(with({}, {"IfcTab*"})), (Names{"floor", "ceiling"}));
+  EXPECT_EQ(names_of(with({"wood"}, {})), (Names{"floor", "IfcTable_1"}));
+  EXPECT_EQ(names_of(with({"wood"}, {"IfcTable_?"})), (Names{"floor"}));
+}
+
+TEST_F(ChosenFaces, TellWhatWentAndLeaveNoMaterialWithoutFaces) {
+  const Scene scene = with({}, {"ceiling"});
+  ASSERT_EQ(scene.materials.size(), 1U);
+  EXPECT_EQ(scene.materials[0].name, "wood");
+  EXPECT_TRUE(any_contains(scene.notes, "1 face of 1 object"));
+}
+
+TEST_F(ChosenFaces, RefuseNamesOfNothing) {
+  const auto refused = [this](const std::vector<std::string>& only, const std::vector<std::string>& leave_out) {
+    try {
+      with(only, leave_out);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused({}, {"cieling"}).find("did you mean 'ceiling'"), std::string::npos);
+  EXPECT_NE(refused({"lamp*"}, {}).find("read.only"), std::string::npos);
+  EXPECT_NE(refused({}, {"*"}).find("no face that stays"), std::string::npos);
+}
+
+// In a scene file for one model of several.
+TEST_F(ChosenFaces, OfOneModelOfASceneFile) {
+  const Scene scene =
+      read_scene(write("two.toml",
+                       "up = \"z\"\n[[model]]\nfile = \"room.obj\"\nonly = \"floor\"\n[[model]]\nfile = \"room.obj\"\n"
+                       "translate = [9, 0, 0]\nleave_out = [\"floor\", \"IfcTable*\"]\n"));
+  EXPECT_EQ(names_of(scene), (std::vector<std::string>{"floor", "ceiling"}));
+}
+
+}  // namespace
+}  // namespace patchlight::chosen_faces_test
