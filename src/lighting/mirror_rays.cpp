@@ -30,15 +30,26 @@ MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing
   if (targets_.size() > most_targets) targets_.resize(most_targets);
 }
 
+namespace {
+
+// Does some corner of the target lie before the receiver?
+bool rises_above(const Opening& target, const SurfacePoint& at) {
+  const double middle = at.normal.dot(target.centre - at.point);
+  if (std::abs(middle) > (1 + 1e-9) * target.radius) return middle > 0;
+  for (const auto& triangle : target.triangles)
+    for (const Point& corner : triangle)
+      if (at.normal.dot(corner - at.point) > 0) return true;
+  return false;
+}
+
+}  // namespace
+
 // Roughly as the solid angle of each if it were turned to the receiver.
 MirrorView::Aim MirrorView::aim_from(const SurfacePoint& at) const {
   Aim aim;
   double sum = 0;
   for (const Opening& target : targets_) {
-    double rise = 0;
-    for (const auto& triangle : target.triangles)
-      for (const Point& corner : triangle) rise = std::max(rise, at.normal.dot(corner - at.point));
-    const double weight = rise > 0 && target.polygon != at.polygon
+    const double weight = rises_above(target, at) && target.polygon != at.polygon
                               ? target.area / ((target.centre - at.point).squaredNorm() + target.area)
                               : 0;
     aim.probabilities.push_back(weight);

@@ -86,6 +86,7 @@ struct MirrorSampler {
 // The sum over places.
 Spectrum MirrorSampler::over_chains(const std::vector<SurfacePoint>& places, SamplePoints samples) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
+  if (sources.empty()) return sum;
   for (const MirrorChain& chain : lighting.mirrors->paths.chains()) {
     std::vector<Segment> segments;
     std::vector<Spectrum> unoccluded;

@@ -30,7 +30,7 @@ double area_of(const std::array<Point, 3>& triangle) {
 
 // Of triangles in one plane.
 Opening opening_of(PolygonIndex polygon, const Vector& normal, std::vector<std::array<Point, 3>> triangles) {
-  Opening opening{polygon, normal, Point::Zero(), 0, std::move(triangles)};
+  Opening opening{.polygon = polygon, .normal = normal, .centre = Point::Zero(), .triangles = std::move(triangles)};
   const Point& origin = opening.triangles[0][0];
   Vector moment = Vector::Zero();
   for (const auto& triangle : opening.triangles) {
@@ -40,6 +40,8 @@ Opening opening_of(PolygonIndex polygon, const Vector& normal, std::vector<std::
     for (const Point& corner : triangle) moment += area / 3 * (corner - origin);
   }
   opening.centre = origin + moment / opening.area;
+  for (const auto& triangle : opening.triangles)
+    for (const Point& corner : triangle) opening.radius = std::max(opening.radius, (corner - opening.centre).norm());
   return opening;
 }
 
@@ -177,6 +179,7 @@ std::optional<double> distance_to(const Opening& opening, const Point& origin, c
   const double distance = opening.normal.dot(opening.centre - origin) / facing;
   if (!(distance > 0)) return std::nullopt;
   const Point met = origin + distance * direction;
+  if ((met - opening.centre).squaredNorm() > (1 + 1e-9) * opening.radius * opening.radius) return std::nullopt;
   const auto holds = [&](const std::array<Point, 3>& triangle) {
     const auto& [a, b, c] = triangle;
     return turn(opening.normal, a, b, met) >= 0 && turn(opening.normal, b, c, met) >= 0 &&

@@ -83,12 +83,14 @@ std::vector<Ray> camera_rays(const PicturePlane& plane, const RenderOptions& opt
   return rays;
 }
 
-// A patch that a ray sees, behind clear faces or not.
+// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
 struct Seen {
   std::size_t ray = 0;
-  PatchIndex patch = 0;
-  Point point;
-  double share = 1;  // of its light that gets through what is before it
+  std::optional<PatchIndex> patch;
+  Point point;  // on the patch
+  Vector direction;
+  double share = 1;      // of its light that gets through what is before it
+  bool outlook = false;  // behind a clear face, or nothing is met
 };
 
 // Of what a ray sees over several mirrors less than this is left out.
@@ -99,39 +101,47 @@ struct UnderWay {
   std::vector<Ray> rays;
   std::vector<std::size_t> of_ray;  // where each has begun
   std::vector<double> shares;
+  std::vector<std::uint8_t> is_through;  // 1 behind a clear face
 
-  void add(const Ray& ray, std::size_t begun, double share) {
+  void add(const Ray& ray, std::size_t begun, double share, bool through) {
     rays.push_back(ray);
     of_ray.push_back(begun);
     shares.push_back(share);
+    is_through.push_back(through ? 1 : 0);
   }
 };
 
-// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
-// in it. Rays pass sides without patches: they go on from there.
-std::vector<Seen> seen_patches(const Occluder& occluder, const PatchLookup& lookup, std::vector<Ray> rays) {
+// What rays see: the first patch that each meets and, as long as that is clear or a mirror, what is behind it and in
+// it. Rays pass sides without patches: they go on from there.
+std::vector<Seen> seen_by(const Occluder& occluder, const PatchLookup& lookup, std::vector<Ray> rays) {
   std::vector<Seen> seen;
   UnderWay now;
-  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1);
+  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1, false);
   for (int crossing = 0; crossing <= most_crossings && !now.rays.empty(); ++crossing) {
     const std::vector<std::optional<Hit>> hits = occluder.first_hits(now.rays);
     UnderWay next;
     for (std::size_t k = 0; k < now.rays.size(); ++k) {
       const std::optional<Hit>& hit = hits[k];
-      if (!hit) continue;
+      const std::size_t begun = now.of_ray[k];
+      const double share = now.shares[k];
+      const bool through = now.is_through[k] != 0;
+      if (!hit) {
+        seen.push_back({begun, {}, {}, now.rays[k].direction, share, true});
+        continue;
+      }
       const auto patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
       const Vector& direction = hit->direction;
       if (!patch) {
-        next.add({hit->point, direction, hit->polygon}, now.of_ray[k], now.shares[k]);
+        next.add({hit->point, direction, hit->polygon}, begun, share, through);
         continue;
       }
       seen.push_back(
-          {now.of_ray[k], *patch, hit->point, now.shares[k] * occluder.relative_held(hit->polygon, direction)});
-      const double through = now.shares[k] * occluder.transmittance(hit->polygon, direction);
-      if (through > 0) next.add({hit->point, direction, hit->polygon}, now.of_ray[k], through);
-      const double reflected = now.shares[k] * occluder.specular_reflectance(hit->polygon, direction);
+          {begun, *patch, hit->point, direction, share * occluder.relative_held(hit->polygon, direction), through});
+      const double onward = share * occluder.transmittance(hit->polygon, direction);
+      if (onward > 0) next.add({hit->point, direction, hit->polygon}, begun, onward, true);
+      const double reflected = share * occluder.specular_reflectance(hit->polygon, direction);
       if (reflected > least_share)
-        next.add({hit->point, occluder.mirrored(hit->polygon, direction), hit->polygon}, now.of_ray[k], reflected);
+        next.add({hit->point, occluder.mirrored(hit->polygon, direction), hit->polygon}, begun, reflected, through);
     }
     now = std::move(next);
   }
@@ -147,17 +157,23 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   const auto rays_per_edge = static_cast<std::size_t>(options.rays_per_pixel_edge);
   const std::size_t rays_per_pixel = rays_per_edge * rays_per_edge;
   Image image{options.width, options.height,
-              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, radiance.at_vertices.cols())};
+              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, radiance.at_vertices.cols()),
+              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(options.width) * options.height)};
 
   const std::vector<Tile> tiles = tiles_of(options);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const Tile& tile = tiles[index];
-    for (const Seen& seen : seen_patches(occluder, lookup, camera_rays(plane, options, tile))) {
+    for (const Seen& seen : seen_by(occluder, lookup, camera_rays(plane, options, tile))) {
       const int pixel = static_cast<int>(seen.ray / rays_per_pixel);
       const Eigen::Index x = tile.left + pixel % tile.width();
       const Eigen::Index y = tile.top + pixel / tile.width();
-      image.pixels.row(y * options.width + x) += value_at(mesh, radiance, occluder, seen.patch, seen.point) *
-                                                 (seen.share / static_cast<double>(rays_per_pixel));
+      const double share = seen.share / static_cast<double>(rays_per_pixel);
+      if (seen.outlook) image.outlook[y * options.width + x] += share;
+      if (seen.patch) {
+        image.pixels.row(y * options.width + x) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
+      } else if (options.surroundings) {
+        image.pixels.row(y * options.width + x) += options.surroundings(seen.direction) * share;
+      }
     }
   });
   return image;

@@ -9,19 +9,22 @@
 #include "render/smooth.h"
 #include "visibility/occluder.h"
 
+#include <functional>
+
 namespace patchlight {
 
 /// Size and fineness of a picture.
 struct RenderOptions {
   int width = 800;
   int height = 800;
-  int rays_per_pixel_edge = 3;  ///< squared per pixel, box filter
+  int rays_per_pixel_edge = 3;                               ///< squared per pixel, box filter
+  std::function<Spectrum(const Vector&)> surroundings = {};  ///< radiance where nothing is met; none: black
 };
 
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, from the smoothed
-/// radiance of the patches. Sides without patches are transparent to the camera; where nothing is met the picture is
-/// black. \throws InputError when eye and target are one point or the field of view is not between 0 and 180 degrees;
-/// Cancelled.
+/// radiance of the patches. Sides without patches are transparent to the camera; where nothing is met the surroundings
+/// are seen. \throws InputError when eye and target are one point or the field of view is not between 0 and 180
+/// degrees; Cancelled.
 Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 

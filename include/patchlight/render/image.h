@@ -13,6 +13,7 @@ struct Image {
   int width = 0;
   int height = 0;
   Field pixels;
+  Eigen::VectorXd outlook = {};  ///< per pixel: the share of what is seen behind clear faces, or where nothing is
 };
 
 /// Eight bits per channel, sRGB-encoded, from the upper left corner, row by row.
