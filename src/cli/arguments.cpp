@@ -7,6 +7,7 @@
 #include "cli/check_options.h"
 #include "cli/compare_options.h"
 #include "cli/form_factor_options.h"
+#include "cli/new_options.h"
 #include "cli/plan_options.h"
 #include "cli/relight_options.h"
 #include "cli/solution_options.h"
@@ -106,6 +107,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   add_information(tool);
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
   const std::shared_ptr<CheckOptions> check_options = add_check(tool);
+  const std::shared_ptr<NewOptions> new_options = add_new(tool);
   const std::shared_ptr<PlanOptions> plan_options = add_plan(tool);
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
@@ -126,6 +128,7 @@ Arguments parse_arguments(int count, const char* const* values) {
     const CLI::App& command = *tool.get_subcommands().front();
     require_nothing_left(command, command.get_name(), tool.remaining(true));
     if (command.get_name() == "check") return finish_check(*check_options);
+    if (command.get_name() == "new") return finish_new(*new_options);
     if (command.get_name() == "plan") return finish_plan(*plan_options);
     if (command.get_name() == "validate") return finish_validate(*validate_options);
     if (command.get_name() == "form-factors") {

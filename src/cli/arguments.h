@@ -71,6 +71,14 @@ struct CheckArguments {
   std::filesystem::path problems;  ///< .vtp
   std::filesystem::path json;      ///< .json
   bool json_on_stdout = false;     ///< instead of the text
+  bool all = false;                ///< lists everything, not what fits on a screen
+};
+
+/// What `patchlight new` is asked to do.
+struct NewArguments {
+  std::vector<std::filesystem::path> models;
+  ReadOptions read;
+  std::filesystem::path output;  ///< .toml
 };
 
 /// What `patchlight form-factors` is asked to do.
@@ -130,8 +138,9 @@ struct Information {
   std::string text;
 };
 
-using Arguments = std::variant<Information, SolveArguments, CheckArguments, PlanArguments, FormFactorArguments,
-                               CompareArguments, StudyArguments, VerifyArguments, ValidateArguments>;
+using Arguments =
+    std::variant<Information, SolveArguments, CheckArguments, NewArguments, PlanArguments, FormFactorArguments,
+                 CompareArguments, StudyArguments, VerifyArguments, ValidateArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

@@ -9,18 +9,33 @@
 #include "output/write_problems.h"
 #include "output/write_survey.h"
 #include "plan/survey.h"
+#include "scene/sensor_grid.h"
 
 #include <algorithm>
 #include <array>
 #include <iomanip>
 #include <iostream>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace patchlight::cli {
 namespace {
 
 // Of lengths and areas.
 constexpr int digits = 4;
+
+// So many materials, objects, problems and notes are listed unless all are asked for: together they fit on a screen.
+constexpr std::size_t most_materials = 12;
+constexpr std::size_t most_objects = 6;
+constexpr std::size_t most_notes = 10;
+constexpr std::size_t most_rooms = 6;
+
+// "and 171 more (--all lists them)", or nothing.
+std::string rest_line(std::size_t count, std::size_t shown) {
+  if (count <= shown) return {};
+  return "  and " + std::to_string(count - shown) + " more (--all lists them)\n";
+}
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -82,19 +97,70 @@ std::string sheet_part(const Material& material) {
   return "; diffuse transmittance " + listed(material.diffuse_transmittance, ", ");
 }
 
-std::string material_lines(const SceneReport& report) {
+// A table of what is called so, with columns aligned.
+std::size_t width_of(const std::vector<std::string>& names) {
   std::size_t width = 0;
-  for (const MaterialFacts& facts : report.materials) width = std::max(width, shown_name(facts.material.name).size());
-  width = std::min<std::size_t>(width, 40);
+  for (const std::string& name : names) width = std::max(width, shown_name(name).size());
+  return std::min<std::size_t>(width, 40);
+}
+
+// The largest first.
+std::string material_lines(const SceneReport& report, bool all) {
+  std::vector<MaterialFacts> materials = report.materials;
+  if (!all && materials.size() > most_materials) {
+    std::stable_sort(materials.begin(), materials.end(),
+                     [](const MaterialFacts& a, const MaterialFacts& b) { return a.area > b.area; });
+    materials.resize(most_materials);
+  }
+  std::vector<std::string> names;
+  for (const MaterialFacts& facts : materials) names.push_back(facts.material.name);
   std::ostringstream text;
-  text << "materials:\n";
-  for (const MaterialFacts& facts : report.materials) {
-    text << "  " << std::left << std::setw(static_cast<int>(width)) << shown_name(facts.material.name)
+  text << "materials: " << report.materials.size() << '\n';
+  for (const MaterialFacts& facts : materials) {
+    text << "  " << std::left << std::setw(static_cast<int>(width_of(names))) << shown_name(facts.material.name)
          << "  reflectance " << listed(facts.material.reflectance, ", ") << mirror_part(facts.material)
          << pane_part(facts.material) << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", "
          << rounded(facts.area, digits) << " m^2\n";
   }
-  return text.str();
+  return text.str() + rest_line(report.materials.size(), materials.size());
+}
+
+// The largest objects or groups first, which --only and --leave-out take. Of IFC, classes with a pattern for each.
+std::string object_lines(const SceneReport& report, bool all) {
+  const std::vector<ObjectFacts>& objects = all ? report.objects : report.classes;
+  if (objects.size() < 2) return {};
+  const std::size_t shown = all ? objects.size() : std::min(objects.size(), most_objects);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < shown; ++k) names.push_back(objects[k].name);
+  std::ostringstream text;
+  text << "objects: " << report.objects.size() << '\n';
+  for (std::size_t k = 0; k < shown; ++k) {
+    text << "  " << std::left << std::setw(static_cast<int>(width_of(names))) << shown_name(objects[k].name) << "  ";
+    if (objects[k].objects > 1) text << objects[k].objects << " objects, ";
+    text << counted(objects[k].faces, "face") << ", " << rounded(objects[k].area, digits) << " m^2\n";
+  }
+  return text.str() + rest_line(objects.size(), shown);
+}
+
+// The largest rooms first.
+std::string room_lines(const Scene& scene, bool all) {
+  if (scene.rooms.empty()) return {};
+  std::vector<std::pair<double, const Room*>> rooms;
+  std::set<std::string> storeys;
+  for (const Room& room : scene.rooms) {
+    rooms.emplace_back(area_of(floor_of(room.faces, scene.up)), &room);
+    storeys.insert(room.storey);
+  }
+  std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const std::size_t shown = all ? rooms.size() : std::min(rooms.size(), most_rooms);
+  std::string text = "rooms: " + std::to_string(rooms.size()) + " on " + counted(storeys.size(), "storey") + ": ";
+  for (std::size_t k = 0; k < shown; ++k) {
+    const auto& [area, room] = rooms[k];
+    text += (k == 0 ? "" : "; ") + shown_name(room->name) + " (" + shown_name(room->storey) + ") " + rounded(area, 3) +
+            " m^2";
+  }
+  if (rooms.size() > shown) text += "; and " + std::to_string(rooms.size() - shown) + " more (--all lists them)";
+  return text + '\n';
 }
 
 std::string lamp_lines(const SceneReport& report) {
@@ -127,22 +193,24 @@ std::string daylight_lines(const Scene& scene) {
   return text.str();
 }
 
-std::string problem_lines(const Scene& scene, const SceneReport& report) {
+std::string problem_lines(const Scene& scene, const SceneReport& report, bool all) {
   std::array<std::size_t, 3> count{};
   for (const Problem& problem : report.problems) ++count[static_cast<std::size_t>(severity_of(problem.kind))];
-  std::ostringstream text;
-  text << "problems: " << counted(count[0], "error") << ", " << counted(count[1], "warning") << ", "
-       << counted(count[2], "remark") << '\n';
+  std::vector<std::string> lines;
   for (const Problem& problem : report.problems) {
-    text << "  " << name_of(severity_of(problem.kind)) << ": " << name_of(problem.kind) << ": "
-         << shown_name(with_option_names(problem.what)) << '\n';
+    lines.push_back(std::string(name_of(severity_of(problem.kind))) + ": " + name_of(problem.kind) + ": " +
+                    shown_name(with_option_names(problem.what)));
   }
   for (const std::string& note : scene.notes) {
     const bool is_problem = std::any_of(report.problems.begin(), report.problems.end(),
                                         [&](const Problem& problem) { return problem.what == note; });
-    if (!is_problem) text << "  note: " << shown_name(with_option_names(note)) << '\n';
+    if (!is_problem) lines.push_back("note: " + shown_name(with_option_names(note)));
   }
-  return text.str();
+  std::string text = "problems: " + counted(count[0], "error") + ", " + counted(count[1], "warning") + ", " +
+                     counted(count[2], "remark") + '\n';
+  const std::size_t shown = all ? lines.size() : std::min(lines.size(), most_notes);
+  for (std::size_t k = 0; k < shown; ++k) text += "  " + lines[k] + '\n';
+  return text + rest_line(lines.size(), shown);
 }
 
 const char* verdict(const SceneReport& report) {
@@ -171,8 +239,10 @@ ExitCode check(const CheckArguments& arguments) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
-              << size_line(scene, report) << counts_lines(report) << sides_lines(report) << material_lines(report)
-              << lamp_lines(report) << daylight_lines(scene) << problem_lines(scene, report) << std::flush;
+              << size_line(scene, report) << counts_lines(report) << sides_lines(report)
+              << room_lines(scene, arguments.all) << object_lines(report, arguments.all)
+              << material_lines(report, arguments.all) << lamp_lines(report) << daylight_lines(scene)
+              << problem_lines(scene, report, arguments.all) << std::flush;
   }
   if (report.usable) return good;
   print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));

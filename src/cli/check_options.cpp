@@ -22,6 +22,7 @@ struct CheckOptions {
   std::optional<Sides> sides;
   std::string problems, json;
   bool wants_json = false;
+  bool all = false;
 };
 
 std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
@@ -32,6 +33,8 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
   add(command, "--sides", "auto|front|both",
       "counts the sides of the polygons that take part in a solve with\nthis option; default: they are not counted",
       [&to](const std::string& text) { to.sides = sides_named(text); });
+  command.add_flag("--all", to.all,
+                   "lists every object, material and problem; default: the largest\nand the worst, on one screen");
   command
       .add_option_function<std::vector<std::string>>(
           "--json",
@@ -62,6 +65,7 @@ CheckArguments finish_check(const CheckOptions& options) {
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.sides = options.sides;
+  arguments.all = options.all;
   arguments.json = options.json;
   arguments.json_on_stdout = options.wants_json && arguments.json.empty();
   arguments.problems = options.problems;

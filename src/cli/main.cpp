@@ -7,6 +7,7 @@
 #include "cli/form_factors.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/new.h"
 #include "cli/plan.h"
 #include "cli/solve.h"
 #include "cli/standard_streams.h"
@@ -32,6 +33,7 @@ ExitCode run(int count, const char* const* values) {
     return good;
   }
   if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
+  if (const auto* to_begin = std::get_if<NewArguments>(&arguments)) return new_scene(*to_begin);
   if (const auto* to_plan = std::get_if<PlanArguments>(&arguments)) return plan(*to_plan);
   if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
   if (const auto* to_compare = std::get_if<CompareArguments>(&arguments)) return compare(*to_compare);

@@ -35,7 +35,7 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
 
 }  // namespace
 
-void add_model_options(CLI::App& command, ModelOptions& options) {
+void add_file_options(CLI::App& command, ModelOptions& options) {
   command
       .add_option(
           "MODEL", options.models,
@@ -56,16 +56,20 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
           "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); },
           "length of one model unit; default m")
       ->option_text("m|cm|mm|in|ft");
-  add_set_option(command, options.settings);
-  add_choice_options(command, options);
   add_up_option(command, options.up);
-  add_daylight_options(command, options.daylight);
   add(command, "--confine", "FOLDER",
       "reads no file outside of this folder, whatever the model names\nand wherever links lead; default: any file",
       [&options](const std::string& text) {
         if (text.empty()) throw refusal("--confine", text, "the name of a folder");
         options.confine = text;
       });
+}
+
+void add_model_options(CLI::App& command, ModelOptions& options) {
+  add_file_options(command, options);
+  add_set_option(command, options.settings);
+  add_choice_options(command, options);
+  add_daylight_options(command, options.daylight);
 }
 
 void add_up_option(CLI::App& command, std::optional<Vector>& up) {

@@ -22,6 +22,10 @@ struct ModelOptions {
   std::string confine;
 };
 
+/// Adds MODEL, --format, --unit, --up and --confine to a command; what is parsed lands in `options`, which must outlive
+/// it.
+void add_file_options(CLI::App& command, ModelOptions& options);
+
 /// Adds MODEL, --format, --unit, --set, --only, --leave-out, --up, --confine and the daylight to a command. What is
 /// parsed lands in `options`, which must outlive it.
 void add_model_options(CLI::App& command, ModelOptions& options);

@@ -135,17 +135,37 @@ bool stands_on_seam(const aiMesh& mesh, const aiFace& face, const std::set<Seam>
   return false;
 }
 
+constexpr const char* space_class = "IfcSpace_";
+constexpr const char* storey_class = "IfcBuildingStorey_";
+
+// "A102" of "IfcSpace_A102_0BTBFw6f90Nfh9rP1dlXr2", which ends in the object's identifier of 22 letters.
+std::string inner_name(const std::string& name) {
+  constexpr std::size_t identifier = 23;  // with its underscore
+  const std::size_t begin = name.find('_') + 1;
+  const std::size_t end = name.size() > begin + identifier ? name.size() - identifier : name.size();
+  return name.substr(begin, end - begin);
+}
+
 // Collects the faces of all nodes.
 class AssimpCollector {
  public:
   AssimpCollector(Scene scene, const aiScene& model) : scene_(std::move(scene)), model_(model) {}
 
-  void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above) {
+  void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above,
+                const std::string& storey_above) {
     const Eigen::Matrix4d to_scene = above * matrix(node.mTransformation);
     const std::string name = node.mName.C_Str();
     const std::string group = name.empty() || is_made_up(name) ? group_above : name;
-    for (unsigned int k = 0; k < node.mNumMeshes; ++k) add_mesh(*model_.mMeshes[node.mMeshes[k]], to_scene, group);
-    for (unsigned int k = 0; k < node.mNumChildren; ++k) add_node(*node.mChildren[k], to_scene, group);
+    const std::string storey = name.starts_with(storey_class) ? inner_name(name) : storey_above;
+    for (unsigned int k = 0; k < node.mNumMeshes; ++k) {
+      const aiMesh& mesh = *model_.mMeshes[node.mMeshes[k]];
+      if (group.starts_with(space_class)) {
+        add_to_room(mesh, to_scene, inner_name(group), storey);
+      } else {
+        add_mesh(mesh, to_scene, group);
+      }
+    }
+    for (unsigned int k = 0; k < node.mNumChildren; ++k) add_node(*node.mChildren[k], to_scene, group, storey);
   }
 
   Scene scene() && {
@@ -156,6 +176,20 @@ class AssimpCollector {
   }
 
  private:
+  // A space is air: its body tells where a room is.
+  void add_to_room(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& name,
+                   const std::string& storey) {
+    const bool goes_on = !scene_.rooms.empty() && scene_.rooms.back().name == name;
+    if (!goes_on) scene_.rooms.push_back({name, storey, {}});
+    for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
+      std::vector<Point>& corners = scene_.rooms.back().faces.emplace_back();
+      for (unsigned int k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
+        const aiVector3D& p = corner_of(mesh, mesh.mFaces[f], k);
+        corners.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
+      }
+    }
+  }
+
   void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& group) {
     const auto [entry, is_new] = groups_.emplace(group, static_cast<std::uint32_t>(scene_.groups.size()));
     if (is_new) scene_.groups.push_back(group);
@@ -199,6 +233,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   Assimp::Importer importer;
   keep_importer(importer, format.extension);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_IFC_SKIP_SPACE_REPRESENTATIONS, false);
   const aiScene* model = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.extension.c_str());
   if (model == nullptr || model->mRootNode == nullptr) {
     throw InputError(file, std::string("is not a good ") + format.extension + " file: " + importer.GetErrorString() +
@@ -210,7 +245,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
   AssimpCollector collector(std::move(scene), *model);
-  collector.add_node(*model->mRootNode, to_scene, "");
+  collector.add_node(*model->mRootNode, to_scene, "", "");
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;
   return scene;

@@ -1,13 +1,11 @@
 #include "input/ifc_voids.h"
 
+#include "input/joined_rings.h"
 #include "input/text.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -16,7 +14,7 @@ namespace patchlight {
 namespace {
 
 using Id = std::uint64_t;
-using Place = Eigen::Vector2d;
+using Place2d = Eigen::Vector2d;
 
 // "#12=IFCPOLYLINE((#1,#2));"
 struct StepEntity {
@@ -62,7 +60,7 @@ std::vector<Id> references(std::string_view text) {
   return ids;
 }
 
-std::optional<Place> place_of(std::string_view arguments) {
+std::optional<Place2d> place_of(std::string_view arguments) {
   if (!arguments.starts_with("((") || !arguments.ends_with("))")) return std::nullopt;
   const std::string_view inner = arguments.substr(2, arguments.size() - 4);
   const std::size_t comma = inner.find(',');
@@ -72,12 +70,12 @@ std::optional<Place> place_of(std::string_view arguments) {
   const auto x = finite_number(trimmed(inner.substr(0, comma)));
   const auto y = finite_number(trimmed(inner.substr(comma + 1, second - comma - 1)));
   if (!x || !y) return std::nullopt;
-  return Place(*x, *y);
+  return Place2d(*x, *y);
 }
 
 // What profiles are made of, by their numbers.
 struct Entities {
-  std::unordered_map<Id, Place> points;
+  std::unordered_map<Id, Place2d> points;
   std::unordered_map<Id, std::vector<Id>> polylines;
   std::vector<StepEntity> profiles;
   Id largest = 0;
@@ -101,102 +99,43 @@ Entities entities_of(std::string_view text) {
 }
 
 // A closed curve as points, the last of which is not the first once more; nothing when it is no polyline.
-struct Ring {
+struct ClosedCurve {
   std::vector<Id> ids;
-  std::vector<Place> places;
+  std::vector<Place2d> places;
 };
 
-std::optional<Ring> ring_of(const Entities& entities, Id curve) {
+std::optional<ClosedCurve> curve_of(const Entities& entities, Id curve) {
   const auto line = entities.polylines.find(curve);
   if (line == entities.polylines.end()) return std::nullopt;
-  Ring ring;
+  ClosedCurve closed;
   for (const Id id : line->second) {
     const auto point = entities.points.find(id);
     if (point == entities.points.end()) return std::nullopt;
-    ring.ids.push_back(id);
-    ring.places.push_back(point->second);
+    closed.ids.push_back(id);
+    closed.places.push_back(point->second);
   }
-  while (ring.places.size() > 1 && ring.places.back() == ring.places.front()) {
-    ring.ids.pop_back();
-    ring.places.pop_back();
+  while (closed.places.size() > 1 && closed.places.back() == closed.places.front()) {
+    closed.ids.pop_back();
+    closed.places.pop_back();
   }
-  if (ring.places.size() < 3) return std::nullopt;
-  return ring;
+  return closed;
 }
 
-double twice_the_area(const Ring& ring) {
-  double sum = 0;
-  for (std::size_t k = 0; k < ring.places.size(); ++k) {
-    const Place& a = ring.places[k];
-    const Place& b = ring.places[(k + 1) % ring.places.size()];
-    sum += a.x() * b.y() - b.x() * a.y();
+// The points of the one walk over all curves of a profile: its third argument is the outline, its fourth the voids.
+std::vector<Id> walk_of(const Entities& entities, const StepEntity& profile) {
+  std::vector<std::vector<Id>> ids;
+  std::vector<std::vector<Place2d>> rings;
+  for (const Id id : references(profile.arguments)) {
+    std::optional<ClosedCurve> curve = curve_of(entities, id);
+    if (!curve) return {};
+    ids.push_back(std::move(curve->ids));
+    rings.push_back(std::move(curve->places));
   }
-  return sum;
-}
-
-double turn(const Place& a, const Place& b, const Place& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-// Does the inner part of the segment from a to b meet an edge of the ring that ends at neither?
-bool meets(const Ring& ring, const Place& a, const Place& b) {
-  for (std::size_t k = 0; k < ring.places.size(); ++k) {
-    const Place& c = ring.places[k];
-    const Place& d = ring.places[(k + 1) % ring.places.size()];
-    if (c == a || c == b || d == a || d == b) continue;
-    if (turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0) return true;
-  }
-  return false;
-}
-
-// The outline, to the void and back along the shortest seam that meets nothing; nothing without such a seam.
-std::optional<Ring> with_hole(const Ring& outline, Ring hole, const std::vector<Ring>& others) {
-  if (twice_the_area(outline) * twice_the_area(hole) > 0) {
-    std::reverse(hole.ids.begin(), hole.ids.end());
-    std::reverse(hole.places.begin(), hole.places.end());
-  }
-  double shortest = std::numeric_limits<double>::infinity();
-  std::size_t from = 0, to = 0;
-  for (std::size_t i = 0; i < outline.places.size(); ++i) {
-    for (std::size_t j = 0; j < hole.places.size(); ++j) {
-      const Place& a = outline.places[i];
-      const Place& b = hole.places[j];
-      if (!((b - a).norm() < shortest) || a == b || meets(outline, a, b) || meets(hole, a, b)) continue;
-      if (std::any_of(others.begin(), others.end(), [&](const Ring& other) { return meets(other, a, b); })) continue;
-      shortest = (b - a).norm();
-      from = i;
-      to = j;
-    }
-  }
-  if (!std::isfinite(shortest)) return std::nullopt;
-  Ring ring;
-  const auto add = [&ring](const Ring& source, std::size_t k) {
-    ring.ids.push_back(source.ids[k % source.ids.size()]);
-    ring.places.push_back(source.places[k % source.places.size()]);
-  };
-  for (std::size_t i = 0; i <= from; ++i) add(outline, i);
-  for (std::size_t j = 0; j <= hole.ids.size(); ++j) add(hole, to + j);
-  for (std::size_t i = from; i < outline.ids.size(); ++i) add(outline, i);
-  return ring;
-}
-
-// The one ring of a profile: its third argument is the outline, its fourth the list of voids.
-std::optional<Ring> ring_of_profile(const Entities& entities, const StepEntity& profile) {
-  constexpr std::size_t most_corners = 2000;  // the search for seams takes their square
-  const std::vector<Id> curves = references(profile.arguments);
-  std::vector<Ring> rings;
-  std::size_t corners = 0;
-  for (const Id curve : curves) {
-    std::optional<Ring> ring = ring_of(entities, curve);
-    if (!ring) return std::nullopt;
-    corners += ring->ids.size();
-    rings.push_back(std::move(*ring));
-  }
-  if (rings.size() < 2 || corners > most_corners) return std::nullopt;
-  std::optional<Ring> all = std::move(rings[0]);
-  for (std::size_t k = 1; all && k < rings.size(); ++k)
-    all = with_hole(*all, rings[k], std::vector<Ring>(rings.begin() + static_cast<std::ptrdiff_t>(k) + 1, rings.end()));
-  return all;
+  const auto walk = rings.size() < 2 ? std::nullopt : joined_rings(rings);
+  if (!walk) return {};
+  std::vector<Id> points;
+  for (const auto& [ring, corner] : *walk) points.push_back(ids[ring][corner]);
+  return points;
 }
 
 }  // namespace
@@ -207,8 +146,8 @@ JoinedVoids with_joined_voids(std::string_view text) {
   Id next = entities.largest + 1;
   std::size_t done = 0;
   for (const StepEntity& profile : entities.profiles) {
-    const std::optional<Ring> ring = ring_of_profile(entities, profile);
-    if (!ring) {
+    const std::vector<Id> walk = walk_of(entities, profile);
+    if (walk.empty()) {
       ++result.left;
       continue;
     }
@@ -216,8 +155,8 @@ JoinedVoids with_joined_voids(std::string_view text) {
     // The type and the name of the profile stay; what follows is the first curve.
     const std::string head(profile.arguments.substr(0, profile.arguments.find(",#")));
     std::string points;
-    for (const Id id : ring->ids) points += (points.empty() ? "#" : ",#") + std::to_string(id);
-    points += ",#" + std::to_string(ring->ids[0]);
+    for (const Id id : walk) points += (points.empty() ? "#" : ",#") + std::to_string(id);
+    points += ",#" + std::to_string(walk[0]);
     result.text += text.substr(done, profile.begin - done);
     result.text += "#" + std::to_string(next) + "=IFCPOLYLINE((" + points + "));\n#" + std::to_string(profile.id) +
                    "=IFCARBITRARYCLOSEDPROFILEDEF" + head + ",#" + std::to_string(next) + ");";

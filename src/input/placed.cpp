@@ -6,6 +6,9 @@ namespace patchlight {
 
 Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   for (Point& vertex : scene.vertices) vertex = placement * vertex;
+  for (Room& room : scene.rooms)
+    for (std::vector<Point>& face : room.faces)
+      for (Point& corner : face) corner = placement * corner;
   if (placement.linear().determinant() >= 0) return scene;
   for (Polygon& polygon : scene.polygons) std::reverse(polygon.corners.begin(), polygon.corners.end());
   return scene;

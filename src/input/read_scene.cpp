@@ -84,8 +84,11 @@ Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
 // The sensors that a scene file asks for.
 Scene with_sensors(Scene scene, const SceneFile& file) {
   for (const auto& entry : file.sensors) {
-    const auto* const grid = std::get_if<FloorGrid>(&entry);
-    scene.sensors.push_back(grid ? sensors_over(scene, *grid) : std::get<SensorGroup>(entry));
+    if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
+      for (SensorGroup& group : sensors_over(scene, *grid)) scene.sensors.push_back(std::move(group));
+    } else {
+      scene.sensors.push_back(std::get<SensorGroup>(entry));
+    }
   }
   return scene;
 }

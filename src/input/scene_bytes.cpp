@@ -127,6 +127,28 @@ Material read_material(Reader& in) {
   return material;
 }
 
+void write_room(Writer& out, const Room& room) {
+  out.text(room.name);
+  out.text(room.storey);
+  out.plain(room.faces.size());
+  for (const std::vector<Point>& face : room.faces) {
+    out.plain(face.size());
+    for (const Point& corner : face) out.numbers(corner);
+  }
+}
+
+Room read_room(Reader& in) {
+  Room room;
+  room.name = in.text();
+  room.storey = in.text();
+  room.faces.resize(in.count());
+  for (std::vector<Point>& face : room.faces) {
+    face.resize(in.count());
+    for (Point& corner : face) corner = in.point();
+  }
+  return room;
+}
+
 }  // namespace
 
 std::string scene_bytes(const Scene& scene) {
@@ -148,6 +170,8 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(static_cast<std::uint8_t>(found.property));
     out.plain(found.materials);
   }
+  out.plain(scene.rooms.size());
+  for (const Room& room : scene.rooms) write_room(out, room);
   out.text(scene.file);
   out.text(scene.sha256);
   out.plain(scene.metres_per_unit);
@@ -176,6 +200,8 @@ Scene scene_from_bytes(std::string_view bytes) {
     found.property = static_cast<UnsimulatedProperty>(in.plain<std::uint8_t>());
     found.materials = in.plain<std::size_t>();
   }
+  scene.rooms.resize(in.count());
+  for (Room& room : scene.rooms) room = read_room(in);
   scene.file = in.text();
   scene.sha256 = in.text();
   scene.metres_per_unit = in.plain<double>();

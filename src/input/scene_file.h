@@ -24,13 +24,15 @@ struct ModelEntry {
   FaceChoice choice;                         ///< what of it takes part
 };
 
-/// A grid of sensors over a floor, which is known once the models are read.
+/// A grid of sensors over a floor, or one over that of each of some rooms, which are known once the models are read.
 struct FloorGrid {
   std::string name;
-  std::string group;  ///< a name of polygon groups, or a pattern with * and ?
+  std::string group;  ///< a name of polygon groups, or a pattern with * and ?; empty: of rooms
+  std::string room;   ///< a name of rooms, or a pattern
   double height = 0;  ///< metres above the floor
   double spacing = 0;
-  std::string file;  ///< that asks for it
+  double from_walls = 0;  ///< metres: no sensor is nearer to the floor's rim
+  std::string file;       ///< that asks for it
   std::uint32_t line = 0;
 };
 

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/near_match.h"
+#include "base/rounded.h"
 #include "input/material_settings.h"
 #include "input/read_points.h"
 #include "input/text.h"
@@ -78,21 +79,28 @@ void require_absent(const TomlValue& table, const std::vector<std::string>& keys
 
 std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, const TomlFrame& frame,
                                                       const std::string& name) {
-  allow_keys(table, {"name", "points", "file", "corner", "edges", "floor", "height", "spacing"});
-  const std::string kind = one_of(table, {"points", "file", "corner", "floor"});
-  if (kind == "floor") {
+  allow_keys(table, {"name", "points", "file", "corner", "edges", "floor", "room", "height", "spacing", "from_walls"});
+  const std::string kind = one_of(table, {"points", "file", "corner", "floor", "room"});
+  if (kind == "floor" || kind == "room") {
     require_absent(table, {"edges"}, kind);
     const TomlValue& floor = *find(table, kind);
+    const std::string named = text(floor, kind == "floor" ? "the name of polygon groups, or a pattern with * and ?"
+                                                          : "the name of rooms, or a pattern with * and ?");
+    const TomlValue* const from_walls = find(table, "from_walls");
+    const double usual_distance = kind == "room" ? 0.5 : 0;  // metres
     const double height = not_negative(required(table, "height", "the height above the floor"));
     const double spacing = positive(required(table, "spacing", "the length of a cell"));
-    return FloorGrid{name,
-                     text(floor, "the name of polygon groups, or a pattern with * and ?"),
-                     frame.metres_per_unit * height,
-                     frame.metres_per_unit * spacing,
-                     frame.file.string(),
-                     line_of(floor.where)};
+    FloorGrid grid;
+    grid.name = name;
+    (kind == "floor" ? grid.group : grid.room) = named;
+    grid.height = frame.metres_per_unit * height;
+    grid.spacing = frame.metres_per_unit * spacing;
+    grid.from_walls = from_walls ? frame.metres_per_unit * not_negative(*from_walls) : usual_distance;
+    grid.file = frame.file.string();
+    grid.line = line_of(floor.where);
+    return grid;
   }
-  require_absent(table, {"height"}, kind);
+  require_absent(table, {"height", "from_walls"}, kind);
   if (kind != "corner") require_absent(table, {"edges", "spacing"}, kind);
   SensorGroup group;
   if (kind == "points") group = points_of(*find(table, kind), frame);
@@ -150,8 +158,19 @@ std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame) {
   return cameras;
 }
 
-SensorGroup sensors_over(const Scene& scene, const FloorGrid& grid) {
-  const std::string where = grid.file + ":" + std::to_string(grid.line);
+namespace {
+
+SensorGroup grid_over(const Floor& floor, const FloorGrid& grid, const std::string& where) {
+  const auto [corner, x, y] = rectangle_over(floor, grid.height);
+  require_sensible(where, {x, y}, grid.spacing);
+  SensorGroup group = floor_grid(floor, grid.height, grid.spacing, grid.from_walls);
+  group.name = grid.name;
+  group.file = grid.file;
+  group.lines = {grid.line};
+  return group;
+}
+
+std::vector<SensorGroup> over_floor(const Scene& scene, const FloorGrid& grid, const std::string& where) {
   std::vector<PolygonIndex> polygons;
   std::set<std::string> names;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -164,16 +183,48 @@ SensorGroup sensors_over(const Scene& scene, const FloorGrid& grid) {
     throw InputError(where, "sensors.floor: no face is of a group '" + grid.group + "'" +
                                 suggestion(grid.group, allowed) + " The groups are " + listed(allowed));
   }
-  const std::vector<PolygonIndex> floor = floor_of(scene, polygons);
-  if (floor.empty()) throw InputError(where, "sensors.floor: no face of '" + grid.group + "' is level");
-  const auto [corner, x, y] = rectangle_over(scene, floor, grid.height);
-  require_sensible(where, {x, y}, grid.spacing);
-  SensorGroup group = floor_grid(scene, floor, grid.height, grid.spacing);
-  group.name = grid.name;
-  group.file = grid.file;
-  group.lines = {grid.line};
-  if (group.sensors.empty()) throw InputError(where, "sensors.spacing: no cell has its middle over the floor");
-  return group;
+  const Floor floor = floor_of(outlines_of(scene, polygons), scene.up);
+  if (floor.outlines.empty()) throw InputError(where, "sensors.floor: no face of '" + grid.group + "' is level");
+  SensorGroup group = grid_over(floor, grid, where);
+  if (group.sensors.empty())
+    throw InputError(where, "sensors.spacing: no cell has its middle over the floor" +
+                                (grid.from_walls > 0 ? ", " + rounded(grid.from_walls) + " m from its rim" : ""));
+  return {group};
+}
+
+// The rooms that a pattern means, each with a grid of its own; those too narrow for one have none.
+std::vector<SensorGroup> over_rooms(const Scene& scene, const FloorGrid& grid, const std::string& where) {
+  std::vector<SensorGroup> groups;
+  std::vector<std::string> names;
+  bool found = false;
+  for (const Room& room : scene.rooms) {
+    names.push_back(room.name);
+    if (room.name != grid.room && !matches(room.name, grid.room)) continue;
+    found = true;
+    const Floor floor = floor_of(room.faces, scene.up);
+    if (floor.outlines.empty()) continue;
+    SensorGroup group = grid_over(floor, grid, where);
+    if (group.sensors.empty()) continue;
+    group.name = names.back() == grid.room ? grid.name : grid.name + " " + room.name;
+    groups.push_back(std::move(group));
+  }
+  if (names.empty())
+    throw InputError(where, "sensors.room: the models name no rooms (IfcSpace); expected floor = \"GROUP\" instead");
+  if (!found)
+    throw InputError(where, "sensors.room: no room is called '" + grid.room + "'" + suggestion(grid.room, names) +
+                                " The rooms are " + listed(names));
+  if (groups.empty())
+    throw InputError(where, "sensors.spacing: no cell of these rooms has its middle " + rounded(grid.from_walls) +
+                                " m from the walls; expected a smaller from_walls or spacing");
+  return groups;
+}
+
+}  // namespace
+
+std::vector<SensorGroup> sensors_over(const Scene& scene, const FloorGrid& grid) {
+  const std::string where = grid.file + ":" + std::to_string(grid.line);
+  if (!grid.room.empty()) return over_rooms(scene, grid, where);
+  return over_floor(scene, grid, where);
 }
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #include "lighting/mirror_paths.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace patchlight {
@@ -15,18 +16,52 @@ namespace {
 // Places nearer to a mirror's plane than this share of the scene's extent are on it: the receiver is the mirror.
 constexpr double on_plane_share = 1e-9;
 
+// Of squared distances that decide what need not be looked at.
+constexpr double rounding_of_squares = 1e-6;
+
 }  // namespace
+
+Ball ball_around(std::span<const Point> points) {
+  Ball ball;
+  for (const Point& point : points) ball.centre += point / static_cast<double>(points.size());
+  for (const Point& point : points) ball.radius = std::max(ball.radius, (point - ball.centre).norm());
+  return ball;
+}
 
 MirrorPaths::MirrorPaths(const Scene& scene)
     : chains_(mirror_chains(scene)),
       sides_(scene),
       bands_(number_of_bands(scene)),
       least_height_(on_plane_share * bounds(scene).diagonal().norm()),
-      flat_(scene.polygons.size()) {
+      flat_(scene.polygons.size()),
+      balls_(scene.polygons.size()) {
   for (const MirrorChain& chain : chains_.chains) {
     const PolygonIndex p = chain.mirrors.back().polygon;
-    if (flat_[p].corners.empty()) flat_[p] = flat_polygon(corner_points(scene, p));
+    if (!flat_[p].corners.empty()) continue;
+    const std::vector<Point> corners = corner_points(scene, p);
+    flat_[p] = flat_polygon(corners);
+    balls_[p] = ball_around(corners);
   }
+}
+
+// All these lines lie in the hull of the two balls, no farther from the segment between the centres than the larger
+// radius.
+bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const {
+  const Ball& mirror = balls_[chain.mirrors.back().polygon];
+  const Point image = chain.image * receiver.centre;
+  const Vector way = source.centre - image;
+  const double squared_length = way.squaredNorm();
+  const double along = squared_length > 0 ? std::clamp((mirror.centre - image).dot(way) / squared_length, 0.0, 1.0) : 0;
+  const double reach = mirror.radius + std::max(receiver.radius, source.radius);
+  return (image + along * way - mirror.centre).squaredNorm() <= (1 + rounding_of_squares) * reach * reach;
+}
+
+bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const {
+  const Ball& mirror = balls_[chain.mirrors.back().polygon];
+  const Vector way = mirror.centre - chain.image * receiver.centre;
+  const double along = std::max(0.0, way.dot(toward_source));
+  const double reach = mirror.radius + receiver.radius;
+  return (along * toward_source - way).squaredNorm() <= (1 + rounding_of_squares) * reach * reach;
 }
 
 // From the last mirror to the first: the straight line from the receiver's image behind a mirror to what light goes to

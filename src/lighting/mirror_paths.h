@@ -12,6 +12,15 @@
 
 namespace patchlight {
 
+/// All points up to a distance from a centre, metres.
+struct Ball {
+  Point centre = Point::Zero();
+  double radius = 0;
+};
+
+/// The least one around the middle of points.
+Ball ball_around(std::span<const Point> points);
+
 /// How much light gets from one point to another by way of mirrors: the product of what these reflect and of what
 /// LightPaths lets through between them.
 class MirrorPaths {
@@ -23,6 +32,11 @@ class MirrorPaths {
   /// Per segment (row), from a receiver to a source, and band (column), by way of the mirrors of a chain: 0 where the
   /// straight line from the receiver's image to the source misses one of them.
   Field transmittance(const MirrorChain& chain, const LightPaths& paths, std::span<const Segment> segments) const;
+
+  /// False where no straight line from the image of what is in a ball to what is in that of a source, or along a unit
+  /// direction towards it, meets the last mirror of a chain. Cheap, and true too often.
+  bool may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const;
+  bool may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const;
 
   /// What a polygon reflects, PaneSides::specular_reflectance().
   const PaneSides& sides() const { return sides_; }
@@ -36,6 +50,7 @@ class MirrorPaths {
   Eigen::Index bands_;
   double least_height_;            // metres
   std::vector<FlatPolygon> flat_;  // per polygon; empty where it is no mirror
+  std::vector<Ball> balls_;        // around each of these
 };
 
 }  // namespace patchlight

@@ -51,20 +51,36 @@ std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const SurfacePoin
   return MirroredArrival{{at.point, y, at.polygon, lamp.polygon}, geometry * lamp.area * lamp.exitance};
 }
 
-std::vector<ArrivalAtImage> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
-  std::vector<ArrivalAtImage> sources;
-  for (const Luminaire& luminaire : lighting.luminaires)
-    sources.push_back([&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
-      return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
-    });
+// Where a source is: in a ball, or in a direction.
+struct SourceExtent {
+  std::optional<Vector> direction;
+  Ball ball;
+};
+
+struct MirroredSource {
+  ArrivalAtImage arrival;
+  SourceExtent extent;
+};
+
+std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
+  std::vector<MirroredSource> sources;
+  for (const Luminaire& luminaire : lighting.luminaires) {
+    const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
+    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
+                         return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
+                       },
+                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}}});
+  }
   if (lighting.sun)
-    sources.push_back([&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
-      return arrived(at, from_sun(lighting, image));
-    });
+    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
+                         return arrived(at, from_sun(lighting, image));
+                       },
+                       {lighting.sun->direction, {}}});
   for (const LampFace& lamp : lamps)
-    sources.push_back([&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
-      return from_lamp(lamp, at, image, uv);
-    });
+    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
+                         return from_lamp(lamp, at, image, uv);
+                       },
+                       {{}, ball_around(lamp.corners)}});
   return sources;
 }
 
@@ -72,37 +88,65 @@ SurfacePoint image_of(const MirrorChain& chain, const SurfacePoint& at) {
   return {chain.image * at.point, chain.image.linear() * at.normal, at.polygon};
 }
 
+// A chain of mirrors, and the sources whose light may come by it.
+struct WantedChain {
+  const MirrorChain* chain;
+  std::vector<const MirroredSource*> sources;
+};
+
 struct MirrorSampler {
   const Lighting& lighting;
-  std::vector<ArrivalAtImage> sources;
+  std::vector<MirroredSource> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per replicate
 
-  Spectrum over_chains(const std::vector<SurfacePoint>& places, SamplePoints samples) const;
+  std::vector<WantedChain> chains_to(const Receiver& receiver) const;
+  Spectrum over_chains(std::span<const WantedChain> chains, const std::vector<SurfacePoint>& places,
+                       SamplePoints samples) const;
   Spectrum sky_in(std::span<const MirrorRay> rays) const;
   Spectrum of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const;
   Field replicates_at(const Receiver& receiver, std::uint32_t key) const;
 };
 
+std::vector<WantedChain> MirrorSampler::chains_to(const Receiver& receiver) const {
+  std::vector<WantedChain> wanted;
+  if (sources.empty()) return wanted;
+  const Ball ball = receiver.is_point() ? Ball{receiver.place(0, 0).point, 0} : ball_around(receiver.corners);
+  const MirrorPaths& paths = lighting.mirrors->paths;
+  for (const MirrorChain& chain : paths.chains()) {
+    const MirrorSide& first = chain.mirrors.front();
+    if (!(first.normal.dot(ball.centre - first.on_plane) > -ball.radius)) continue;
+    WantedChain one{&chain, {}};
+    for (const MirroredSource& source : sources) {
+      const SourceExtent& extent = source.extent;
+      const bool passes =
+          extent.direction ? paths.may_pass(chain, ball, *extent.direction) : paths.may_pass(chain, ball, extent.ball);
+      if (passes) one.sources.push_back(&source);
+    }
+    if (!one.sources.empty()) wanted.push_back(std::move(one));
+  }
+  return wanted;
+}
+
 // The sum over places.
-Spectrum MirrorSampler::over_chains(const std::vector<SurfacePoint>& places, SamplePoints samples) const {
+Spectrum MirrorSampler::over_chains(std::span<const WantedChain> chains, const std::vector<SurfacePoint>& places,
+                                    SamplePoints samples) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
-  if (sources.empty()) return sum;
-  for (const MirrorChain& chain : lighting.mirrors->paths.chains()) {
+  for (const auto& [chain, wanted] : chains) {
     std::vector<Segment> segments;
     std::vector<Spectrum> unoccluded;
     for (std::size_t k = 0; k < places.size(); ++k) {
-      const MirrorSide& first = chain.mirrors.front();
+      const MirrorSide& first = chain->mirrors.front();
       if (!(first.normal.dot(places[k].point - first.on_plane) > 0)) continue;
-      const SurfacePoint image = image_of(chain, places[k]);
-      for (const ArrivalAtImage& source : sources) {
-        const auto arrival = source(places[k], image, {samples[k][2], samples[k][3]});
+      const SurfacePoint image = image_of(*chain, places[k]);
+      for (const MirroredSource* const source : wanted) {
+        const auto arrival = source->arrival(places[k], image, {samples[k][2], samples[k][3]});
         if (!arrival) continue;
         segments.push_back(arrival->segment);
         unoccluded.push_back(arrival->irradiance);
       }
     }
     if (segments.empty()) continue;
-    const Field share = lighting.mirrors->paths.transmittance(chain, lighting.paths, segments);
+    const Field share = lighting.mirrors->paths.transmittance(*chain, lighting.paths, segments);
     for (std::size_t k = 0; k < segments.size(); ++k) sum += unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
   }
   return sum;
@@ -145,6 +189,7 @@ Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePo
 // One row each.
 Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key) const {
   Field found = Field::Zero(mirrored_replicates, lighting.bands);
+  const std::vector<WantedChain> chains = chains_to(receiver);
   for (std::uint32_t r = 0; r < mirrored_replicates; ++r) {
     const auto samples = shifted(points[r], hash({key, r}));
     std::vector<SurfacePoint> places;
@@ -156,7 +201,7 @@ Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key) 
       of_places.push_back(sample);
     }
     if (places.empty()) continue;
-    const Spectrum sum = over_chains(places, of_places) + of_sky(places, of_places, receiver.is_point());
+    const Spectrum sum = over_chains(chains, places, of_places) + of_sky(places, of_places, receiver.is_point());
     found.row(r) = sum / static_cast<double>(places.size());
   }
   return found;

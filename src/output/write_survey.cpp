@@ -107,6 +107,9 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   json["open_edges"] = report.open_edges;
   json["open_edge_length_m"] = report.open_edge_length;
   json["sides"] = sides_part(report);
+  json["objects"] = Json::array();
+  for (const ObjectFacts& facts : report.objects)
+    json["objects"].push_back({{"name", facts.name}, {"faces", facts.faces}, {"area_m2", facts.area}});
   json["materials"] = Json::array();
   for (const MaterialFacts& facts : report.materials) json["materials"].push_back(material_part(facts));
   json["sun"] = sun_part(scene);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -108,6 +109,40 @@ std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
   return all;
 }
 
+// "IfcSlab_*" of "IfcSlab_Floor:1"; other names stand for themselves.
+std::string class_of(const std::string& name) {
+  const std::size_t end = name.find('_');
+  return name.starts_with("Ifc") && end != std::string::npos ? name.substr(0, end) + "_*" : name;
+}
+
+std::vector<ObjectFacts> facts_of_objects(const Scene& scene) {
+  std::vector<ObjectFacts> all(scene.groups.size());
+  for (std::uint32_t group = 0; group < all.size(); ++group) all[group].name = group_name(scene, group);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    ObjectFacts& facts = all[scene.polygons[p].group];
+    ++facts.faces;
+    facts.area += area_vector(corner_points(scene, p)).norm();
+  }
+  std::erase_if(all, [](const ObjectFacts& facts) { return facts.faces == 0; });
+  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
+  return all;
+}
+
+std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
+  std::map<std::string, ObjectFacts> classes;
+  for (const ObjectFacts& object : objects) {
+    const std::string name = class_of(object.name);
+    ObjectFacts& facts = classes.try_emplace(name, ObjectFacts{name, 0, 0, 0}).first->second;
+    ++facts.objects;
+    facts.faces += object.faces;
+    facts.area += object.area;
+  }
+  std::vector<ObjectFacts> all;
+  for (const auto& [name, facts] : classes) all.push_back(facts);
+  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
+  return all;
+}
+
 // The reader's hints, else the materials with a name like a lamp's.
 std::vector<LampHint> possible_lamps(const Scene& scene) {
   if (!scene.lamp_hints.empty()) return scene.lamp_hints;
@@ -136,8 +171,9 @@ std::string setting_for(const LampHint& hint) {
 
 std::string advice_without_lamp(const Scene& scene) {
   const std::string by_scene_file =
-      "; read.daylight.sky=overcast:10000lx gives it daylight; luminaires stand in a scene file (.toml, "
-      "docs/lights.md)";
+      "; read.daylight.sky=overcast:10000lx gives it daylight, and patchlight new MODEL -o SCENE.toml writes a scene "
+      "file "
+      "to change, in which luminaires stand as well (docs/lights.md)";
   const std::vector<LampHint> hints = possible_lamps(scene);
   if (hints.empty()) {
     std::vector<std::string> names;
@@ -190,6 +226,8 @@ SceneReport survey(const Scene& scene) {
   report.polygons = scene.polygons.size();
   report.groups = scene.groups.size();
   report.materials = facts_of_materials(scene);
+  report.objects = facts_of_objects(scene);
+  report.classes = by_class(report.objects);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     report.lamps += is_lamp(scene, p);
     report.area += area_vector(corner_points(scene, p)).norm();

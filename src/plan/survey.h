@@ -19,6 +19,14 @@ struct MaterialFacts {
   double luminous_flux = 0;  ///< lm, of all bands
 };
 
+/// Faces of one object or group, or of one class of objects: those of an IFC file with names that begin alike.
+struct ObjectFacts {
+  std::string name;         ///< or a pattern: "IfcSlab_*" for a class
+  std::size_t objects = 1;  ///< of the class
+  std::size_t faces = 0;
+  double area = 0;  ///< m^2
+};
+
 /// A unit that makes a model of implausible size plausible.
 struct UnitGuess {
   std::string unit;  ///< m, cm, mm, in or ft
@@ -42,6 +50,8 @@ struct SceneReport {
   std::size_t groups = 0;
   double area = 0;                       ///< m^2, each polygon once
   std::vector<MaterialFacts> materials;  ///< those that faces have, in the scene's order
+  std::vector<ObjectFacts> objects;      ///< or groups, the largest first
+  std::vector<ObjectFacts> classes;      ///< the same with the objects of an IFC class as one
   std::size_t lamps = 0;                 ///< emitting polygons
   std::size_t shells = 0;                ///< sets of polygons connected by shared edges
   std::size_t closed_shells = 0;

@@ -1,0 +1,30 @@
+#include "cli/new.h"
+
+#include "patchlight/base/error.h"
+
+#include "cli/interrupt.h"
+#include "input/new_scene_file.h"
+#include "output/whole_file.h"
+#include "output/write_bytes.h"
+
+#include <iostream>
+#include <system_error>
+
+namespace patchlight::cli {
+
+ExitCode new_scene(const NewArguments& arguments) {
+  std::error_code error;
+  if (std::filesystem::exists(arguments.output, error))
+    throw OutputError(arguments.output.string(), "is there already; expected a new name");
+  check_writable(arguments.output);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  const std::string text = new_scene_file(scene, arguments.models, arguments.read.metres_per_unit, arguments.output);
+  const WritingGuard guard;
+  write_bytes(arguments.output, text);
+  std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
+            << " -o result.vtp --report result.json --picture result.png\n"
+            << std::flush;
+  return good;
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,209 @@
+#include "input/new_scene_file.h"
+
+#include "base/rounded.h"
+#include "base/shortest.h"
+#include "input/materials.h"
+#include "scene/sensor_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <sstream>
+
+namespace patchlight {
+namespace {
+
+constexpr std::size_t most_cameras = 3;
+constexpr double eye_height = 1.6;     // metres
+constexpr double target_height = 1.3;  // metres
+constexpr double from_walls = 0.5;     // metres
+constexpr double smallest_room = 2;    // m^2
+constexpr double lowest_room = 1.8;    // metres: so much is free over a floor
+
+// Where sensors and cameras belong.
+struct NamedFloor {
+  std::string name;
+  Floor floor;
+};
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') result += '\\';
+    const bool is_control = static_cast<unsigned char>(letter) < 0x20;
+    result += is_control ? ' ' : letter;
+  }
+  return result + "\"";
+}
+
+std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
+  std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < smallest_room; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const NamedFloor& a, const NamedFloor& b) { return area_of(a.floor) > area_of(b.floor); });
+  return places;
+}
+
+// What of the scene is highest, along its upright axis.
+double top_of(const Scene& scene) {
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Point& vertex : scene.vertices) top = std::max(top, vertex.dot(scene.up));
+  return top;
+}
+
+// Has it a height above the floor that one can stand in? A space on a roof has not.
+bool is_under_something(const Floor& floor, double top) {
+  return !floor.outlines.empty() && floor.outlines[0][0].dot(floor.up) + lowest_room <= top;
+}
+
+std::vector<NamedFloor> rooms_of(const Scene& scene) {
+  std::vector<NamedFloor> places;
+  for (const Room& room : scene.rooms) {
+    Floor floor = floor_of(room.faces, scene.up);
+    if (is_under_something(floor, top_of(scene))) places.push_back({room.name, std::move(floor)});
+  }
+  return largest_first(std::move(places));
+}
+
+// Groups whose floor has something of the scene high over it.
+std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
+  std::vector<std::vector<PolygonIndex>> of_group(scene.groups.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) of_group[scene.polygons[p].group].push_back(p);
+  const double top = top_of(scene);
+  std::vector<NamedFloor> places;
+  for (std::uint32_t group = 0; group < of_group.size(); ++group) {
+    Floor floor = floor_of(outlines_of(scene, of_group[group]), scene.up);
+    if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor)});
+  }
+  return largest_first(std::move(places));
+}
+
+std::string place_text(const Point& point) {
+  std::string text = "[";
+  for (const double value : point)
+    text += (text.size() > 1 ? ", " : "") + shortest(std::round(1000 * value) / 1000 + 0.0);
+  return text + "]";
+}
+
+// From one of the two places of a floor that are farthest apart, away from walls, to the other.
+std::optional<Camera> camera_in(const NamedFloor& place) {
+  const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
+  const SensorGroup grid = floor_grid(place.floor, 0, spacing, from_walls);
+  Camera camera{Point::Zero(), Point::Zero(), 70, place.name};
+  double farthest = 0;
+  for (const Sensor& from : grid.sensors) {
+    for (const Sensor& to : grid.sensors) {
+      const double distance = (to.point - from.point).norm();
+      if (!(distance > (1 + 1e-9) * farthest)) continue;
+      farthest = distance;
+      camera.eye = from.point + eye_height * place.floor.up;
+      camera.target = to.point + target_height * place.floor.up;
+    }
+  }
+  if (!(farthest > 0)) return std::nullopt;
+  return camera;
+}
+
+std::string model_tables(const Scene& scene, const std::vector<std::filesystem::path>& models, double metres_per_unit,
+                         const std::filesystem::path& file) {
+  std::set<std::string> classes;
+  for (std::uint32_t group = 0; group < scene.groups.size(); ++group) {
+    const std::string name = group_name(scene, group);
+    const std::size_t end = name.find('_');
+    if (name.starts_with("Ifc") && end != std::string::npos) classes.insert(name.substr(0, end) + "_*");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  std::ostringstream text;
+  for (const std::filesystem::path& model : models) {
+    const std::filesystem::path absolute = std::filesystem::absolute(model);
+    const std::filesystem::path relative = absolute.lexically_relative(folder);
+    const bool is_near = !relative.empty() && *relative.begin() != "..";
+    text << "[[model]]\nfile = " << quoted((is_near ? relative : absolute).string()) << '\n';
+    if (metres_per_unit != 1) text << "unit = " << shortest(metres_per_unit) << '\n';
+    text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
+    std::string list;
+    for (const std::string& name : classes) {
+      const bool is_loose = name.find("Furnish") != std::string::npos || name.find("Flow") != std::string::npos ||
+                            name.find("Member") != std::string::npos || name.find("Railing") != std::string::npos;
+      if (is_loose) list += (list.empty() ? "" : ", ") + quoted(name);
+    }
+    text << (list.empty() ? "\"chairs*\"" : list) << "]\n\n";
+  }
+  return text.str();
+}
+
+std::string spectrum_text(const Spectrum& spectrum) {
+  const std::string values = listed_shares(spectrum);
+  return values.find(',') == std::string::npos ? values : "[" + values + "]";
+}
+
+std::string material_tables(const Scene& scene) {
+  std::ostringstream text;
+  for (const Material& material : scene.materials) {
+    if (material.second_face || !(material.transmittance > 0).any()) continue;
+    text << "[[material]]\nname = " << quoted(material.name)
+         << "\ntransmittance = " << spectrum_text(material.transmittance)
+         << "  # straight through, at right angles; 0 makes it opaque\n"
+         << "reflectance = " << spectrum_text(material.reflectance)
+         << "  # diffuse\nindex = " << shortest(material.index) << "\n\n";
+  }
+  if (!text.str().empty()) return "# Glass, as the file has it.\n" + text.str();
+  return "# No material is clear. A window lets light in with:\n# [[material]]\n# name = \"Glass*\"\n"
+         "# transmittance = 0.8\n\n";
+}
+
+std::string sky_tables(const Scene& scene) {
+  const bool is_dark = !has_lamp(scene);
+  const std::string mark = is_dark ? "" : "# ";
+  return (is_dark ? std::string("# Nothing in the model shines: a sky, over a ground that reflects a fifth of it.\n")
+                  : std::string("# The model has lamps. With daylight as well:\n")) +
+         mark + "[sky]\n" + mark + "kind = \"overcast\"   # or \"uniform\", or \"clear\" with a sun\n" + mark +
+         "illuminance = 10000  # lx on the open ground\n\n" + mark + "[ground]\n" + mark + "reflectance = 0.2\n\n" +
+         "# [sun]\n# time = 2024-06-21T12:00:00Z\n# illuminance = 80000  # lx across its rays\n# [site]\n"
+         "# latitude = 52.5\n# longitude = 13.4\n\n";
+}
+
+std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
+  std::ostringstream text;
+  const std::string rest = "height = 0.8      # metres above the floor\nspacing = 0.5\nfrom_walls = 0.5\n\n";
+  if (!scene.rooms.empty()) {
+    text
+        << "# A grid over the floor of every room; results are told room by room.\n[[sensors]]\nname = \"work plane\"\n"
+        << "room = \"*\"        # or one of:";
+    for (std::size_t k = 0; k < std::min<std::size_t>(places.size(), 12); ++k)
+      text << (k > 0 ? ", " : " ") << places[k].name;
+    text << '\n' << rest;
+  } else if (!places.empty()) {
+    text << "# A grid over the largest floor.\n[[sensors]]\nname = \"work plane\"\nfloor = " << quoted(places[0].name)
+         << '\n'
+         << rest;
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem::path>& models, double metres_per_unit,
+                           const std::filesystem::path& file) {
+  const std::vector<NamedFloor> places = scene.rooms.empty() ? floors_of_groups(scene) : rooms_of(scene);
+  std::ostringstream text;
+  text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
+       << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
+       << " -o result.vtp --report result.json --picture result.png\n\n"
+       << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
+  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << sky_tables(scene)
+       << sensor_tables(scene, places);
+  std::size_t cameras = 0;
+  for (const NamedFloor& place : places) {
+    const std::optional<Camera> camera = cameras < most_cameras ? camera_in(place) : std::nullopt;
+    if (!camera) continue;
+    if (cameras++ == 0) text << "# Views for --view NAME: from one end of the largest rooms to the other.\n";
+    text << "[[camera]]\nname = " << quoted(camera->name) << "\neye = " << place_text(camera->eye)
+         << "\ntarget = " << place_text(camera->target) << "\nfield_of_view = 70  # degrees, upright\n\n";
+  }
+  return text.str();
+}
+
+}  // namespace patchlight

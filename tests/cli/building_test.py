@@ -1,0 +1,101 @@
+"""A building as it comes: daylight and what takes part on the command line, a new scene file, check on one screen."""
+import json
+import unittest
+
+from support import ToolTest
+
+USAGE, INPUT, OUTPUT = 1, 2, 6
+NO_LAMP = "newmtl wall\nKd .5 .5 .5\nnewmtl pane\nKd 0 0 0\nd .2\n"
+# A floor of 4 m x 3 m, and a roof with a hole of 1 m x 1 m over it.
+COURT = """mtllib court.mtl
+v 0 0 0
+v 4 0 0
+v 4 3 0
+v 0 3 0
+v 0 0 3
+v 4 0 3
+v 4 1 3
+v 0 1 3
+g floor
+usemtl wall
+f 1 2 3 4
+g roof
+f 5 8 7 6
+"""
+
+
+class BuildingTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("court.obj", COURT)
+        self.write("court.mtl", NO_LAMP)
+
+    def good(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def refused(self, code, parts, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_options_give_the_light_of_a_scene_file(self):
+        self.write("court.toml", 'up = "z"\n[[model]]\nfile = "court.obj"\n[sky]\nkind = "overcast"\n'
+                                 'illuminance = 8000\n[ground]\nreflectance = 0.1\n')
+        rest = ["--patches", 200, "--up", "z", "-q", "--report"]
+        self.good("solve", "court.toml", *rest, "file.json")
+        self.good("solve", "court.obj", "--sky", "overcast:8000lx", "--ground", "0.1", *rest, "options.json")
+        of_file, of_options = (json.loads((self.folder / name).read_text()) for name in ("file.json", "options.json"))
+        self.assertEqual(of_file["energy_balance"], of_options["energy_balance"])
+        self.assertGreater(of_file["energy_balance"]["arriving_W"][0], 1)
+
+    def test_what_cannot_be_understood_is_refused(self):
+        for option, value, parts in (
+                ("--sky", "foggy", ["overcast, uniform, clear, perez"]),
+                ("--sky", "overcast:dark", ["illuminance in lx"]),
+                ("--sky", "perez:300", ["perez:DIRECT,DIFFUSE"]),
+                ("--sun", "100,0:5lx", ["altitude"]),
+                ("--sun", "2024-13-01T12:00:00Z@50,10:5lx", ["date and time"]),
+                ("--ground", "2", ["0 to 1"]),
+                ("--weather", "city.epw@13-1-5", ["MONTH-DAY-HOUR"])):
+            self.refused(USAGE, [option, *parts], "solve", "court.obj", option, value, "-o", "x.vtp")
+        self.refused(INPUT, ["--sky", "without a sun"], "plan", "court.obj", "--sky", "clear")
+        self.refused(INPUT, ["--leave-out", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
+                     "--leave-out", "flor")
+
+    def test_a_model_without_lamps_is_told_of_the_sky(self):
+        self.refused(INPUT, ["--sky overcast:10000lx", "patchlight new MODEL -o SCENE.toml"], "solve", "court.obj",
+                     "-o", "x.vtp")
+
+    def test_what_is_left_out_does_not_take_part(self):
+        self.assertIn("1 polygon of 12 m^2", self.good("check", "court.obj", "--sky", "overcast", "--only", "floor"))
+
+    def test_a_new_scene_file_can_be_solved_and_is_not_overwritten(self):
+        self.good("new", "court.obj", "-o", "court.toml")
+        text = (self.folder / "court.toml").read_text()
+        self.assertIn('file = "court.obj"', text)
+        self.assertIn("[sky]\nkind", text)
+        self.assertIn('floor = "floor"', text)
+        self.good("solve", "court.toml", "--patches", 200, "-q", "-o", "court.vtp")
+        self.refused(OUTPUT, ["is there already"], "new", "court.obj", "-o", "court.toml")
+        self.assertEqual((self.folder / "court.toml").read_text(), text)
+        self.refused(USAGE, ["patchlight new MODEL -o SCENE.toml"], "new", "court.obj")
+
+    def test_check_fits_on_a_screen(self):
+        names = [f"m{k}" for k in range(80)]
+        self.write("many.mtl", "".join(f"newmtl {name}\nKd .5 .5 .5\n" for name in names))
+        faces = "".join(f"v {k} 0 0\nv {k + 1} 0 0\nv {k + 1} 1 0\nv {k} 1 0\ng g{k}\nusemtl {name}\n"
+                        "f -4 -3 -2 -1\n" for k, name in enumerate(names))
+        self.write("many.obj", "mtllib many.mtl\n" + faces)
+        short = self.good("check", "many.obj", "--sky", "overcast")
+        self.assertLessEqual(len(short.splitlines()), 50)
+        self.assertIn("and 68 more (--all lists them)", short)
+        every = self.good("check", "many.obj", "--sky", "overcast", "--all")
+        for name in names:
+            self.assertIn(f"  {name} ", every)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,112 @@
+#include "patchlight/input/read_scene.h"
+
+#include "input/new_scene_file.h"
+#include "model_files.h"
+
+#include <numbers>
+
+namespace patchlight::rooms_test {
+namespace {
+
+// A slab of 10 m x 3 m and a roof over it, in mm, and between them two spaces of 4 m x 3 m x 2.5 m: Living at the
+// origin and Kitchen at x = 5 m.
+std::string house() {
+  std::string text =
+      "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+      "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n"
+      "#1=IFCCARTESIANPOINT((0.,0.,0.));\n#2=IFCAXIS2PLACEMENT3D(#1,$,$);\n#3=IFCLOCALPLACEMENT($,#2);\n"
+      "#4=IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#2,$);\n#5=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);\n"
+      "#6=IFCUNITASSIGNMENT((#5));\n#7=IFCPROJECT('project',#21,'p',$,$,$,$,(#4),#6);\n"
+      "#8=IFCSITE('site',#21,'s',$,$,#3,$,$,.ELEMENT.,$,$,$,$,$);\n#9=IFCRELAGGREGATES('a',#21,$,$,#7,(#8));\n"
+      "#15=IFCDIRECTION((0.,0.,1.));\n#21=IFCOWNERHISTORY(#22,#25,$,.ADDED.,$,$,$,0);\n"
+      "#22=IFCPERSONANDORGANIZATION(#23,#24,$);\n#23=IFCPERSON($,'','',$,$,$,$,$);\n"
+      "#24=IFCORGANIZATION($,'',$,$,$);\n#25=IFCAPPLICATION(#24,'1','t','t');\n"
+      "#30=IFCBUILDINGSTOREY('1xS3BCk291UvhgP2dvNMKI',#21,'Level 1',$,$,#3,$,$,.ELEMENT.,0.);\n"
+      "#31=IFCRELAGGREGATES('b',#21,$,$,#8,(#30));\n#32=IFCRELAGGREGATES('d',#21,$,$,#30,(#140,#240));\n"
+      "#33=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',#21,$,$,(#340,#440),#30);\n";
+  const auto box = [&](int id, double x, double z, double length, double height, const std::string& product) {
+    const auto n = [id](int k) { return "#" + std::to_string(id + k); };
+    text += n(1) + "=IFCCARTESIANPOINT((" + std::to_string(x) + ",0.," + std::to_string(z) + "));\n" + n(2) +
+            "=IFCAXIS2PLACEMENT3D(" + n(1) + ",$,$);\n" + n(3) + "=IFCRECTANGLEPROFILEDEF(.AREA.,$," + n(4) + "," +
+            std::to_string(length) + ",3000.);\n" + n(4) + "=IFCAXIS2PLACEMENT2D(" + n(5) + ",$);\n" + n(5) +
+            "=IFCCARTESIANPOINT((" + std::to_string(length / 2) + ",1500.));\n" + n(6) + "=IFCEXTRUDEDAREASOLID(" +
+            n(3) + "," + n(2) + ",#15," + std::to_string(height) + ");\n" + n(7) +
+            "=IFCSHAPEREPRESENTATION(#4,'Body','SweptSolid',(" + n(6) + "));\n" + n(8) +
+            "=IFCPRODUCTDEFINITIONSHAPE($,$,(" + n(7) + "));\n" + n(40) + "=" + product + "," + n(8) + ",$,$);\n";
+  };
+  const auto space = [](const std::string& identifier, const std::string& name) {
+    return "IFCSPACE('" + identifier + "',#21,'" + name + "','',$,#3";
+  };
+  const auto closed = [&](int id, double x, const std::string& product) {
+    box(id, x, 0, 4000, 2500, product);
+    // A space has four more attributes than a slab.
+    text.replace(text.rfind(",$,$);"), 6, ",'',.ELEMENT.,.INTERNAL.,$);");
+  };
+  closed(100, 0, space("0BTBFw6f90Nfh9rP1dlXr2", "Living"));
+  closed(200, 5000, space("0BTBFw6f90Nfh9rP1dlXr3", "Kitchen"));
+  box(300, 0, -200, 10000, 200, "IFCSLAB('2OBrcmyk58NupXoVOHUtxr',#21,'Floor','',$,#3");
+  text.replace(text.rfind(",$,$);"), 6, ",$,.FLOOR.);");
+  box(400, 0, 2500, 10000, 200, "IFCSLAB('2OBrcmyk58NupXoVOHUtxs',#21,'Roof','',$,#3");
+  text.replace(text.rfind(",$,$);"), 6, ",$,.ROOF.);");
+  return text + "ENDSEC;\nEND-ISO-10303-21;\n";
+}
+
+class Rooms : public ModelFiles {
+ protected:
+  Rooms() { write("house.ifc", house()); }
+};
+
+TEST_F(Rooms, AreNamedByTheModelAndNoFacesOfIt) {
+  const Scene scene = read_scene(folder_ / "house.ifc");
+  ASSERT_EQ(scene.rooms.size(), 2U);
+  EXPECT_EQ(scene.rooms[0].name, "Living");
+  EXPECT_EQ(scene.rooms[1].name, "Kitchen");
+  EXPECT_EQ(scene.rooms[1].storey, "Level1");
+  Box body;
+  for (const auto& face : scene.rooms[1].faces)
+    for (const Point& corner : face) body.extend(corner);
+  EXPECT_TRUE(body.min().isApprox(Point(5, 0, 0), 1e-6) && body.max().isApprox(Point(9, 3, 2.5), 1e-6));
+  EXPECT_EQ(scene.polygons.size(), 12U);
+}
+
+// Middles of 0.5 m cells over 4 m x 3 m, 0.5 m from the walls: 6 x 4 in each room, turned and moved with the model.
+TEST_F(Rooms, HaveAGridEach) {
+  const Scene scene = read_scene(
+      write("house.toml",
+            "up = \"z\"\n[[model]]\nfile = \"house.ifc\"\nrotate = {axis = \"z\", degrees = 30}\n[[sensors]]\n"
+            "name = \"desk\"\nroom = \"*\"\nheight = 0.8\nspacing = 0.5\n"));
+  ASSERT_EQ(scene.sensors.size(), 2U);
+  EXPECT_EQ(scene.sensors[0].name, "desk Living");
+  EXPECT_EQ(scene.sensors[1].sensors.size(), 24U);
+  for (const Sensor& sensor : scene.sensors[1].sensors) {
+    const Point back = Eigen::AngleAxisd(-std::numbers::pi / 6, Vector::UnitZ()) * sensor.point;
+    EXPECT_GT(back.x(), 5.5);
+    EXPECT_LT(back.x(), 8.5);
+    EXPECT_NEAR(back.z(), 0.8, 1e-6);
+  }
+}
+
+TEST_F(Rooms, OfNoSuchNameAreRefusedWithANearOne) {
+  const auto refused = [this](const std::string& room) {
+    return refusal(write("house.toml", "[[model]]\nfile = \"house.ifc\"\n[[sensors]]\nroom = \"" + room +
+                                           "\"\nheight = 0.8\nspacing = 0.5\n"));
+  };
+  EXPECT_NE(refused("Kitchne").find("did you mean 'Kitchen'"), std::string::npos);
+}
+
+// What `new` writes is read again, has the sky that the model needs, its rooms' sensors, and eyes inside.
+TEST_F(Rooms, AreInANewSceneFile) {
+  const Scene scene = read_scene(folder_ / "house.ifc");
+  const Scene again =
+      read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")));
+  EXPECT_TRUE(again.sky.has_value());
+  EXPECT_EQ(again.sensors.size(), 2U);
+  ASSERT_EQ(again.cameras.size(), 2U);
+  EXPECT_EQ(again.cameras[0].name, "Living");
+  const Point& eye = again.cameras[0].eye;
+  EXPECT_TRUE(eye.x() >= 0.5 && eye.x() <= 3.5 && eye.y() >= 0.5 && eye.y() <= 2.5);
+  EXPECT_NEAR(eye.z(), 1.6, 1e-9);
+}
+
+}  // namespace
+}  // namespace patchlight::rooms_test
