@@ -149,15 +149,17 @@ std::string room_lines(const Scene& scene, bool all) {
   std::set<std::string> storeys;
   for (const Room& room : scene.rooms) {
     rooms.emplace_back(area_of(floor_of(room.faces, scene.up)), &room);
-    storeys.insert(room.storey);
+    if (!room.storey.empty()) storeys.insert(room.storey);
   }
   std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   const std::size_t shown = all ? rooms.size() : std::min(rooms.size(), most_rooms);
-  std::string text = "rooms: " + std::to_string(rooms.size()) + " on " + counted(storeys.size(), "storey") + ": ";
+  std::string text = "rooms: " + std::to_string(rooms.size());
+  if (!storeys.empty()) text += " on " + counted(storeys.size(), "storey");
   for (std::size_t k = 0; k < shown; ++k) {
     const auto& [area, room] = rooms[k];
-    text += (k == 0 ? "" : "; ") + shown_name(room->name) + " (" + shown_name(room->storey) + ") " + rounded(area, 3) +
-            " m^2";
+    text += (k == 0 ? ": " : "; ") + shown_name(room->name);
+    if (!room->storey.empty()) text += " (" + shown_name(room->storey) + ")";
+    text += " " + rounded(area, 3) + " m^2";
   }
   if (rooms.size() > shown) text += "; and " + std::to_string(rooms.size() - shown) + " more (--all lists them)";
   return text + '\n';

@@ -80,6 +80,8 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   }
   scene.unsimulated.insert(scene.unsimulated.end(), added.unsimulated.begin(), added.unsimulated.end());
   scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
+  scene.sensors.insert(scene.sensors.end(), added.sensors.begin(), added.sensors.end());
+  scene.cameras.insert(scene.cameras.end(), added.cameras.begin(), added.cameras.end());
   scene.rooms.insert(scene.rooms.end(), added.rooms.begin(), added.rooms.end());
   scene.files.push_back(added.file);
   scene.inputs.insert(scene.inputs.end(), added.inputs.begin(), added.inputs.end());

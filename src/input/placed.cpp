@@ -6,6 +6,16 @@ namespace patchlight {
 
 Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   for (Point& vertex : scene.vertices) vertex = placement * vertex;
+  for (SensorGroup& group : scene.sensors) {
+    for (Sensor& sensor : group.sensors) {
+      sensor.point = placement * sensor.point;
+      sensor.normal = (placement.linear() * sensor.normal).normalized();
+    }
+  }
+  for (Camera& camera : scene.cameras) {
+    camera.eye = placement * camera.eye;
+    camera.target = placement * camera.target;
+  }
   for (Room& room : scene.rooms)
     for (std::vector<Point>& face : room.faces)
       for (Point& corner : face) corner = placement * corner;

@@ -7,6 +7,7 @@
 #include "base/near_match.h"
 #include "input/read_collada.h"
 #include "input/read_gltf.h"
+#include "input/read_hbjson.h"
 #include "input/read_ifc.h"
 #include "input/read_obj.h"
 #include "input/read_off.h"
@@ -38,6 +39,7 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
   if (format == "dae") return read_collada(file, metres_per_unit);
   if (format == "ifc") return read_ifc(file, metres_per_unit);
   if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit, confine);
+  if (format == "hbjson") return read_hbjson(file, metres_per_unit);
   throw InputError(file.string(),
                    "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }

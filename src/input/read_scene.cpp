@@ -96,7 +96,7 @@ Scene with_sensors(Scene scene, const SceneFile& file) {
 }  // namespace
 
 std::vector<std::string> readable_formats() {
-  return {"obj", "ply", "stl", "off", "dae", "ifc", "gltf", "glb", "toml"};
+  return {"obj", "ply", "stl", "off", "dae", "ifc", "gltf", "glb", "hbjson", "toml"};
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {

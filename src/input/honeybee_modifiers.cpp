@@ -1,0 +1,163 @@
+#include "input/honeybee_modifiers.h"
+
+#include "base/lower_case.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+using HoneybeeJson = nlohmann::json;
+
+double value_of(const HoneybeeJson& item, const std::string& key, double otherwise) {
+  const auto found = item.find(key);
+  return found != item.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+// "r_reflectance" and so on.
+Spectrum bands_of_key(const HoneybeeJson& item, const std::string& quantity, double otherwise) {
+  return rgb(value_of(item, "r_" + quantity, otherwise), value_of(item, "g_" + quantity, otherwise),
+             value_of(item, "b_" + quantity, otherwise));
+}
+
+std::string text_of(const HoneybeeJson& item, const std::string& key) {
+  const auto found = item.find(key);
+  return found != item.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+// T = t (1 - r)^2 / (1 - (r t)^2): what a pane lets through square to it, of transmissivity t and with r = ((n - 1) /
+// (n + 1))^2 at each surface.
+Spectrum transmittance_for(const Spectrum& transmissivity, double index) {
+  const double r = std::pow((index - 1) / (index + 1), 2);
+  return transmissivity * std::pow(1 - r, 2) / (1 - (r * transmissivity).square());
+}
+
+// Transmissivity 0.88 of an interior window and 0.64 of others.
+const std::map<std::string, std::pair<double, double>>& generic_values() {
+  static const std::map<std::string, std::pair<double, double>> values = {
+      {"floor", {0.2, 0}},           {"wall", {0.5, 0}},
+      {"ceiling", {0.8, 0}},         {"door", {0.5, 0}},
+      {"window", {0, 0.64}},         {"interior_window", {0, 0.88}},
+      {"exterior_shade", {0.35, 0}}, {"interior_shade", {0.5, 0}},
+      {"context", {0.2, 0}}};
+  return values;
+}
+
+Material generic_material(const std::string& kind) {
+  constexpr double usual = 1.52;
+  const auto [reflectance, transmittance] = generic_values().at(kind);
+  Material material{"generic_" + kind, rgb(reflectance, reflectance, reflectance), rgb(0, 0, 0)};
+  if (transmittance > 0) {
+    material.transmittance = rgb(transmittance, transmittance, transmittance);
+    material.index = usual;
+  }
+  return material;
+}
+
+Material glass(Material material, const HoneybeeJson& modifier) {
+  material.index = value_of(modifier, "refraction_index", 1.52);
+  material.reflectance = rgb(0, 0, 0);
+  material.transmittance = transmittance_for(bands_of_key(modifier, "transmissivity", 0), material.index);
+  return material;
+}
+
+// Radiance's trans: of what is not reflected specularly the share transmitted_diff (1 - transmitted_spec) is scattered
+// out of the other side.
+Material sheet(Material material, const HoneybeeJson& modifier) {
+  const double transmitted = value_of(modifier, "transmitted_diff", 0);
+  const double straight = value_of(modifier, "transmitted_spec", 0);
+  const Spectrum colour = bands_of_key(modifier, "reflectance", 0) * (1 - value_of(modifier, "specularity", 0));
+  material.reflectance = colour * (1 - transmitted);
+  if (straight > 0.5) {
+    material.transmittance = colour * transmitted * straight;
+  } else {
+    material.diffuse_transmittance = colour * transmitted * (1 - straight);
+  }
+  return material;
+}
+
+// As Radiance has them; nothing for kinds that are not known.
+std::optional<Material> material_of(const HoneybeeJson& modifier) {
+  const std::string type = in_lower_case(text_of(modifier, "type"));
+  Material material{text_of(modifier, "identifier"), rgb(0, 0, 0), rgb(0, 0, 0)};
+  const Spectrum reflectance = bands_of_key(modifier, "reflectance", 0);
+  if (type == "plastic") {
+    const double specularity = value_of(modifier, "specularity", 0);
+    material.reflectance = reflectance * (1 - specularity) + specularity;
+    return material;
+  }
+  if (type == "metal" || type == "mirror") {
+    const double specularity = type == "mirror" ? 1 : value_of(modifier, "specularity", 0.9);
+    const bool is_smooth = value_of(modifier, "roughness", 0) == 0;
+    material.reflectance = reflectance * (is_smooth ? 1 - specularity : 1);
+    if (is_smooth && specularity > 0) material.specular_reflectance = reflectance * specularity;
+    return material;
+  }
+  if (type == "glass") return glass(std::move(material), modifier);
+  if (type == "trans") return sheet(std::move(material), modifier);
+  if (type == "light" || type == "glow") {
+    material.exitance = std::numbers::pi * bands_of_key(modifier, "emittance", 0);  // E = pi L
+    return material;
+  }
+  return std::nullopt;
+}
+
+// Where a modifier set has the modifier of a kind: its part, and the key there.
+const std::map<std::string, std::array<const char*, 2>>& places_in_sets() {
+  static const std::map<std::string, std::array<const char*, 2>> places = {
+      {"floor", {"floor_set", "interior_modifier"}},
+      {"wall", {"wall_set", "interior_modifier"}},
+      {"ceiling", {"roof_ceiling_set", "interior_modifier"}},
+      {"door", {"door_set", "exterior_modifier"}},
+      {"window", {"aperture_set", "window_modifier"}},
+      {"interior_window", {"aperture_set", "interior_modifier"}},
+      {"exterior_shade", {"shade_set", "exterior_modifier"}},
+      {"interior_shade", {"shade_set", "interior_modifier"}}};
+  return places;
+}
+
+}  // namespace
+
+HoneybeeModifiers::HoneybeeModifiers(const nlohmann::json& radiance) : radiance_(radiance) {}
+
+const nlohmann::json* HoneybeeModifiers::modifier(const std::string& identifier) const {
+  const auto list = radiance_.find("modifiers");
+  if (list == radiance_.end()) return nullptr;
+  for (const HoneybeeJson& one : *list) {
+    if (text_of(one, "identifier") == identifier) return &one;
+  }
+  return nullptr;
+}
+
+std::string HoneybeeModifiers::of_set(const std::string& set, const std::string& kind) const {
+  const auto sets = radiance_.find("modifier_sets");
+  const auto place = places_in_sets().find(kind);
+  if (set.empty() || sets == radiance_.end() || place == places_in_sets().end()) return {};
+  for (const HoneybeeJson& one : *sets) {
+    if (text_of(one, "identifier") != set) continue;
+    const auto part = one.find(place->second[0]);
+    return part != one.end() && part->is_object() ? text_of(*part, place->second[1]) : std::string();
+  }
+  return {};
+}
+
+Material HoneybeeModifiers::material(const nlohmann::json& item, const std::string& set, const std::string& kind) {
+  const HoneybeeJson::json_pointer own("/properties/radiance/modifier");
+  std::string name = item.contains(own) && item.at(own).is_string() ? item.at(own).get<std::string>() : std::string();
+  if (name.empty()) name = of_set(set, kind);
+  if (name.empty()) return generic_material(kind);
+  const HoneybeeJson* const found = modifier(name);
+  const std::optional<Material> material = found != nullptr ? material_of(*found) : std::nullopt;
+  if (material) return *material;
+  if (std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
+  return generic_material(kind);
+}
+
+}  // namespace patchlight

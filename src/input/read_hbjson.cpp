@@ -1,0 +1,225 @@
+#include "input/read_hbjson.h"
+
+#include "patchlight/base/error.h"
+
+#include "files/sha256.h"
+#include "input/honeybee_modifiers.h"
+#include "input/joined_rings.h"
+#include "input/materials.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+using HbJson = nlohmann::json;
+
+const std::map<std::string, double>& honeybee_units() {
+  static const std::map<std::string, double> units = {
+      {"Meters", 1}, {"Centimeters", 0.01}, {"Millimeters", 0.001}, {"Inches", 0.0254}, {"Feet", 0.3048}};
+  return units;
+}
+
+// An empty list where there is none.
+const HbJson& list_of(const HbJson& item, const char* key) {
+  static const HbJson none = HbJson::array();
+  const auto found = item.find(key);
+  return found != item.end() && found->is_array() ? *found : none;
+}
+
+std::vector<Point> points_of(const HbJson& list, double metres) {
+  std::vector<Point> points;
+  for (const HbJson& point : list)
+    points.push_back(metres * Point(point.at(0).get<double>(), point.at(1).get<double>(), point.at(2).get<double>()));
+  return points;
+}
+
+// The outline with its holes, joined by seams. \throws nlohmann::json::exception, InputError.
+std::vector<Point> outline_with_holes(const std::vector<std::vector<Point>>& rings, const std::string& where) {
+  if (rings.size() == 1) return rings[0];
+  const Vector normal = area_vector(rings[0]).normalized();
+  const Vector x = normal.unitOrthogonal();
+  const Vector y = normal.cross(x);
+  std::vector<std::vector<Eigen::Vector2d>> plane;
+  for (const std::vector<Point>& ring : rings) {
+    auto& flat = plane.emplace_back();
+    for (const Point& point : ring) flat.emplace_back(x.dot(point), y.dot(point));
+  }
+  const auto walk = joined_rings(plane);
+  if (!walk) throw InputError(where, "a hole or an opening lies outside of its face; expected it within");
+  std::vector<Point> outline;
+  for (const auto& [ring, corner] : *walk) outline.push_back(rings[ring][corner]);
+  return outline;
+}
+
+class HoneybeeScene {
+ public:
+  HoneybeeScene(const HbJson& model, const std::string& file, double metres)
+      : modifiers_(radiance_of(model)), metres_(metres) {
+    scene_.file = file;
+    for (const HbJson& room : list_of(model, "rooms")) add_room(room);
+    for (const HbJson& face : list_of(model, "orphaned_faces")) add_face(face, "");
+    for (const HbJson& aperture : list_of(model, "orphaned_apertures")) add(aperture, "", "window");
+    for (const HbJson& door : list_of(model, "orphaned_doors")) add(door, "", "door");
+    for (const HbJson& shade : list_of(model, "orphaned_shades")) add(shade, "", "context");
+    for (const HbJson& grid : list_of(radiance_of(model), "sensor_grids")) add_grid(grid);
+    for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
+    for (std::string& note :
+         note_on("modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown()))
+      scene_.notes.push_back(std::move(note));
+  }
+  Scene scene() && { return std::move(scene_); }
+
+ private:
+  static const HbJson& radiance_of(const HbJson& model) {
+    static const HbJson none = HbJson::object();
+    const HbJson::json_pointer place("/properties/radiance");
+    return model.contains(place) ? model.at(place) : none;
+  }
+
+  MaterialIndex index_of(Material material) {
+    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                    [&](const Material& one) { return one.name == material.name; });
+    const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
+    if (found == scene_.materials.end()) scene_.materials.push_back(std::move(material));
+    return index;
+  }
+
+  void add_outline(const std::vector<Point>& outline, const HbJson& item, MaterialIndex material) {
+    Polygon polygon;
+    for (const Point& point : outline) {
+      polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
+      scene_.vertices.push_back(point);
+    }
+    polygon.material = material;
+    polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
+    scene_.groups.push_back(item.at("identifier").get<std::string>());
+    scene_.polygons.push_back(std::move(polygon));
+  }
+
+  std::vector<std::vector<Point>> rings_of(const HbJson& item) const {
+    const HbJson& geometry = item.at("geometry");
+    std::vector<std::vector<Point>> rings = {points_of(geometry.at("boundary"), metres_)};
+    for (const HbJson& hole : list_of(geometry, "holes")) rings.push_back(points_of(hole, metres_));
+    return rings;
+  }
+
+  std::string where(const HbJson& item) const { return scene_.file + ": " + item.at("identifier").get<std::string>(); }
+
+  void add(const HbJson& item, const std::string& set, const std::string& kind) {
+    add_outline(outline_with_holes(rings_of(item), where(item)), item, index_of(modifiers_.material(item, set, kind)));
+  }
+
+  void add_shades(const HbJson& owner, const std::string& set) {
+    for (const HbJson& shade : list_of(owner, "outdoor_shades")) add(shade, set, "exterior_shade");
+    for (const HbJson& shade : list_of(owner, "indoor_shades")) add(shade, set, "interior_shade");
+  }
+
+  // Those between two rooms are in the file twice, back to back.
+  void add_openings(const HbJson& face, const std::string& set) {
+    for (const char* const key : {"apertures", "doors"}) {
+      for (const HbJson& opening : list_of(face, key)) {
+        const HbJson& condition = opening.at("boundary_condition");
+        const bool is_inside = condition.at("type") == "Surface";
+        const bool is_clear = opening.at("type") == "Aperture" || opening.value("is_glass", false);
+        add_shades(opening, set);
+        if (is_inside && done_.count(condition.at("boundary_condition_objects").at(0).get<std::string>()) > 0) continue;
+        done_.insert(opening.at("identifier").get<std::string>());
+        add(opening, set, !is_clear ? "door" : is_inside ? "interior_window" : "window");
+      }
+    }
+  }
+
+  void add_face(const HbJson& face, const std::string& set) {
+    static const std::map<std::string, std::string> kinds = {
+        {"Floor", "floor"}, {"Wall", "wall"}, {"RoofCeiling", "ceiling"}};
+    add_shades(face, set);
+    const auto kind = kinds.find(face.at("face_type").get<std::string>());
+    if (kind != kinds.end()) {
+      std::vector<std::vector<Point>> rings = rings_of(face);
+      for (const char* const key : {"apertures", "doors"})
+        for (const HbJson& opening : list_of(face, key))
+          rings.push_back(points_of(opening.at("geometry").at("boundary"), metres_));
+      add_outline(outline_with_holes(rings, where(face)), face, index_of(modifiers_.material(face, set, kind->second)));
+    }
+    add_openings(face, set);
+  }
+
+  void add_room(const HbJson& room) {
+    const HbJson::json_pointer place("/properties/radiance/modifier_set");
+    const std::string set =
+        room.contains(place) && room.at(place).is_string() ? room.at(place).get<std::string>() : std::string();
+    Room body{room.value("display_name", room.at("identifier").get<std::string>()), room.value("story", ""), {}};
+    add_shades(room, set);
+    for (const HbJson& face : room.at("faces")) {
+      body.faces.push_back(points_of(face.at("geometry").at("boundary"), metres_));
+      add_face(face, set);
+    }
+    scene_.rooms.push_back(std::move(body));
+  }
+
+  void add_grid(const HbJson& grid) {
+    SensorGroup group;
+    group.name = grid.at("identifier").get<std::string>();
+    group.file = scene_.file;
+    for (const HbJson& sensor : grid.at("sensors")) {
+      const Point at = points_of(HbJson::array({sensor.at("pos")}), metres_).front();
+      const Vector direction = points_of(HbJson::array({sensor.at("dir")}), 1).front();
+      if (!(direction.stableNorm() > 0))
+        throw InputError(scene_.file + ": " + group.name, "a sensor looks along 0, 0, 0; expected a direction");
+      group.sensors.push_back({at, direction.stableNormalized()});
+    }
+    group.lines = {0};
+    if (!group.sensors.empty()) scene_.sensors.push_back(std::move(group));
+  }
+
+  void add_view(const HbJson& view) {
+    const Point eye = points_of(HbJson::array({view.at("position")}), metres_).front();
+    const Vector way = points_of(HbJson::array({view.at("direction")}), 1).front();
+    const double angle = view.value("v_size", 60.0);
+    if (!(way.stableNorm() > 0) || !(angle > 0 && angle < 180)) {
+      scene_.notes.push_back("view '" + view.at("identifier").get<std::string>() +
+                             "' is no perspective below 180 degrees: left out");
+      return;
+    }
+    scene_.cameras.push_back({eye, eye + way.stableNormalized(), angle, view.at("identifier").get<std::string>()});
+  }
+
+  HoneybeeModifiers modifiers_;
+  double metres_;
+  Scene scene_;
+  std::set<std::string> done_;  // openings between rooms
+};
+
+}  // namespace
+
+Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
+  const std::string bytes = read_text(file, file.string(), "the model file");
+  try {
+    const HbJson model = HbJson::parse(bytes);
+    const std::string unit = model.value("units", "Meters");
+    const auto known = honeybee_units().find(unit);
+    if (known == honeybee_units().end())
+      throw InputError(file.string(), "units: found '" + unit +
+                                          "'; expected Meters, Centimeters, Millimeters, Inches "
+                                          "or Feet");
+    Scene scene = with_used_materials(HoneybeeScene(model, file.string(), known->second * metres_per_unit).scene());
+    scene.metres_per_unit = known->second * metres_per_unit;
+    scene.up = Vector::UnitZ();
+    scene.up_stated = true;
+    scene.sha256 = sha256({&bytes, 1});
+    return scene;
+  } catch (const HbJson::exception& error) {
+    std::string what = error.what();
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw InputError(file.string(), "is not a good honeybee model: " + what + "; export it anew");
+  }
+}
+
+}  // namespace patchlight
