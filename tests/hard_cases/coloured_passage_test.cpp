@@ -1,0 +1,101 @@
+#include "patchlight/simulate.h"
+
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace patchlight::coloured_passage_test {
+namespace {
+
+using namespace test;
+
+// A material of as many bands as `values` has.
+Material even(const Spectrum& values, double reflectance, double exitance = 0) {
+  Material material;
+  material.reflectance = Spectrum::Constant(values.size(), reflectance);
+  material.exitance = Spectrum::Constant(values.size(), exitance);
+  return material;
+}
+
+Material mirror(const Spectrum& specular_reflectance) {
+  Material material = even(specular_reflectance, 0);
+  material.name = "mirror";
+  material.specular_reflectance = specular_reflectance;
+  return material;
+}
+
+Material glass(const Spectrum& transmittance) {
+  Material material = even(transmittance, 0.02);
+  material.name = "glass";
+  material.transmittance = transmittance;
+  return material;
+}
+
+Spectrum one(double value) { return Spectrum::Constant(1, value); }
+
+// A closed room of 4 x 3 x 2.5 m, divided at x = 2 by a pane from wall to wall, with a mirror at low x; all else sends
+// out light of its own, so much alike that no patch is bright.
+Scene divided_room(const Spectrum& reflected, const Spectrum& transmitted, double exitance_beyond) {
+  Scene scene = empty_scene(
+      {even(reflected, 0.6, 1), mirror(reflected), glass(transmitted), even(reflected, 0.5, exitance_beyond)});
+  std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(2, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 4, 5})
+    scene = with_quad(std::move(scene), faces[k], k == 5 ? MaterialIndex{1} : MaterialIndex{0});
+  faces = box_faces(Point(2, 0, 0), Point(4, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 3, 4}) scene = with_quad(std::move(scene), faces[k], 3);
+  scene = with_quad(std::move(scene), {Point(2, 0, 0), Point(2, 0, 2.5), Point(2, 3, 2.5), Point(2, 3, 0)}, 2);
+  scene.polygons.back().back_material = 2;
+  return scene;
+}
+
+Request by_few_rays(PatchIndex patches) {
+  Request request;
+  request.assembly.storage = Storage::rays;
+  request.assembly.rays = 64;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
+  request.solver.solver = Solver::gmres;
+  request.solver.relative_error = 1e-13;
+  return request;
+}
+
+double largest_difference(const Field& a, const Field& b) { return (a - b).abs().maxCoeff(); }
+
+TEST(ColouredPassage, IsInEachBandThatOfAGreySceneOfThisValue) {
+  // Clear faces and mirrors alone have colours. The rays are the same ones, so nothing but rounding differs.
+  const Spectrum reflected = rgb(1, 0.5, 0.1);
+  const Spectrum transmitted = rgb(0.85, 0.05, 0.4);
+  const Simulation coloured = simulate(divided_room(reflected, transmitted, 0.6), by_few_rays(400));
+  for (Eigen::Index band = 0; band < 3; ++band) {
+    const Scene grey = divided_room(one(reflected[band]), one(transmitted[band]), 0.6);
+    const Simulation alone = simulate(grey, by_few_rays(400));
+    ASSERT_EQ(alone.mesh.size(), coloured.mesh.size());
+    EXPECT_LT(largest_difference(coloured.solution.radiosity.col(band), alone.solution.radiosity.col(0)), 1e-12);
+    EXPECT_LT(largest_difference(coloured.solution.irradiance.col(band), alone.solution.irradiance.col(0)), 1e-12);
+    EXPECT_LT(largest_difference(coloured.ray_standard_error.col(band), alone.ray_standard_error.col(0)), 1e-12);
+    EXPECT_NEAR(coloured.balance.absorbed[band], alone.balance.absorbed[0], 1e-11);
+  }
+}
+
+TEST(ColouredPassage, OfGreyInThreeBandsIsGrey) {
+  const Simulation three = simulate(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6), by_few_rays(400));
+  const Simulation single = simulate(divided_room(one(0.7), one(0.8), 0.6), by_few_rays(400));
+  for (Eigen::Index band = 0; band < 3; ++band)
+    EXPECT_LT(largest_difference(three.solution.radiosity.col(band), single.solution.radiosity.col(0)), 1e-12);
+}
+
+// A black room with a lamp in it, and one beyond a red pane of index 1, in which all but the pane reflects and nothing
+// emits: what gets through is red.
+TEST(ColouredPassage, BehindARedPaneIsRed) {
+  const Scene scene = divided_room(rgb(0, 0, 0), rgb(0.8, 0.08, 0), 0);
+  const Simulation simulation = simulate(scene, by_few_rays(600));
+  const PatchRange beyond = simulation.mesh.patches_on(8, Side::front);
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(3);
+  for (PatchIndex i = beyond.begin; i < beyond.end; ++i) mean += simulation.solution.radiosity.row(i).transpose();
+  EXPECT_GT(mean[0], 0);
+  EXPECT_LT(mean[1], 0.15 * mean[0]);
+  EXPECT_LT(mean[2], 1e-12 * mean[0]);
+}
+
+}  // namespace
+}  // namespace patchlight::coloured_passage_test
