@@ -77,13 +77,16 @@ std::vector<LightColour> light_colours(const Run& run) {
 
 SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
                              StageClock& clock) {
+  const ExchangeAndLight all_bands = exchange_and_light(run, meshed.plan, meshed.mesh.patches);
+  clock.finish(Stage::form_factors);
   std::vector<SolvedMesh> parts;
   for (const LightColour& colour : colours) {
     const Plan plan = in_bands(run.plan, colour.bands);
     const Run part{colour.scene, run.request, plan, run.notes, colour.tracing, run.with, run.observer, true};
     const MeshToSolve in_part{meshed.mesh, in_bands(meshed.plan, colour.bands), {}};
-    RawTransport raw = raw_transport(part, in_part.plan, in_part.mesh.patches, {});
-    clock.finish(Stage::form_factors);
+    const PatchMesh& mesh = in_part.mesh.patches;
+    RawTransport raw =
+        raw_transport(ray_light(part, mesh, in_colour(all_bands, colour.bands, part, in_part.plan, mesh)));
     MeshTransport transport = closed_transport(part, in_part.plan, in_part.mesh, std::move(raw));
     LitProblem problem = transport.light->lit;
     clock.finish(Stage::closure);

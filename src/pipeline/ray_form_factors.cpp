@@ -1,7 +1,7 @@
 #include "pipeline/ray_form_factors.h"
 
 #include "base/parallel.h"
-#include "pipeline/ray_light.h"
+#include "pipeline/exchange_and_light.h"
 #include "pipeline/run.h"
 #include "pipeline/scene_in_patches.h"
 #include "plan/choose_storage.h"
