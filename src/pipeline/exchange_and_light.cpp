@@ -1,5 +1,7 @@
 #include "pipeline/exchange_and_light.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"
@@ -9,6 +11,8 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace patchlight {
@@ -85,6 +89,32 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
 }
 
+// The side of a polygon from which rays went on in another way than they would now; none if there is no such.
+std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>& then,
+                                       const std::vector<std::array<double, 2>>& now) {
+  for (PolygonIndex p = 0; p < now.size(); ++p) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double before = then.empty() ? 0 : then[p][side];
+      // From what lets nothing go on any more, rays that do count nothing.
+      if (now[p][side] != 0 && now[p][side] != before) return p;
+    }
+  }
+  return std::nullopt;
+}
+
+// Colours may differ, but rays have gone on from the polygons from which they would go on now.
+void require_same_kinds(const RayExchange& known, const Run& run) {
+  const auto now = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
+  const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();
+  const std::optional<PolygonIndex> other = is_as_long ? other_kind(known.specular_kinds, now) : 0;
+  if (!other) return;
+  throw InputError("given.ray_rows",
+                   "found rows of rays that go on in another way from polygon " + std::to_string(*other + 1) + " of '" +
+                       run.scene.materials[run.scene.polygons[*other].material].name +
+                       "' than light does now; expected the clear faces and mirrors of then, with the same index of "
+                       "refraction: only their colours may differ. Make the form factors anew");
+}
+
 }  // namespace
 
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
@@ -97,8 +127,11 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light);
+    if (run.tracing->has_specular_faces())
+      exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};
   }
+  require_same_kinds(exchange, run);
   // Not stored, as it is of the materials.
   exchange.rows.lost.clear = clear_shares(mesh, run.tracing->between_patches());
   const BrightPatches now = bright_patches_of(run, mesh, light);

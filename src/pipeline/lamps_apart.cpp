@@ -109,7 +109,7 @@ LampValues joined(const LampValues& some, const LampValues& more) {
 RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                        const RadiosityProblem& problem) {
   const std::vector<LampSide> lamps = new_lamps(run, mesh, problem, known);
-  if (run.tracing->has_specular_faces()) {
+  if (run.tracing->has_specular_faces() || !known.specular_kinds.empty()) {
     for (const LampSide& lamp : lamps) known.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
     known.lamp_factors = factors_of_lamps(known.lamps, run, plan, mesh);
     return known;

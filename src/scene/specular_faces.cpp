@@ -146,6 +146,14 @@ SpecularShares SpecularFaces::shares(PolygonIndex polygon, Side side, double cos
   return face ? face->shares(side, cosine) : SpecularShares();
 }
 
+std::vector<std::array<double, 2>> SpecularFaces::kinds(std::size_t polygons) const {
+  std::vector<std::array<double, 2>> kinds(polygons, {0, 0});
+  for (PolygonIndex p = 0; p < polygons; ++p) {
+    if (const SpecularFace* const face = at(p)) kinds[p] = {face->kind(Side::front), face->kind(Side::back)};
+  }
+  return kinds;
+}
+
 Vector SpecularFaces::mirrored(PolygonIndex polygon, const Vector& direction) const {
   const Vector& normal = normals_[polygon];
   return direction - 2 * normal.dot(direction) * normal;

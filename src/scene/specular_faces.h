@@ -5,6 +5,7 @@
 #include "light/pane.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -103,6 +104,9 @@ class SpecularFaces {
 
   /// SpecularFace::shares() of a polygon; all is held by others.
   SpecularShares shares(PolygonIndex polygon, Side side, double cosine) const;
+
+  /// SpecularFace::kind() of front and back of each of so many polygons.
+  std::vector<std::array<double, 2>> kinds(std::size_t polygons) const;
 
   /// The direction in which a mirror is seen in another: that after the reflection at a polygon of this scene that is
   /// specular.

@@ -265,12 +265,13 @@ struct MeasureBy {
   const Observer& observer;
 };
 
-// Of clear patches all rays are told by stops.
+// Of clear patches all rays are told by stops; what these let through is of their colour.
 LostShare without_clear(LostShare lost, const PatchMesh& mesh, const Occluder& occluder) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const SpecularFace* const face = occluder.specular_faces().at(mesh.polygon[i]);
     if (face && face->is_clear()) lost.escaped[i] = lost.at_backs[i] = 0;
   }
+  lost.clear = {};
   return lost;
 }
 

@@ -1,8 +1,11 @@
+#include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
+#include "pipeline/ray_form_factors.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
+#include <utility>
 
 namespace patchlight::coloured_passage_test {
 namespace {
@@ -95,6 +98,66 @@ TEST(ColouredPassage, BehindARedPaneIsRed) {
   EXPECT_GT(mean[0], 0);
   EXPECT_LT(mean[1], 0.15 * mean[0]);
   EXPECT_LT(mean[2], 1e-12 * mean[0]);
+}
+
+// The rows of one scene, and its patches, for another one.
+Steps with_rows_of(const Scene& scene, const Request& request) {
+  const RayFormFactors found = find_ray_form_factors(scene, request);
+  Steps with;
+  with.ray_exchange = [found](const PatchMesh&) { return found.exchange; };
+  with.mesh = [found] { return found.mesh; };
+  return with;
+}
+
+// The same patches, and rays of its own.
+Simulation fresh_on_mesh_of(const Steps& with, const Scene& scene, const Request& request) {
+  Steps own;
+  own.mesh = with.mesh;
+  return simulate(scene, request, {}, own);
+}
+
+// Three bands, in the colours of a scene in which nothing was seen yet.
+TEST(ColouredPassage, HasTheSameRowsInAllColours) {
+  const Request request = by_few_rays(400);
+  const Steps with = with_rows_of(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6), request);
+  const Scene red = divided_room(rgb(1, 0.5, 0.1), rgb(0.85, 0.05, 0.4), 0.6);
+  const Simulation again = simulate(red, request, {}, with);
+  const Simulation fresh = fresh_on_mesh_of(with, red, request);
+  EXPECT_EQ(largest_difference(again.solution.radiosity, fresh.solution.radiosity), 0);
+  EXPECT_EQ(largest_difference(again.ray_standard_error, fresh.ray_standard_error), 0);
+}
+
+// A lamp, which is apart from the rows, sends its light through the pane and over the mirror as well.
+TEST(ColouredPassage, OfALampIsThatOfThePanesOfNow) {
+  const auto with_lamp = [](Scene scene) {
+    scene.materials.push_back(even(rgb(1, 1, 1), 0, 20));
+    return with_quad(std::move(scene), {Point(0.5, 1, 2.4), Point(0.5, 1.5, 2.4), Point(1, 1.5, 2.4), Point(1, 1, 2.4)},
+                     4);
+  };
+  const Request request = by_few_rays(400);
+  const Steps with = with_rows_of(with_lamp(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.6, 0.6, 0.6), 0.6)), request);
+  const Scene red = with_lamp(divided_room(rgb(0.6, 0.5, 0.4), rgb(0.65, 0.5, 0.4), 0.6));
+  const Simulation again = simulate(red, request, {}, with);
+  const Simulation fresh = fresh_on_mesh_of(with, red, request);
+  EXPECT_LT(largest_difference(again.solution.radiosity, fresh.solution.radiosity),
+            1e-6 * fresh.solution.radiosity.maxCoeff());
+}
+
+TEST(ColouredPassage, IsRefusedWhereRaysHaveGoneAnotherWay) {
+  const Request request = by_few_rays(100);
+  const Scene scene = divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6);
+  const Steps with = with_rows_of(scene, request);
+  Scene thicker = scene;
+  thicker.materials[2].index = 1.7;
+  EXPECT_THROW(simulate(thicker, request, {}, with), InputError);
+  Scene more = scene;
+  more.materials[0].specular_reflectance = rgb(0.2, 0.2, 0.2);
+  EXPECT_THROW(simulate(more, request, {}, with), InputError);
+  Scene opaque = scene;
+  opaque.materials[2].transmittance = rgb(0, 0, 0);
+  EXPECT_LT(largest_difference(simulate(opaque, request, {}, with).solution.radiosity,
+                               fresh_on_mesh_of(with, opaque, request).solution.radiosity),
+            1e-12);
 }
 
 }  // namespace
