@@ -25,6 +25,8 @@ inline constexpr std::array<const char*, 6> of_half = {"hit_begin",   "hits",   
 // And, where rays go on from clear faces or mirrors, these as well.
 inline constexpr std::array<const char*, 5> of_stops = {"stop_begin", "stop_columns", "stop_factors", "stop_polygons",
                                                         "stop_steps"};
+inline constexpr std::array<const char*, 4> of_classes = {"class_rows", "class_columns", "class_numbers",
+                                                          "class_factors"};
 inline constexpr const char* specular_kinds = "specular_kinds.npy";
 inline constexpr const char* hit_distance = "hit_distance.npy";
 inline constexpr const char* directed = "directed.npy";

@@ -12,6 +12,7 @@
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_mesh.h"
+#include "plan/planned_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,8 @@ Json files_of_rows(bool is_specular) {
   return part;
 }
 
-std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const std::string& command_line) {
+std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const RowsByClass& by_class,
+                         const std::string& command_line) {
   const LostShare& lost = found.exchange.rows.lost;
   Json json;
   json["kind"] = file_name::kind;
@@ -120,6 +122,10 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
                      {"lost_share_rays", lost.rays_per_patch}};
   const bool is_specular = !found.exchange.specular_kinds.empty();
   json["specular"] = is_specular;
+  if (is_specular) {
+    json["classes"] = Json::array();
+    for (const WayClass& way_class : by_class.classes) json["classes"].push_back(name_of(way_class, scene));
+  }
   json["counts"] = {{"rays", found.exchange.rows.rays}, {"shadow_rays", found.exchange.rows.shadow_rays}};
   json["files"] = files_of_rows(is_specular);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
@@ -228,6 +234,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
   };
   const TracedRows& rows = found.exchange.rows;
+  const RowsByClass by_class = rows_by_class(rows, scene, SpecularFaces(scene, reflections_of(found.plan)));
   write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
     for (std::size_t half = 0; half < 2; ++half) {
       tell(0.4 * static_cast<double>(half));
@@ -235,7 +242,10 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     }
     tell(0.8);
     write_lamps(in, found.exchange);
-    if (!found.exchange.specular_kinds.empty()) write_kinds(in / file_name::specular_kinds, found.exchange);
+    if (!found.exchange.specular_kinds.empty()) {
+      write_kinds(in / file_name::specular_kinds, found.exchange);
+      write_classes(in, by_class);
+    }
     write_as<float>(in / file_name::hit_distance, rows.distance);
     write_npy(in / file_name::directed, std::span<const std::uint8_t>(rows.directed));
     write_npy(in / file_name::area, rows.area);
@@ -244,7 +254,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     write_mesh(in / file_name::mesh, scene, {found.mesh, found.area, found.row_sum, {}});
     tell(1);
     write_stored_scene(in / file_name::scene, scene, found.plan.sides);
-    write_bytes(in / file_name::info, info_of_rows(scene, found, command_line));
+    write_bytes(in / file_name::info, info_of_rows(scene, found, by_class, command_line));
   });
 }
 

@@ -19,15 +19,19 @@ constexpr std::int32_t in_the_open = -1;
 constexpr std::int32_t at_back = -2;
 constexpr std::int32_t no_polygon_there = -1;
 
-std::filesystem::path file_of(const std::filesystem::path& folder, std::size_t which, std::size_t half) {
-  return folder / (std::string(file_name::of_stops.at(which)) + "_" + std::to_string(half) + ".npy");
+std::filesystem::path in_half(const std::filesystem::path& folder, const char* name, std::size_t half) {
+  return folder / (std::string(name) + "_" + std::to_string(half) + ".npy");
 }
 
-template <class Number, class Value>
-void write_each(const std::filesystem::path& file, const LargeArray<SpecularStop>& stops, const Value& value) {
+std::filesystem::path file_of(const std::filesystem::path& folder, std::size_t which, std::size_t half) {
+  return in_half(folder, file_name::of_stops.at(which), half);
+}
+
+template <class Number, class All, class Value>
+void write_each(const std::filesystem::path& file, const All& all, const Value& value) {
   std::vector<Number> numbers;
-  numbers.reserve(stops.size());
-  for (const SpecularStop& stop : stops) numbers.push_back(value(stop));
+  numbers.reserve(all.size());
+  for (const auto& one : all) numbers.push_back(value(one));
   write_npy_numbers(file, std::span<const Number>(numbers));
 }
 
@@ -79,6 +83,18 @@ void write_kinds(const std::filesystem::path& file, const RayExchange& exchange)
   std::vector<double> numbers;
   for (const auto& [front, back] : exchange.specular_kinds) numbers.insert(numbers.end(), {front, back});
   write_npy_numbers(file, std::span<const double>(numbers));
+}
+
+void write_classes(const std::filesystem::path& folder, const RowsByClass& by_class) {
+  for (std::size_t half = 0; half < 2; ++half) {
+    const std::vector<ClassEntry>& entries = by_class.halves.at(half);
+    const auto file = [&](std::size_t which) { return in_half(folder, file_name::of_classes.at(which), half); };
+    const auto number = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
+    write_each<std::int32_t>(file(0), entries, [&](const ClassEntry& e) { return number(e.from); });
+    write_each<std::int32_t>(file(1), entries, [&](const ClassEntry& e) { return number(e.to); });
+    write_each<std::int32_t>(file(2), entries, [&](const ClassEntry& e) { return number(e.way_class); });
+    write_each<float>(file(3), entries, [](const ClassEntry& e) { return e.form_factor; });
+  }
 }
 
 void read_stops(const std::filesystem::path& folder, std::size_t half, const NumbersOf& there, RayRows& rows) {
@@ -134,6 +150,12 @@ std::map<std::string, std::string> meaning_of_stop_files() {
   for (std::size_t half = 0; half < 2; ++half)
     for (std::size_t which = 0; which < meaning.size(); ++which)
       all[file_of({}, which, half).string()] = meaning.at(which);
+  const std::array<const char*, 4> of_entry = {"the rows of entries by specular ways", "the columns of these entries",
+                                               "the classes of their ways, as listed in classes",
+                                               "their form factors, in the mean of all bands; unit 1"};
+  for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t which = 0; which < of_entry.size(); ++which)
+      all[in_half({}, file_name::of_classes.at(which), half).string()] = of_entry.at(which);
   all[file_name::specular_kinds] =
       "per polygon, front and back: 0 if no ray goes on from there, 1 from a mirror, else 1 and the index of "
       "refraction of a clear face, -1 where it reflects nothing";

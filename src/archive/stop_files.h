@@ -1,6 +1,7 @@
 #pragma once
 
 #include "transport/ray_exchange.h"
+#include "transport/rows_by_class.h"
 
 #include <array>
 #include <cstddef>
@@ -18,6 +19,9 @@ void write_stops(const std::filesystem::path& folder, std::size_t half, const Ra
 
 /// Writes RayExchange::specular_kinds. \throws OutputError.
 void write_kinds(const std::filesystem::path& file, const RayExchange& exchange);
+
+/// Writes the form factors by each class of ways. \throws OutputError.
+void write_classes(const std::filesystem::path& folder, const RowsByClass& by_class);
 
 /// What stops may name.
 struct NumbersOf {

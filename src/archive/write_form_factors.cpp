@@ -175,7 +175,8 @@ std::string info_json(const FormFactorResult& result) {
 bool is_of_half(const std::string& name) {
   const auto is_one = [&](const std::string& begin) { return name == begin + "_0.npy" || name == begin + "_1.npy"; };
   return std::any_of(file_name::of_half.begin(), file_name::of_half.end(), is_one) ||
-         std::any_of(file_name::of_stops.begin(), file_name::of_stops.end(), is_one);
+         std::any_of(file_name::of_stops.begin(), file_name::of_stops.end(), is_one) ||
+         std::any_of(file_name::of_classes.begin(), file_name::of_classes.end(), is_one);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces&
     }
     const SpecularShares shares = faces.shares(stop.polygon, stop.side(), stop.cosine());
     const bool goes_on = stop.step() != RayStep::kept;
-    if (counted > 0) tell(stop, left * shares.held * counted);
+    tell(stop, left * shares.held * counted);
     left = goes_on ? left * onward_share(shares, faces, stop) : 1;
   }
 }

@@ -38,8 +38,7 @@ struct SpecularStop {
   double cosine() const { return static_cast<double>(bits >> 4U) * 0x1p-28; }
 };
 
-/// What rays tell for one colour, ray by ray: tell(stop, form factor) at every stop where some light is held, or which
-/// is the last one.
+/// What rays tell for one colour, ray by ray: tell(stop, form factor) at every stop, 0 where nothing is held.
 void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces& faces,
                        const std::function<void(const SpecularStop& stop, double form_factor)>& tell);
 

@@ -2,9 +2,17 @@
 #include "patchlight/simulate.h"
 
 #include "pipeline/ray_form_factors.h"
+#include "scene/specular_faces.h"
 #include "support/scenes.h"
+#include "transport/rows_by_class.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <map>
+#include <string>
+#include <tuple>
 #include <utility>
 
 namespace patchlight::coloured_passage_test {
@@ -158,6 +166,55 @@ TEST(ColouredPassage, IsRefusedWhereRaysHaveGoneAnotherWay) {
   EXPECT_LT(largest_difference(simulate(opaque, request, {}, with).solution.radiosity,
                                fresh_on_mesh_of(with, opaque, request).solution.radiosity),
             1e-12);
+}
+
+// What all patches of a polygon's front send to those of another's by ways of a class, sum_i A_i F_ij, m^2, by either
+// half of the rays.
+using Exchanged = std::map<std::tuple<std::uint32_t, PolygonIndex, PolygonIndex>, std::array<double, 2>>;
+
+Exchanged exchanged_by_class(const RowsByClass& by_class, const PatchMesh& mesh, const Eigen::VectorXd& area) {
+  Exchanged sums;
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (const ClassEntry& e : by_class.halves[half])
+      sums[{e.way_class, mesh.polygon[e.from], mesh.polygon[e.to]}][half] +=
+          area[e.from] * static_cast<double>(e.form_factor);
+  }
+  return sums;
+}
+
+// Light can go the same way back: A_i F_ij = A_j F_ji by the ways of each class alone. The halves are independent:
+// their difference has twice the standard error of their mean as its own, and of some hundred pairs the sum of squares
+// is that of the differences, but for chance.
+TEST(ColouredPassage, IsSymmetricInEachClassOfWays) {
+  const Scene scene = divided_room(one(0.7), one(0.8), 0.6);
+  Request request = by_few_rays(800);
+  request.assembly.rays = 1024;
+  const RayFormFactors found = find_ray_form_factors(scene, request);
+  const SpecularFaces faces(scene, Reflections::followed);
+  const RowsByClass by_class = rows_by_class(found.exchange.rows, scene, faces);
+  const Exchanged sums = exchanged_by_class(by_class, found.mesh, found.area);
+  double squares = 0, variances = 0;
+  std::size_t pairs = 0;
+  for (const auto& [key, there] : sums) {
+    const auto [way_class, from, to] = key;
+    const auto found_back = sums.find({way_class, to, from});
+    if (from >= to || found_back == sums.end()) continue;
+    const auto& back = found_back->second;
+    const double mean = 0.5 * (there[0] + there[1]), other = 0.5 * (back[0] + back[1]);
+    if (mean < 0.01) continue;
+    ++pairs;
+    squares += (mean - other) * (mean - other);
+    variances += 0.25 * (std::pow(there[0] - there[1], 2) + std::pow(back[0] - back[1], 2));
+    EXPECT_NEAR(mean / other, 1, 0.25) << name_of(by_class.classes[way_class], scene) << ' ' << from << ' ' << to;
+  }
+  EXPECT_GT(pairs, 50U);
+  EXPECT_LT(squares, 2 * variances);
+  const auto has = [&](const std::string& name) {
+    return std::any_of(by_class.classes.begin(), by_class.classes.end(),
+                       [&](const WayClass& one_class) { return name_of(one_class, scene) == name; });
+  };
+  EXPECT_TRUE(has("straight") && has("glass") && has("mirror mirrored") && has("glass mirrored") &&
+              has("mirror mirrored + glass"));
 }
 
 }  // namespace
