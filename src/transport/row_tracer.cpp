@@ -185,7 +185,7 @@ PatchRays RowTracer::trace_plain(PatchIndex patch, RowEntries& entries) const {
 }
 
 PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
-  const PatchRays told = is_specular() ? trace_specular(patch, entries) : trace_plain(patch, entries);
+  PatchRays told = is_specular() ? trace_specular(patch, entries) : trace_plain(patch, entries);
   if (!bright_.empty()) add_toward_bright(patch, entries);
   return told;
 }

@@ -6,8 +6,9 @@
 #include "transport/ray_rows.h"
 
 #include <array>
-#include <compare>
+#include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace patchlight {
@@ -17,7 +18,9 @@ struct Passage {
   MaterialIndex material = 0;
   bool is_mirrored = false;
 
-  auto operator<=>(const Passage&) const = default;
+  bool operator<(const Passage& other) const {
+    return std::tie(material, is_mirrored) < std::tie(other.material, other.is_mirrored);
+  }
 };
 
 /// Ways over the same specular materials, each as often, in any order; the passages are sorted.
