@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
+#include "pipeline/light_colours.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
 #include "pipeline/notes_on_run.h"
@@ -31,6 +32,30 @@ Simulation finished(Simulation simulation, const Scene& scene, const StageClock&
   return of_whole_patches(std::move(simulation), scene);
 }
 
+// One mesh: form factors, light, solution and how far that may be off.
+SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, StageClock& clock) {
+  // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
+  RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::exchange(meshed.known, {}));
+  clock.finish(Stage::form_factors);
+  MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
+  clock.finish(Stage::closure);
+
+  // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
+  LitProblem problem = transport.light ? transport.light->lit : lit_problem(run, meshed, transport);
+  if (has_point_or_daylight(run.scene)) clock.finish(Stage::direct_light);
+
+  // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
+  Simulation simulation = solved(run, meshed, transport, std::move(problem));
+  clock.finish(Stage::solve);
+  search.keep(simulation);
+  if (simulation.solution.stopped && !simulation.solution.converged) throw Cancelled();
+
+  // 8. How far that may be off.
+  SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
+  clock.finish(Stage::error_bars);
+  return result;
+}
+
 }  // namespace
 
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
@@ -53,6 +78,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
                                                        reflections_of(plan));
   const std::vector<std::string> notes = notes_on_run(scene, *tracing, plan);
   const Run run{lit, request, plan, notes, tracing, with, observer};
+  const std::vector<LightColour> colours = light_colours(run);
 
   Search search(run);
   try {
@@ -62,25 +88,9 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
       require_memory(meshed.mesh.patches.size(), request, meshed.plan);
       clock.finish(Stage::mesh);
 
-      // 5. Form factors between them, and closure: light goes from patch to patch by H = F B.
-      RawTransport raw = raw_transport(run, meshed.plan, meshed.mesh.patches, std::exchange(next->known, {}));
-      clock.finish(Stage::form_factors);
-      MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
-      clock.finish(Stage::closure);
-
-      // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
-      LitProblem problem = transport.light ? transport.light->lit : lit_problem(run, meshed, transport);
-      if (has_point_or_daylight(lit)) clock.finish(Stage::direct_light);
-
-      // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
-      Simulation simulation = solved(run, meshed, transport, std::move(problem));
-      clock.finish(Stage::solve);
-      search.keep(simulation);
-      if (simulation.solution.stopped && !simulation.solution.converged) throw Cancelled();
-
-      // 8. How far that may be off.
-      SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
-      clock.finish(Stage::error_bars);
+      // 5. to 8. For each colour that clear faces and mirrors tell apart.
+      SolvedMesh result =
+          colours.empty() ? solved_mesh(run, *next, search, clock) : solved_in_colours(run, colours, meshed, clock);
 
       // 9. Refine where that pays, or end.
       result = search.noted(std::move(result));

@@ -22,6 +22,12 @@ inline constexpr const char* by_object = "by_object.csv";
 // Those of rows of rays; each of the first six twice, for both halves of the rays.
 inline constexpr std::array<const char*, 6> of_half = {"hit_begin",   "hits",          "hit_weight",
                                                        "entry_begin", "entry_columns", "entries"};
+// And, where rays go on from clear faces or mirrors, these as well.
+inline constexpr std::array<const char*, 5> of_stops = {"stop_begin", "stop_columns", "stop_factors", "stop_polygons",
+                                                        "stop_steps"};
+inline constexpr std::array<const char*, 4> of_classes = {"class_rows", "class_columns", "class_numbers",
+                                                          "class_factors"};
+inline constexpr const char* specular_kinds = "specular_kinds.npy";
 inline constexpr const char* hit_distance = "hit_distance.npy";
 inline constexpr const char* directed = "directed.npy";
 inline constexpr const char* lamps = "lamps.npy";

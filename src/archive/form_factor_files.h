@@ -49,6 +49,7 @@ struct FormFactorInfo {
   MatrixFormat format = MatrixFormat::npy;
   Storage storage = Storage::tiles;  ///< or rays: then neither a matrix nor samples, estimator, counts and errors of it
   int rays = 0;                      ///< AssemblyOptions::rays
+  bool is_specular = false;          ///< rays go on from clear faces or mirrors: there are stops
   std::string closure;               ///< the method that closed them; empty if none did
   double max_edge = 0;               ///< metres
   Sides sides = Sides::automatic;

@@ -7,10 +7,12 @@
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/scene_file.h"
+#include "archive/stop_files.h"
 #include "base/parallel.h"
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_mesh.h"
+#include "plan/planned_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +57,7 @@ void write_half(const std::filesystem::path& folder, std::size_t half, const Ray
   write_as<std::int64_t>(file(3), rows.first_entry);
   write_as<std::int32_t>(file(4), values_of<PatchIndex>(rows.entries, [](const RayEntry& e) { return e.patch; }));
   write_as<float>(file(5), values_of<float>(rows.entries, [](const RayEntry& e) { return e.form_factor; }));
+  if (!rows.first_stop.empty()) write_stops(folder, half, rows);
 }
 
 void write_lamps(const std::filesystem::path& folder, const RayExchange& exchange) {
@@ -70,7 +73,7 @@ void write_lamps(const std::filesystem::path& folder, const RayExchange& exchang
   write(file_name::lamp_standard_error, factors.standard_error);
 }
 
-Json files_of_rows() {
+Json files_of_rows(bool is_specular) {
   Json part;
   const std::array<const char*, 6> meaning = {"where the hits of each row begin in hits; one more at the end",
                                               "the patches that rays of each row have met: column j, once for each ray",
@@ -81,6 +84,8 @@ Json files_of_rows() {
   for (std::size_t half = 0; half < 2; ++half)
     for (std::size_t which = 0; which < meaning.size(); ++which)
       part[file_of_half({}, which, half).string()] = meaning.at(which);
+  if (is_specular)
+    for (const auto& [name, meaning_of_file] : meaning_of_stop_files()) part[name] = meaning_of_file;
   part[file_name::lamps] = "first patch of each lamp that is apart from the rows, and the one after its last";
   for (const char* name : file_name::lamp_factors)
     part[name] = "form factors to these lamps as wholes, row by row, a column for each; unit 1";
@@ -96,7 +101,8 @@ Json files_of_rows() {
   return part;
 }
 
-std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const std::string& command_line) {
+std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const RowsByClass& by_class,
+                         const std::string& command_line) {
   const LostShare& lost = found.exchange.rows.lost;
   Json json;
   json["kind"] = file_name::kind;
@@ -114,8 +120,14 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
                      {"rays", found.plan.assembly.rays},
                      {"seed", found.plan.assembly.seed},
                      {"lost_share_rays", lost.rays_per_patch}};
+  const bool is_specular = !found.exchange.specular_kinds.empty();
+  json["specular"] = is_specular;
+  if (is_specular) {
+    json["classes"] = Json::array();
+    for (const WayClass& way_class : by_class.classes) json["classes"].push_back(name_of(way_class, scene));
+  }
   json["counts"] = {{"rays", found.exchange.rows.rays}, {"shadow_rays", found.exchange.rows.shadow_rays}};
-  json["files"] = files_of_rows();
+  json["files"] = files_of_rows(is_specular);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -164,16 +176,6 @@ double row_sum(const RayRows& rows, std::size_t i) {
   for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
     sum += static_cast<double>(rows.entries[k].form_factor);
   return sum;
-}
-
-// Of the mean of both halves.
-Eigen::VectorXd row_sums_of(const TracedRows& rows) {
-  Eigen::VectorXd sums(rows.area.size());
-  for (Eigen::Index i = 0; i < sums.size(); ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    sums[i] = 0.5 * (row_sum(rows.halves[0], row) + row_sum(rows.halves[1], row));
-  }
-  return sums;
 }
 
 // Every row that has entries sums up to what its patch sees.
@@ -232,6 +234,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
   };
   const TracedRows& rows = found.exchange.rows;
+  const RowsByClass by_class = rows_by_class(rows, scene, SpecularFaces(scene, reflections_of(found.plan)));
   write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
     for (std::size_t half = 0; half < 2; ++half) {
       tell(0.4 * static_cast<double>(half));
@@ -239,15 +242,19 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     }
     tell(0.8);
     write_lamps(in, found.exchange);
+    if (!found.exchange.specular_kinds.empty()) {
+      write_kinds(in / file_name::specular_kinds, found.exchange);
+      write_classes(in, by_class);
+    }
     write_as<float>(in / file_name::hit_distance, rows.distance);
     write_npy(in / file_name::directed, std::span<const std::uint8_t>(rows.directed));
     write_npy(in / file_name::area, rows.area);
     write_shares(in, rows.lost);
     tell(0.9);
-    write_mesh(in / file_name::mesh, scene, {found.mesh, rows.area, row_sums_of(rows), {}});
+    write_mesh(in / file_name::mesh, scene, {found.mesh, found.area, found.row_sum, {}});
     tell(1);
     write_stored_scene(in / file_name::scene, scene, found.plan.sides);
-    write_bytes(in / file_name::info, info_of_rows(scene, found, command_line));
+    write_bytes(in / file_name::info, info_of_rows(scene, found, by_class, command_line));
   });
 }
 
@@ -260,9 +267,15 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
   rows.area = shares.area;
   rows.lost = shares.lost;
   const Eigen::VectorXd wanted = expected_row_sum(rows.lost);
+  auto kinds = info.is_specular ? read_kinds(folder / file_name::specular_kinds) : std::vector<std::array<double, 2>>();
   for (std::size_t half = 0; half < 2; ++half) {
-    rows.halves.at(half) = read_half(folder, half, patches);
-    require_sums(file_of_half(folder, 2, half), rows.halves.at(half), wanted);
+    RayRows& of_half = rows.halves.at(half);
+    of_half = read_half(folder, half, patches);
+    if (info.is_specular) {
+      read_stops(folder, half, {patches, kinds.size()}, of_half);
+    } else {
+      require_sums(file_of_half(folder, 2, half), of_half, wanted);
+    }
   }
   const LargeArray<float> distance = read_npy_numbers<float>(folder / file_name::hit_distance, patches);
   rows.distance.assign(distance.begin(), distance.end());
@@ -277,6 +290,7 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
     factors.halves.at(half) =
         read_lamp_values(folder / file_name::lamp_factors.at(half), patches, exchange.lamps.size());
   factors.standard_error = read_lamp_values(folder / file_name::lamp_standard_error, patches, exchange.lamps.size());
+  exchange.specular_kinds = std::move(kinds);
   return exchange;
 }
 

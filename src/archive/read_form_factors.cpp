@@ -79,6 +79,8 @@ FormFactorInfo info_of(const nlohmann::json& json) {
   const nlohmann::json& options = json.at("options");
   if (info.storage == Storage::rays) {
     info.rays = options.at("rays").get<int>();
+    // In folders of earlier versions what goes on is in the form factors.
+    info.is_specular = json.value("specular", false);
     if (info.rays < 1) throw std::out_of_range("an option has a value that it cannot have");
     return info;
   }

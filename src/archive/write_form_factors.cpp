@@ -173,15 +173,17 @@ std::string info_json(const FormFactorResult& result) {
 
 // hits_0.npy and the like.
 bool is_of_half(const std::string& name) {
-  return std::any_of(file_name::of_half.begin(), file_name::of_half.end(),
-                     [&](const std::string& begin) { return name == begin + "_0.npy" || name == begin + "_1.npy"; });
+  const auto is_one = [&](const std::string& begin) { return name == begin + "_0.npy" || name == begin + "_1.npy"; };
+  return std::any_of(file_name::of_half.begin(), file_name::of_half.end(), is_one) ||
+         std::any_of(file_name::of_stops.begin(), file_name::of_stops.end(), is_one) ||
+         std::any_of(file_name::of_classes.begin(), file_name::of_classes.end(), is_one);
 }
 
 }  // namespace
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_form_factors(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 19> names = {file_name::dense,
+  static constexpr std::array<std::string_view, 20> names = {file_name::dense,
                                                              file_name::sparse,
                                                              file_name::dense_error,
                                                              file_name::sparse_error,
@@ -199,7 +201,8 @@ bool is_earlier_form_factors(const std::filesystem::path& folder) {
                                                              file_name::lamps,
                                                              file_name::lamp_factors[0],
                                                              file_name::lamp_factors[1],
-                                                             file_name::lamp_standard_error};
+                                                             file_name::lamp_standard_error,
+                                                             file_name::specular_kinds};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const bool is_named = std::find(names.begin(), names.end(), name) != names.end() || is_of_half(name);

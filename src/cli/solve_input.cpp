@@ -127,13 +127,7 @@ SolveInput read_input(const SolveArguments& arguments) {
   input.request.mesh.kept_sides = std::move(sides);
   require_room_for(folder, info, input.scene, input.request);
   if (info.storage == Storage::rays) {
-    const Reflections reflections =
-        contains(input.request.effects.skip, Effect::mirrors) ? Reflections::kept : Reflections::followed;
-    input.ray_exchange = [folder, info, held = held_shares(input.scene, reflections)](const PatchMesh& mesh) {
-      RayExchange exchange = read_ray_rows(folder, info, mesh);
-      require_same_panes(folder, {exchange.rows.area, exchange.rows.lost}, mesh, held);
-      return exchange;
-    };
+    input.ray_exchange = [folder, info](const PatchMesh& mesh) { return read_ray_rows(folder, info, mesh); };
     return input;
   }
   input.exchange = [folder, info, held = held_shares(input.scene, Reflections::kept)](const PatchMesh& mesh) {

@@ -67,6 +67,14 @@ RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh
   return found;
 }
 
+LampFactors factors_of_lamps(const std::vector<PatchRange>& lamps, const Run& run, const Plan& plan,
+                             const PatchMesh& mesh) {
+  std::vector<LampSide> sides;
+  for (const PatchRange& lamp : lamps) sides.push_back({mesh.polygon[lamp.begin], mesh.side[lamp.begin]});
+  return lamp_factors(run.scene, mesh, run.tracing->between_patches(), sides,
+                      {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+}
+
 namespace {
 
 // What is bright and neither apart nor was bright when the rows were traced: their rays would miss most of it.
@@ -101,6 +109,11 @@ LampValues joined(const LampValues& some, const LampValues& more) {
 RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                        const RadiosityProblem& problem) {
   const std::vector<LampSide> lamps = new_lamps(run, mesh, problem, known);
+  if (run.tracing->has_specular_faces() || !known.specular_kinds.empty()) {
+    for (const LampSide& lamp : lamps) known.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
+    known.lamp_factors = factors_of_lamps(known.lamps, run, plan, mesh);
+    return known;
+  }
   if (lamps.empty()) return known;
   const LampFactors more = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
                                         {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);

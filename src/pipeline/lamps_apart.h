@@ -24,8 +24,13 @@ std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, con
 /// Their factors, without rows. \throws Cancelled.
 RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem);
 
-/// With the factors of lamps that are bright, and were dark when the rows were traced. \throws Cancelled; InputError
-/// when these are too many.
+/// The factors of lamps, the patches of a side each, by the clear faces of the run. \throws Cancelled.
+LampFactors factors_of_lamps(const std::vector<PatchRange>& lamps, const Run& run, const Plan& plan,
+                             const PatchMesh& mesh);
+
+/// With the factors of lamps that are bright, and were dark when the rows were traced; of all lamps where
+/// there are clear faces or mirrors, which may have other colours now. \throws Cancelled; InputError when the new ones
+/// are too many.
 RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                        const RadiosityProblem& problem);
 

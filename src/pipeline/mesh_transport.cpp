@@ -72,15 +72,19 @@ LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTran
   return over_exposed_part(lit_problem(run, meshed.plan, mesh, transport.area), mesh, transport.facts.lost);
 }
 
-RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
+RawTransport raw_transport(RayTransportAndLight by_rays) {
   RawTransport found;
-  if (plan.assembly.storage == Storage::rays) {
-    found.by_rays = ray_light(run, plan, mesh);
-    found.facts.lost = found.by_rays->rows.lost;
-    found.facts.counts.shadow_rays = found.by_rays->rows.shadow_rays;
-    found.facts.closure = "each row by itself";
-    return found;
-  }
+  found.facts.lost = by_rays.rows.lost;
+  found.facts.counts.shadow_rays = by_rays.rows.shadow_rays;
+  found.facts.closure = "each row by itself";
+  found.by_rays = std::move(by_rays);
+  return found;
+}
+
+RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
+  if (plan.assembly.storage == Storage::rays)
+    return raw_transport(ray_light(run, mesh, exchange_and_light(run, plan, mesh)));
+  RawTransport found;
   if (plan.accuracy.error_bars) {
     found.assembly = assembly_of(run, plan, mesh, known);
     found.exchange = exchange_of(*found.assembly, mesh, lost_share_of(run, plan, mesh, known));

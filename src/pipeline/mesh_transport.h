@@ -41,6 +41,9 @@ LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTran
 /// Cancelled.
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known);
 
+/// That of rows of rays which are known.
+RawTransport raw_transport(RayTransportAndLight by_rays);
+
 /// The same after closure: each row sums up to what its patch sees. Without AssemblyOptions::close the rows are as they
 /// were found. Rows on demand are not closed, either, whatever the plan says; their facts stay those of `raw`. The
 /// mesh, and for rows on demand the run's tracing, have to outlive the transport. \throws Cancelled.

@@ -40,18 +40,40 @@ Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMes
   return scattering;
 }
 
-Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
+namespace {
+
+// What patches hold of light from all directions alike.
+Eigen::ArrayXd held_shares_of(const Simulation& simulation, const Scene& scene) {
   const SpecularFaces specular(scene, reflections_of(simulation.plan));
-  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
-    const double held = specular.held(simulation.mesh.polygon[i], simulation.mesh.side[i]);
-    if (held == 1) continue;
-    RadiosityProblem& problem = simulation.problem;
-    Solution& solution = simulation.solution;
-    problem.area[i] /= held;
+  const PatchMesh& mesh = simulation.mesh;
+  Eigen::ArrayXd held(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) held[i] = specular.held(mesh.polygon[i], mesh.side[i]);
+  return held;
+}
+
+// From areas a to areas a / factor, with B, E and rho times the factor: the same flux.
+Simulation of_other_parts(Simulation simulation, const Eigen::ArrayXd& factor) {
+  RadiosityProblem& problem = simulation.problem;
+  Solution& solution = simulation.solution;
+  for (Eigen::Index i = 0; i < factor.size(); ++i) {
+    if (factor[i] == 1) continue;
+    problem.area[i] /= factor[i];
     for (Field* field : {&problem.scattering.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
-      if (field->rows() > 0) field->row(i) *= held;
+      if (field->rows() > 0) field->row(i) *= factor[i];
   }
   return simulation;
+}
+
+}  // namespace
+
+Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
+  const Eigen::ArrayXd held = held_shares_of(simulation, scene);
+  return of_other_parts(std::move(simulation), held);
+}
+
+Simulation of_held_parts(Simulation simulation, const Scene& scene) {
+  const Eigen::ArrayXd held = held_shares_of(simulation, scene);
+  return of_other_parts(std::move(simulation), 1 / held);
 }
 
 }  // namespace patchlight

@@ -25,4 +25,7 @@ Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMes
 /// The same simulation with area, reflectance, exitance and radiosity of whole patches, holes and all.
 Simulation of_whole_patches(Simulation simulation, const Scene& scene);
 
+/// And back: as problem_of() has them.
+Simulation of_held_parts(Simulation simulation, const Scene& scene);
+
 }  // namespace patchlight

@@ -5,6 +5,7 @@
 
 #include "transport/ray_exchange.h"
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct RayFormFactors {
   Plan plan;
   PatchMesh mesh;
   RayExchange exchange;
+  Eigen::VectorXd area;                 ///< m^2, exposed, of what patches hold
+  Eigen::VectorXd row_sum;              ///< what each patch sees: both of light of the mean of all colours
   std::vector<std::string> notes = {};  ///< on polygons that lie one on the other
 };
 

@@ -5,12 +5,10 @@
 #include "base/vectors.h"
 #include "mesh/means_around.h"
 #include "pipeline/conserved_flux.h"
-#include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
-#include "transport/bright_patches.h"
-#include "transport/row_blocks.h"
 #include "transport/smoothing.h"
+#include "transport/weighed_rows.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -19,74 +17,6 @@
 
 namespace patchlight {
 namespace {
-
-// Half as many towards bright patches as over the hemisphere, in packets of both halves.
-RayOptions rays_as_planned(const AssemblyOptions& assembly) {
-  constexpr int packets = 32;
-  return {.rays = assembly.rays,
-          .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
-          .lost_share_rays = assembly.lost_share_rays,
-          .seed = assembly.seed};
-}
-
-// H = F_lamps E_lamps for factors of one value per patch and lamp.
-Field irradiance_by(const LampValues& factors, const Field& exitance) {
-  return (factors.cast<double>().matrix() * exitance.matrix()).array();
-}
-
-Field emitted_in_rows(const RayLight& light) {
-  Field exitance = light.lit.problem.exitance;
-  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
-    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
-  return exitance;
-}
-
-// Light that comes from no patch of the rows.
-Field direct_of(const RayLight& light) {
-  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
-  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
-    if (more->size() > 0) direct += *more;
-  return direct;
-}
-
-// The light of the lamps apart, as means over whole patches.
-RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
-  RayLight light{.lit = std::move(lit),
-                 .is_apart = {},
-                 .by_lamps = {},
-                 .lamp_standard_error = {},
-                 .in_mirrors = {},
-                 .distance = {},
-                 .is_missed = {}};
-  const RadiosityProblem& problem = light.lit.problem;
-  light.is_apart.assign(patches, 0);
-  Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
-  for (std::size_t k = 0; k < exchange.lamps.size(); ++k) {
-    const auto [begin, end] = exchange.lamps[k];
-    exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(begin);
-    std::fill(light.is_apart.begin() + begin, light.is_apart.begin() + end, 1);
-  }
-  const LampFactors& factors = exchange.lamp_factors;
-  for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
-  light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
-  return light;
-}
-
-// What the light makes bright.
-BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
-  const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
-  return {mesh, summed_over_bands(expected), bright, run.tracing->between_patches()};
-}
-
-// Rows, with rays towards that.
-TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
-  const Occluder& occluder = run.tracing->between_patches();
-  const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
-  const RayOptions options = rays_as_planned(plan.assembly);
-  if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
-  const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
-  return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
-}
 
 // The share of what each patch holds back that is exposed.
 Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
@@ -97,41 +27,13 @@ Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen
   return exposed;
 }
 
-struct ExchangeAndLight {
-  RayExchange exchange;
-  RayLight light;  // means over whole patches
-};
-
-ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
-  LitProblem lit = lit_problem(run, plan, mesh, area);
-  const bool is_known = static_cast<bool>(run.with.ray_exchange);
-  RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_lamps(run, plan, mesh, lit.problem);
-  RayLight light = light_of(exchange, std::move(lit), mesh.size());
-  light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
-  if (!is_known) {
-    exchange.rows = traced_rows(run, plan, mesh, light);
-    return {std::move(exchange), std::move(light)};
-  }
-  // Not stored, as it is of the materials.
-  exchange.rows.lost.clear = clear_shares(mesh, run.tracing->between_patches());
-  const BrightPatches now = bright_patches_of(run, mesh, light);
-  for (PatchIndex i = 0; i < mesh.size(); ++i)
-    light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);
-  light.rays_per_patch = static_cast<double>(exchange.rows.rays) / mesh.size();
-  return {std::move(exchange), std::move(light)};
-}
-
 }  // namespace
 
-RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  return exchange_and_light(run, plan, mesh).exchange;
-}
-
-RayTransportAndLight ray_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  // 1. Rows, and light where it first arrives.
-  auto [exchange, light] = exchange_and_light(run, plan, mesh);
+RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found) {
+  // 1. Rows in the colour of this run.
+  RayExchange& exchange = found.exchange;
+  RayLight& light = found.light;
+  exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.tracing->between_patches());
   light.distance = std::move(exchange.rows.distance);
 
   // 2. Means over the exposed part of each patch, which is known but for its own error.

@@ -22,6 +22,7 @@ struct Run {
   std::shared_ptr<const Tracing> tracing;
   const Steps& with;
   const Observer& observer;
+  bool is_part = false;  ///< it has some of the bands of another run, see LightColours
 };
 
 /// What of a run its steps give.

@@ -171,7 +171,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
   Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
   result.interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
-  require_reflecting(run.scene, simulation.problem, result.interest);
+  if (!run.is_part) require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
   const UnseenDifferences unseen =
       unseen_differences_of(run, simulation, transport, weight, rays_of_quarters(simulation));

@@ -177,15 +177,22 @@ Decision mirrors(const EffectFacts& facts, const Request& request) {
                    request);
 }
 
-// What the scene has and no run simulates.
-std::vector<Decision> not_simulated(const EffectFacts& facts) {
+// What the scene has and the run does not simulate.
+std::vector<Decision> not_simulated(const EffectFacts& facts, const Request& request) {
   std::vector<Decision> decisions;
   const auto add = [&](Effect effect, std::size_t count, const std::string& reason) {
     if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
   };
-  add(Effect::bands_of_panes, facts.coloured_specular,
-      counted(facts.coloured_specular, "clear or mirroring material") +
-          ": of light between patches the same share of all bands is let through or reflected");
+  const std::string coloured = counted(facts.coloured_specular, "clear or mirroring material");
+  if (request.assembly.storage != Storage::rays) {
+    add(Effect::bands_of_panes, facts.coloured_specular,
+        coloured +
+            ": of light between patches the same share of all bands is let through or reflected; "
+            "assembly.storage=rays tells bands apart");
+  } else if (facts.coloured_specular > 0) {
+    decisions.push_back({Effect::bands_of_panes, true, "colours of " + coloured + " change light between patches",
+                         "form factors and a solution for each of these colours, from the same rays"});
+  }
   add(Effect::gloss, facts.gloss, counted(facts.gloss, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;
@@ -233,7 +240,7 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
   }
   decisions.push_back(mirrors(facts, request));
   decisions.push_back(closure(request, decisions[1].simulate));
-  for (Decision& decision : not_simulated(facts)) decisions.push_back(std::move(decision));
+  for (Decision& decision : not_simulated(facts, request)) decisions.push_back(std::move(decision));
   return decisions;
 }
 

@@ -4,6 +4,7 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -93,6 +94,30 @@ Scene scene_for_sensors(Scene scene, const Plan& plan) {
 
 Scene scene_as_planned(Scene scene, const Plan& plan) {
   return with_light(std::move(scene), plan, [&](Effect effect) { return !simulates(plan, effect); });
+}
+
+Scene in_bands(Scene scene, const std::vector<Eigen::Index>& bands) {
+  // 1. What they stand for.
+  const Bands all = bands_of(scene);
+  scene.bands.clear();
+  double weight = 0;
+  for (const Eigen::Index band : bands) {
+    scene.bands.push_back(all[static_cast<std::size_t>(band)]);
+    weight += scene.bands.back().luminous_weight;
+  }
+  for (Band& band : scene.bands)
+    band.luminous_weight = weight > 0 ? band.luminous_weight / weight : 1 / static_cast<double>(bands.size());
+
+  // 2. Their values. A clear polygon reflects as glass does, also where it lets nothing through.
+  for (Material& material : scene.materials) {
+    if ((material.transmittance > 0).any())
+      material.transmittance = material.transmittance.max(std::numeric_limits<double>::min());
+  }
+  return with_spectra(std::move(scene), [&](const Spectrum& spectrum) {
+    Spectrum chosen(static_cast<Eigen::Index>(bands.size()));
+    for (Eigen::Index k = 0; k < chosen.size(); ++k) chosen[k] = spectrum[bands[static_cast<std::size_t>(k)]];
+    return chosen;
+  });
 }
 
 Scene in_one_band(Scene scene, Eigen::Index band) {

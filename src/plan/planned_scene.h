@@ -5,6 +5,8 @@
 
 #include "visibility/occluder.h"
 
+#include <vector>
+
 namespace patchlight {
 
 /// Which polygons can stand between two patches: those that may, all when occlusion is forced, none when it is skipped.
@@ -22,5 +24,9 @@ Scene scene_for_sensors(Scene scene, const Plan& plan);
 
 /// The scene with a single band, that one of its own.
 Scene in_one_band(Scene scene, Eigen::Index band);
+
+/// The scene with some of its bands, in this order; their luminous weights sum up to 1 again. What is clear in some
+/// band stays clear in all: where it lets nothing through, it lets the smallest share through that there is.
+Scene in_bands(Scene scene, const std::vector<Eigen::Index>& bands);
 
 }  // namespace patchlight

@@ -23,6 +23,7 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
   for (const Side side : {Side::front, Side::back}) {
     const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
     const std::vector<Pane> panes = panes_of(material);
+    if (is_clear) index_ += material.index / 2;
     for (std::size_t band = 0; band < panes.size() && is_clear; ++band) {
       const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
         return part.pane.index == panes[band].index && part.pane.internal == panes[band].internal;
@@ -36,6 +37,7 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
     }
     if (is_clear || reflections == Reflections::kept) continue;
     const auto s = static_cast<std::size_t>(side);
+    is_mirror_[s] = is_mirror(scene, polygon, side) ? 1 : 0;
     for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band)
       mirrored_[s] += bands[static_cast<std::size_t>(band)].luminous_weight * material.specular_reflectance[band];
     held_[s] = held_of(mirrored_[s]);
@@ -71,6 +73,27 @@ double SpecularFace::reflectance(Side side, double cosine) const {
 double SpecularFace::kept(double cosine) const { return held_of(transmittance(cosine) + reflected_by_panes(cosine)); }
 
 double SpecularFace::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
+
+SpecularShares SpecularFace::shares(Side side, double cosine) const {
+  if (parts_.empty()) {
+    const auto s = static_cast<std::size_t>(side);
+    return {0, mirrored_[s], held_[s], 1};
+  }
+  SpecularShares shares{transmittance(cosine), reflected_by_panes(cosine), 0, 0};
+  shares.held = held_of(shares.transmitted + shares.mirrored);
+  shares.relative_held = shares.held / held_[0];
+  return shares;
+}
+
+double SpecularFace::mirrored_rays(Side side, double cosine) const {
+  if (parts_.empty()) return is_mirror_[static_cast<std::size_t>(side)];
+  return reflections_ == Reflections::kept ? 0 : specular_reflectance(Pane{index_, 1}, cosine);
+}
+
+double SpecularFace::kind(Side side) const {
+  if (parts_.empty()) return is_mirror_[static_cast<std::size_t>(side)];
+  return reflections_ == Reflections::kept ? -1 : 1 + index_;
+}
 
 // What a mirror keeps is the same at all angles.
 double SpecularFace::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
@@ -116,6 +139,19 @@ double SpecularFaces::reflectance(PolygonIndex polygon, const Vector& direction)
   if (!face) return 0;
   const Side met = normals_[polygon].dot(direction) < 0 ? Side::front : Side::back;
   return face->reflectance(met, cosine_between(normals_[polygon], direction));
+}
+
+SpecularShares SpecularFaces::shares(PolygonIndex polygon, Side side, double cosine) const {
+  const SpecularFace* const face = at(polygon);
+  return face ? face->shares(side, cosine) : SpecularShares();
+}
+
+std::vector<std::array<double, 2>> SpecularFaces::kinds(std::size_t polygons) const {
+  std::vector<std::array<double, 2>> kinds(polygons, {0, 0});
+  for (PolygonIndex p = 0; p < polygons; ++p) {
+    if (const SpecularFace* const face = at(p)) kinds[p] = {face->kind(Side::front), face->kind(Side::back)};
+  }
+  return kinds;
 }
 
 Vector SpecularFaces::mirrored(PolygonIndex polygon, const Vector& direction) const {

@@ -5,6 +5,7 @@
 #include "light/pane.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,14 @@ namespace patchlight {
 
 /// What becomes of light that a face reflects as a mirror does: the face keeps it, or it goes on.
 enum class Reflections : bool { kept, followed };
+
+/// What becomes of light that meets a specular face at an angle, as shares of it.
+struct SpecularShares {
+  double transmitted = 0;
+  double mirrored = 0;
+  double held = 1;           ///< to be absorbed or scattered
+  double relative_held = 1;  ///< over that of light from all directions alike
+};
 
 /// A clear polygon or a mirror as light between patches meets it: one number for all bands, weighted as luminance is.
 /// What a clear one lets through and reflects is the same both ways, the mean of its two sides; each side of a mirror
@@ -33,6 +42,22 @@ class SpecularFace {
   /// The share that is kept at an angle, over held(): its mean over the hemisphere, weighted as irradiance is, is 1.
   double relative_held(double cosine) const;
 
+  /// All of these.
+  SpecularShares shares(Side side, double cosine) const;
+
+  /// With which probability a ray that follows light is mirrored rather than let through: the reflectance of a pane of
+  /// the index of refraction that absorbs nothing, so that it is of the geometry and not of the colour; 1 of a side
+  /// that is a mirror, 0 where clear ones keep what they reflect.
+  double mirrored_rays(Side side, double cosine) const;
+
+  /// Whether rays go on from a side.
+  bool is_specular(Side side) const { return is_clear() || is_mirror_[static_cast<std::size_t>(side)] != 0; }
+  bool is_clear() const { return !parts_.empty(); }
+
+  /// A number for what mirrored_rays() rests on: 0 of a side from which no ray goes on, 1 of a mirror, the index of
+  /// refraction and 1 of a clear one, less than 0 where that keeps what it reflects.
+  double kind(Side side) const;
+
   /// The cosine that belongs to a number of [0, 1) if directions are distributed as what is kept of light from all
   /// directions alike.
   double held_cosine(double u) const;
@@ -47,8 +72,10 @@ class SpecularFace {
   double reflected_by_panes(double cosine) const;
 
   Reflections reflections_;
-  std::vector<Part> parts_;           // each pane once; none of a mirror
-  std::array<double, 2> mirrored_{};  // by the sides of a mirror
+  double index_ = 0;                         // of clear ones, the mean of both sides
+  std::array<std::uint8_t, 2> is_mirror_{};  // by sides, in some band
+  std::vector<Part> parts_;                  // each pane once; none of a mirror
+  std::array<double, 2> mirrored_{};         // by the sides of a mirror
   std::vector<double> held_upto_;     // of panes: the share of what is kept that comes at cosines up to k / steps
   std::array<double, 2> held_{1, 1};  // of front and back
 };
@@ -69,6 +96,18 @@ class SpecularFaces {
   /// SpecularFace::reflectance() of the side that is met; 0 of all others.
   double reflectance(PolygonIndex polygon, const Vector& direction) const;
 
+  /// The face of a polygon that is specular; null of all others.
+  const SpecularFace* at(PolygonIndex polygon) const;
+
+  /// The unit normal of a polygon's front; there must be specular ones.
+  const Vector& normal(PolygonIndex polygon) const { return normals_[polygon]; }
+
+  /// SpecularFace::shares() of a polygon; all is held by others.
+  SpecularShares shares(PolygonIndex polygon, Side side, double cosine) const;
+
+  /// SpecularFace::kind() of front and back of each of so many polygons.
+  std::vector<std::array<double, 2>> kinds(std::size_t polygons) const;
+
   /// The direction in which a mirror is seen in another: that after the reflection at a polygon of this scene that is
   /// specular.
   Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
@@ -85,8 +124,6 @@ class SpecularFaces {
   Vector held_direction(PolygonIndex polygon, double u, double v) const;
 
  private:
-  const SpecularFace* at(PolygonIndex polygon) const;  // null: of all others
-
   std::vector<SpecularFace> faces_;        // each pair of materials once
   std::vector<std::uint32_t> of_polygon_;  // none where no polygon is specular, as normals
   std::vector<Vector> normals_;            // of the fronts

@@ -27,7 +27,6 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
     upto_[k] /= flux;
     density_[i] = static_cast<float>(expected[i] / flux);
     sampled_.push_back(sampled_patch(patch_shape(mesh, i), mesh.polygon[i], occluder.frame()));
-    held_.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i], mesh.side[i])));
   }
   if (!patches_.empty()) upto_.back() = 1;
 
@@ -43,7 +42,7 @@ BrightPatches::Chosen BrightPatches::at(double u) const {
   while (k + 1 < upto_.size() && upto_[k] <= u) ++k;
   const double before = k == 0 ? 0 : upto_[k - 1];
   const auto stretched = static_cast<float>(std::clamp((u - before) / (upto_[k] - before), 0.0, 1 - 0x1p-24));
-  return {patches_[k], &sampled_[k], held_[k], stretched};
+  return {patches_[k], &sampled_[k], stretched};
 }
 
 }  // namespace patchlight

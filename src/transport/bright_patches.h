@@ -29,7 +29,6 @@ class BrightPatches {
   struct Chosen {
     PatchIndex patch = 0;
     const SampledPatch* sampled = nullptr;
-    float held = 1;  ///< what it holds back of the light that arrives; 1 but of clear ones
     float u = 0;
   };
   Chosen at(double u) const;
@@ -39,7 +38,6 @@ class BrightPatches {
   std::vector<double> upto_;          // per bright patch: the probability of it and all before
   std::vector<std::uint32_t> guide_;  // per equal part of [0, 1): the first that may be chosen there
   std::vector<SampledPatch> sampled_;
-  std::vector<float> held_;
   std::vector<float> density_;  // per patch of the mesh
 };
 

@@ -36,12 +36,30 @@ struct HemisphereSampler {
   const PatchMesh& mesh;
   const Occluder& occluder;
   Sights sights;
+  bool ends_at_specular;
 
+  std::vector<Seen> look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   std::vector<Ray> hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const;
   std::vector<Seen> look_together(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
+
+// What rays meet, the first polygons where specular ones are as others.
+std::vector<Seen> HemisphereSampler::look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
+  if (!ends_at_specular) return sights.of_rays(patch, rays, seed);
+  std::vector<Seen> seen;
+  for (const SeenWay& one : sights.along_ways(patch, rays, seed)) {
+    if (one.way.empty()) {
+      seen.push_back({one.end, {}});
+      continue;
+    }
+    const Hit& first = one.way.front().hit;
+    const Sight there = sights.has_patches(first) ? Sight::patch : Sight::back;
+    seen.push_back({one.way.size() == 1 && one.way[0].onward == Onward::ends ? one.end : there, first});
+  }
+  return seen;
+}
 
 // `groups` starting points, each with `size` directions.
 std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const {
@@ -53,9 +71,11 @@ std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // The first points of the sequence, as every eighth alone would lie in an eighth of the patch.
     const auto& start = samples[k / static_cast<std::size_t>(size)];
-    rays.push_back({square_to_quad(corners.points, start[0], start[1]),
-                    frame * occluder.held_direction(mesh.polygon[patch], samples[k][2], samples[k][3]),
-                    mesh.polygon[patch]});
+    rays.push_back(
+        {square_to_quad(corners.points, start[0], start[1]),
+         frame * (ends_at_specular ? square_to_cosine_hemisphere(samples[k][2], samples[k][3])
+                                   : occluder.held_direction(mesh.polygon[patch], samples[k][2], samples[k][3])),
+         mesh.polygon[patch]});
   }
   return rays;
 }
@@ -74,7 +94,7 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
 // lies against it: of two faces in one place a ray meets either.
 std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::vector<Ray>& rays,
                                                    std::uint32_t seed) const {
-  std::vector<Seen> seen = sights.of_rays(patch, rays, seed);
+  std::vector<Seen> seen = look(patch, rays, seed);
   for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
     const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == 0) continue;
@@ -119,7 +139,7 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
 
 Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Seen> seen = sights.of_rays(patch, hemisphere_rays(patch, rays, 1, seed), seed);
+  const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
   if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   return measure_groups(patch, hemisphere_rays(patch, rays, rays_per_point, seed), seed);
@@ -154,7 +174,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder)};
+  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder), known.ends_at_specular};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());

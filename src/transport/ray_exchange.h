@@ -5,6 +5,7 @@
 #include "transport/lamp_factors.h"
 #include "transport/ray_rows.h"
 
+#include <array>
 #include <vector>
 
 namespace patchlight {
@@ -16,6 +17,8 @@ struct RayExchange {
   TracedRows rows;
   std::vector<PatchRange> lamps;  ///< what is found apart: the patches of a side each, which emit alike
   LampFactors lamp_factors;       ///< per patch and lamp
+  std::vector<std::array<double, 2>> specular_kinds = {};  ///< SpecularFaces::kinds() of the polygons by which rows
+                                                           ///< were traced; empty where none is specular
 };
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "transport/row_blocks.h"
 #include "transport/row_tracer.h"
+#include "transport/weighed_rows.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -22,6 +23,7 @@ struct RawHalf {
   LargeArray<PatchIndex> hits;           // of patch i from room[i] on
   std::vector<std::uint32_t> hit_count;  // per patch
   std::vector<std::uint32_t> entry_count;
+  std::vector<std::uint32_t> stop_count;  // empty where nothing is specular
 };
 
 struct RawRows {
@@ -33,7 +35,7 @@ struct RawRows {
   std::vector<float> distance;
 };
 
-RawRows room_for(const std::vector<std::uint32_t>& counts) {
+RawRows room_for(const std::vector<std::uint32_t>& counts, bool is_specular) {
   const std::size_t size = counts.size();
   RawRows raw;
   raw.room.assign(size + 1, 0);
@@ -42,6 +44,7 @@ RawRows room_for(const std::vector<std::uint32_t>& counts) {
     half.hits.resize(raw.room.back());
     half.hit_count.resize(size);
     half.entry_count.resize(size);
+    if (is_specular) half.stop_count.resize(size);
   }
   raw.escaped.resize(size);
   raw.sees_backs.resize(size);
@@ -55,6 +58,7 @@ void trace_task(const RowTracer& tracer, std::size_t t, RawRows& raw) {
   const std::size_t end = std::min((t + 1) * patches_at_once, tracer.counts().size());
   for (std::size_t i = t * patches_at_once; i < end; ++i) {
     const std::array<std::size_t, 2> before{task.halves[0].size(), task.halves[1].size()};
+    const std::array<std::size_t, 2> stops_before{task.stops[0].size(), task.stops[1].size()};
     const PatchRays told = tracer.trace(static_cast<PatchIndex>(i), task);
     for (std::size_t half = 0; half < 2; ++half) {
       RawHalf& rows = raw.halves[half];
@@ -62,6 +66,8 @@ void trace_task(const RowTracer& tracer, std::size_t t, RawRows& raw) {
                 rows.hits.begin() + static_cast<std::ptrdiff_t>(raw.room[i]));
       rows.hit_count[i] = static_cast<std::uint32_t>(told.hits[half].size());
       rows.entry_count[i] = static_cast<std::uint32_t>(task.halves[half].size() - before[half]);
+      if (tracer.is_specular())
+        rows.stop_count[i] = static_cast<std::uint32_t>(task.stops[half].size() - stops_before[half]);
     }
     const double rays = 2.0 * tracer.counts()[i];
     raw.escaped[i] = static_cast<std::uint32_t>(told.escaped);
@@ -79,6 +85,24 @@ struct PatchSpan {
 PatchSpan patches_of(std::size_t block, std::size_t patches) {
   constexpr std::size_t size = RowBlocks::patches_of_a_block;
   return {block * size, std::min((block + 1) * size, patches)};
+}
+
+// The stops of a block in one half, likewise.
+template <class Show>
+bool show_stops(RawHalf& rows, std::vector<SpecularStop>& stops, const PatchSpan& patches, const Show& show) {
+  std::size_t count = 0;
+  for (std::size_t i = patches.begin; i < patches.end; ++i) {
+    show(rows.stop_count[i]);
+    count += rows.stop_count[i];
+  }
+  if (!show.has_room_for(4 * count)) return false;
+  stops.resize(count);
+  for (SpecularStop& stop : stops) {
+    show(stop.patch), show(stop.form_factor), show(stop.polygon), show(stop.bits);
+    const bool is_patch = stop.patch < rows.stop_count.size() || stop.patch >= SpecularStop::at_back;
+    if (!is_patch || static_cast<std::uint32_t>(stop.step()) >= ray_steps) return false;
+  }
+  return true;
 }
 
 // Shows all numbers that are known of a block, of 32 bits each, its entries all in its first task. Returns false when
@@ -108,6 +132,7 @@ bool show_block(RawRows& raw, std::size_t block, const Show& show) {
       show(entry.patch), show(entry.form_factor);
       if (entry.patch >= patches) return false;
     }
+    if (!rows.stop_count.empty() && !show_stops(rows, first.stops[half], {begin, end}, show)) return false;
   }
   return true;
 }
@@ -145,6 +170,9 @@ void gather_entries(RawRows& raw, std::size_t block) {
       std::vector<RayEntry>& more = raw.tasks[t].halves[half];
       into.halves[half].insert(into.halves[half].end(), more.begin(), more.end());
       more = {};
+      std::vector<SpecularStop>& more_stops = raw.tasks[t].stops[half];
+      into.stops[half].insert(into.stops[half].end(), more_stops.begin(), more_stops.end());
+      more_stops = {};
     }
     into.shadow_rays += std::exchange(raw.tasks[t].shadow_rays, 0);
   }
@@ -166,7 +194,7 @@ std::vector<std::uint8_t> taken_blocks(RawRows& raw, const RowBlocks* blocks) {
 
 // All rays.
 RawRows traced(const RowTracer& tracer, const RowBlocks* blocks, const Observer& observer) {
-  RawRows raw = room_for(tracer.counts());
+  RawRows raw = room_for(tracer.counts(), tracer.is_specular());
   const std::vector<std::uint8_t> taken = taken_blocks(raw, blocks);
   std::vector<std::atomic<std::size_t>> done(taken.size());
   parallel_for(raw.tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
@@ -194,6 +222,17 @@ LostShare escaped_shares(const RawRows& raw, const std::vector<std::uint32_t>& c
   return lost;
 }
 
+void put_stops_together(RawRows& raw, std::size_t half, RayRows& rows) {
+  rows.first_stop.push_back(0);
+  for (const std::uint32_t count : raw.halves[half].stop_count)
+    rows.first_stop.push_back(rows.first_stop.back() + count);
+  rows.stops.reserve(rows.first_stop.back());
+  for (RowEntries& task : raw.tasks) {
+    rows.stops.insert(rows.stops.end(), task.stops[half].begin(), task.stops[half].end());
+    task.stops[half] = {};
+  }
+}
+
 // Row by row without gaps; raw entries are let go.
 RayRows put_together(RawRows& raw, std::size_t half, const std::vector<std::uint32_t>& counts) {
   RawHalf& from = raw.halves[half];
@@ -215,28 +254,8 @@ RayRows put_together(RawRows& raw, std::size_t half, const std::vector<std::uint
     rows.entries.insert(rows.entries.end(), task.halves[half].begin(), task.halves[half].end());
     task.halves[half] = {};
   }
+  if (!from.stop_count.empty()) put_stops_together(raw, half, rows);
   return rows;
-}
-
-// Each row as a whole times what makes its sum that of `wanted`. Where there are hits their weight, in double
-// precision, takes what entries lose by rounding.
-void scale(RayRows& rows, const Eigen::VectorXd& wanted) {
-  parallel_for(rows.hit_weight.size(), [&](std::size_t i) {
-    const auto hits = static_cast<double>(rows.first_hit[i + 1] - rows.first_hit[i]);
-    double sum = 0;
-    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-      sum += static_cast<double>(rows.entries[k].form_factor);
-    const double all = sum + hits * rows.hit_weight[i];
-    if (!(all > 0)) return;
-    const double factor = wanted[static_cast<Eigen::Index>(i)] / all;
-    double stored = 0;
-    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k) {
-      float& entry = rows.entries[k].form_factor;
-      entry = static_cast<float>(factor * static_cast<double>(entry));
-      stored += static_cast<double>(entry);
-    }
-    rows.hit_weight[i] = hits > 0 ? (wanted[static_cast<Eigen::Index>(i)] - stored) / hits : 0;
-  });
 }
 
 struct MeasureBy {
@@ -246,12 +265,23 @@ struct MeasureBy {
   const Observer& observer;
 };
 
+// Of clear patches all rays are told by stops; what these let through is of their colour.
+LostShare without_clear(LostShare lost, const PatchMesh& mesh, const Occluder& occluder) {
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const SpecularFace* const face = occluder.specular_faces().at(mesh.polygon[i]);
+    if (face && face->is_clear()) lost.escaped[i] = lost.at_backs[i] = 0;
+  }
+  lost.clear = {};
+  return lost;
+}
+
 // Those of patches that see backs are measured with groups of rays, the others are known.
 LostShare with_backs(LostShare lost, const std::vector<std::uint32_t>& sees_backs, const MeasureBy& by) {
   std::vector<PatchIndex> place(sees_backs.size());
   for (std::size_t i = 0; i < place.size(); ++i) place[i] = sees_backs[i] != 0 ? no_patch : static_cast<PatchIndex>(i);
   lost.rays_per_patch = by.options.lost_share_rays;
-  return measure_lost_share(by.mesh, by.occluder, KnownShares{lost, place}, by.options.seed, by.observer);
+  const bool is_specular = !by.occluder.specular_faces().empty();
+  return measure_lost_share(by.mesh, by.occluder, KnownShares{lost, place, is_specular}, by.options.seed, by.observer);
 }
 
 }  // namespace
@@ -262,6 +292,7 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
   RawRows raw = traced(tracer, blocks, observer);
   TracedRows rows;
   rows.lost = with_backs(escaped_shares(raw, tracer.counts()), raw.sees_backs, {mesh, occluder, options, observer});
+  if (tracer.is_specular()) rows.lost = without_clear(std::move(rows.lost), mesh, occluder);
   rows.area = exposed_area(mesh, rows.lost, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.size())));
   rows.distance = std::move(raw.distance);
   rows.rays = 2 * raw.room.back();
@@ -270,7 +301,7 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
   const Eigen::VectorXd wanted = expected_row_sum(rows.lost);
   for (std::size_t half = 0; half < 2; ++half) {
     rows.halves[half] = put_together(raw, half, tracer.counts());
-    scale(rows.halves[half], wanted);
+    if (!tracer.is_specular()) scale(rows.halves[half], wanted);
   }
   return rows;
 }

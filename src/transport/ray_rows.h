@@ -5,6 +5,8 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/lost_share.h"
 
+#include "transport/specular_stops.h"
+
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
@@ -30,6 +32,8 @@ struct RayRows {
   std::vector<double> hit_weight;
   std::vector<std::uint64_t> first_entry;  ///< per patch; one more at the end
   LargeArray<RayEntry> entries;
+  std::vector<std::uint64_t> first_stop = {};  ///< per patch; one more at the end; empty where nothing is specular
+  LargeArray<SpecularStop> stops = {};         ///< of rays that are specular on their way
 };
 
 /// How rows of rays are found.
@@ -41,7 +45,8 @@ struct RayOptions {
 };
 
 /// The rows by two independent halves of the rays: each is unbiased, their mean is the better value, their difference
-/// its error.
+/// its error. Where there are stops of specular rays all is of the geometry alone, and no form factors yet: see
+/// weighed_rows().
 struct TracedRows {
   std::array<RayRows, 2> halves;
   LostShare lost;
@@ -56,9 +61,10 @@ struct TracedRows {
 /// Rows of form factors F_ij by rays over the cosine-weighted hemisphere of each patch, that start spread over it, and
 /// shadow rays towards bright patches, both by the balance heuristic (Veach and Guibas 1995): docs/theory.md
 /// section 12. Each row sums up to what its patch sees, 1 - escaped - at_backs, to rounding; where a patch sees nothing
-/// but sides without patches, or all of it is covered, its rows may be empty. O(size) time and memory. The same bits
-/// for any number of threads, and when some of the blocks, null for none, were kept by an earlier call for the same.
-/// \throws Cancelled, and what the blocks throw.
+/// but sides without patches, or all of it is covered, its rows may be empty. Where the occluder has specular polygons
+/// rows are not scaled, and `lost` has of rays that are lost only those that met none of them. O(size) time and memory.
+/// The same bits for any number of threads, and when some of the blocks, null for none, were kept by an earlier call
+/// for the same. \throws Cancelled, and what the blocks throw.
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 

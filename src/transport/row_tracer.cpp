@@ -83,8 +83,7 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
   for (const std::uint32_t half : {0U, 1U}) {
     const SampleSet set = samples(patch, Purpose::hemisphere, half);
     for (std::size_t k = 0; k < counts_[patch]; ++k) {
-      const Vector direction =
-          occluder_.held_direction(mesh_.polygon[patch], coordinate(set, 0, k), coordinate(set, 1, k));
+      const Vector direction = square_to_cosine_hemisphere(coordinate(set, 0, k), coordinate(set, 1, k));
       rays.push_back({square_to_quad(corners.points, coordinate(set, 2, k), coordinate(set, 3, k)), frame * direction,
                       mesh_.polygon[patch]});
     }
@@ -120,23 +119,27 @@ RayEntry RowTracer::fill_lane(ShadowPacket& packet, std::size_t lane, const Towa
   const float squared = dot(toward, toward);
   const float geometry = rays.factor * cosines / (squared * squared);
   const float density = static_cast<float>(toward_bright_) * bright_.density(chosen.patch);
-  const float weight = chosen.held * x.density * y.density;
+  const float weight = x.density * y.density;
   return {chosen.patch, weight * geometry / (rays.hemisphere * geometry + density)};
 }
 
-void RowTracer::add_toward_bright(const TowardBright& rays, std::vector<RayEntry>& into,
-                                  std::uint32_t& shadow_rays) const {
+void RowTracer::add_toward_bright(const TowardBright& rays, PatchIndex patch, std::size_t half,
+                                  RowEntries& into) const {
   for (std::size_t first = 0; first < toward_bright_; first += ShadowPacket::size) {
     ShadowPacket packet;
     std::array<RayEntry, ShadowPacket::size> entries;
     for (std::size_t lane = 0; lane < ShadowPacket::size; ++lane)
       entries[lane] = fill_lane(packet, lane, rays, first + lane);
     if (std::none_of(entries.begin(), entries.end(), [](const RayEntry& e) { return e.form_factor > 0; })) continue;
+    into.shadow_rays += ShadowPacket::size;
+    if (is_specular()) {
+      add_arriving(packet, patch, entries, half, into);
+      continue;
+    }
     const auto arriving = occluder_.transmittance(packet);
-    shadow_rays += ShadowPacket::size;
     for (std::size_t lane = 0; lane < ShadowPacket::size; ++lane) {
       entries[lane].form_factor *= arriving[lane];
-      if (entries[lane].form_factor > 0) into.push_back(entries[lane]);
+      if (entries[lane].form_factor > 0) into.halves[half].push_back(entries[lane]);
     }
   }
 }
@@ -149,11 +152,23 @@ void RowTracer::add_toward_bright(PatchIndex patch, RowEntries& entries) const {
                     static_cast<float>(scale * scale / std::numbers::pi)};
   for (const std::uint32_t half : {0U, 1U}) {
     rays.set = samples(patch, Purpose::toward_bright, half);
-    add_toward_bright(rays, entries.halves[half], entries.shadow_rays);
+    add_toward_bright(rays, patch, half, entries);
   }
 }
 
-PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
+// A ray over the hemisphere that has met a patch, with nothing specular on its way.
+void RowTracer::add_hit(PatchIndex patch, const Ray& ray, const Hit& hit, std::vector<PatchIndex>& hits,
+                        std::vector<RayEntry>& entries) const {
+  const auto met = lookup_.patch_at(hit.polygon, hit.side, hit.point);
+  assert(met);
+  if (bright_.density(*met) > 0) {
+    entries.push_back({*met, entry_of(patch, ray, hit, *met)});
+  } else {
+    hits.push_back(*met);
+  }
+}
+
+PatchRays RowTracer::trace_plain(PatchIndex patch, RowEntries& entries) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const std::vector<Seen> seen = sights_.of_rays(patch, rays, hash({seed_, keys_[patch], 2}));
   PatchRays told{{}, 0, count(seen, Sight::nothing), unseen(seen)};
@@ -163,16 +178,14 @@ PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
       if (!seen[k].hit) continue;
       const Hit& hit = *seen[k].hit;
       if (hit.distance > 0) told.inverse_lengths += 1 / hit.distance;
-      if (seen[k].sight != Sight::patch) continue;
-      const auto met = lookup_.patch_at(hit.polygon, hit.side, hit.point);
-      assert(met);
-      if (bright_.density(*met) > 0) {
-        entries.halves[half].push_back({*met, entry_of(patch, rays[k], hit, *met)});
-      } else {
-        told.hits[half].push_back(*met);
-      }
+      if (seen[k].sight == Sight::patch) add_hit(patch, rays[k], hit, told.hits[half], entries.halves[half]);
     }
   }
+  return told;
+}
+
+PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
+  PatchRays told = is_specular() ? trace_specular(patch, entries) : trace_plain(patch, entries);
   if (!bright_.empty()) add_toward_bright(patch, entries);
   return told;
 }

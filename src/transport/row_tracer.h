@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -22,12 +23,13 @@ struct PatchRays {
   std::array<std::vector<PatchIndex>, 2> hits;  ///< per half: the patches met that are not bright
   double inverse_lengths = 0;                   ///< summed over its rays, 1/m
   int escaped = 0;
-  int unseen = 0;  ///< as unseen() counts
+  int unseen = 0;  ///< as unseen() counts; both without rays that are specular on their way
 };
 
 /// The entries of some patches in both halves, before they are scaled, one patch after the other.
 struct RowEntries {
   std::array<std::vector<RayEntry>, 2> halves;
+  std::array<std::vector<SpecularStop>, 2> stops = {};
   std::uint32_t shadow_rays = 0;
 };
 
@@ -36,6 +38,9 @@ class RowTracer {
  public:
   /// Keeps references to the first three.
   RowTracer(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright, const RayOptions& options);
+
+  /// Whether rays can be specular on their way.
+  bool is_specular() const { return !occluder_.specular_faces().empty(); }
 
   /// Rays of each patch in one half.
   const std::vector<std::uint32_t>& counts() const { return counts_; }
@@ -46,11 +51,22 @@ class RowTracer {
  private:
   enum class Purpose : std::uint32_t;
   struct TowardBright;
+  PatchRays trace_plain(PatchIndex patch, RowEntries& entries) const;
+  PatchRays trace_specular(PatchIndex patch, RowEntries& entries) const;
+  void add_hit(PatchIndex patch, const Ray& ray, const Hit& hit, std::vector<PatchIndex>& hits,
+               std::vector<RayEntry>& entries) const;
+  bool starts_clear(PatchIndex patch) const;
+  SpecularStop stop_at(PatchIndex patch, const Ray& ray, const WayStop& at) const;
+  void add_stops(PatchIndex patch, const Ray& ray, const SeenWay& seen, std::vector<SpecularStop>& stops) const;
+  void add_arriving(const ShadowPacket& packet, PatchIndex patch, std::span<const RayEntry> entries, std::size_t half,
+                    RowEntries& into) const;
+  std::vector<SpecularStop> crossing_stops(const ShadowPacket& packet, std::size_t lane, PatchIndex patch,
+                                           const RayEntry& entry, std::span<const PolygonIndex> crossed) const;
   SampleSet samples(PatchIndex patch, Purpose purpose, std::uint32_t half) const;
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   float entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const;
   RayEntry fill_lane(ShadowPacket& packet, std::size_t lane, const TowardBright& rays, std::size_t k) const;
-  void add_toward_bright(const TowardBright& rays, std::vector<RayEntry>& into, std::uint32_t& shadow_rays) const;
+  void add_toward_bright(const TowardBright& rays, PatchIndex patch, std::size_t half, RowEntries& into) const;
   void add_toward_bright(PatchIndex patch, RowEntries& entries) const;
 
   const PatchMesh& mesh_;

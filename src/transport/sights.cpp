@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -30,36 +31,78 @@ bool Sights::has_patches(const Hit& hit) const {
 
 Seen Sights::seen_at(const Hit& hit) const { return {has_patches(hit) ? Sight::patch : Sight::back, hit}; }
 
+// 1 for each ray that starts where the patch is covered; it need not be traced.
+std::vector<std::uint8_t> Sights::covered_starts(PatchIndex patch, std::vector<Ray>& rays) const {
+  std::vector<std::uint8_t> covered(rays.size(), 0);
+  if (!occluder_.is_covered_in_part(mesh_.polygon[patch], mesh_.side[patch])) return covered;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (!occluder_.is_covered(mesh_.polygon[patch], mesh_.side[patch], rays[k].origin)) continue;
+    covered[k] = 1;
+    rays[k].direction.setZero();
+  }
+  return covered;
+}
+
+Ray Sights::moved(PatchIndex patch, Ray ray) const {
+  ray.origin += toward_centroid * (mesh_.centroid[patch] - ray.origin) - behind_ * mesh_.normal[patch];
+  return ray;
+}
+
+Sight Sights::sight_of_second_try(PatchIndex patch, const Ray& ray, const Hit& hit) const {
+  const double height = hit.distance * ray.direction.dot(mesh_.normal[patch]);
+  return height < 2 * behind_ ? Sight::contact : seen_at(hit).sight;
+}
+
 std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
   std::vector<Seen> seen(rays.size());
-  if (occluder_.is_covered_in_part(mesh_.polygon[patch], mesh_.side[patch])) {
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-      if (!occluder_.is_covered(mesh_.polygon[patch], mesh_.side[patch], rays[k].origin)) continue;
-      seen[k].sight = Sight::contact;
-      rays[k].direction.setZero();  // need not be traced
-    }
-  }
+  const std::vector<std::uint8_t> covered = covered_starts(patch, rays);
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
   const auto hits = occluder_.first_held_hits(rays, seed);
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (seen[k].sight == Sight::contact) continue;
+    if (covered[k] != 0) {
+      seen[k].sight = Sight::contact;
+      continue;
+    }
     if (hits[k]) {
       seen[k] = seen_at(*hits[k]);
       continue;
     }
-    Ray moved = rays[k];
-    moved.origin += toward_centroid * (mesh_.centroid[patch] - moved.origin) - behind_ * mesh_.normal[patch];
-    second_tries.push_back(moved);
+    second_tries.push_back(moved(patch, rays[k]));
     tried_again.push_back(k);
   }
   // What a clear polygon has let through once it lets through again: a second draw would hold back twice.
   const auto second_hits = occluder_.first_held_hits(second_tries, seed, tried_again);
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (!second_hits[k]) continue;
-    const double height = second_hits[k]->distance * second_tries[k].direction.dot(mesh_.normal[patch]);
-    seen[tried_again[k]] = seen_at(*second_hits[k]);
-    if (height < 2 * behind_) seen[tried_again[k]].sight = Sight::contact;
+    seen[tried_again[k]] = {sight_of_second_try(patch, second_tries[k], *second_hits[k]), second_hits[k]};
+  }
+  return seen;
+}
+
+std::vector<SeenWay> Sights::along_ways(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
+  std::vector<SeenWay> seen(rays.size());
+  const std::vector<std::uint8_t> covered = covered_starts(patch, rays);
+  std::vector<Way> ways = specular_ways(occluder_, rays, seed);
+  std::vector<Ray> second_tries;
+  std::vector<std::size_t> tried_again;
+  const auto has_left = [](const Way& way) { return way.empty() || way.back().onward != Onward::ends; };
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    seen[k].way = std::move(ways[k]);
+    if (covered[k] != 0) {
+      seen[k].end = Sight::contact;
+    } else if (has_left(seen[k].way)) {
+      second_tries.push_back(moved(patch, rays[k]));
+      tried_again.push_back(k);
+    } else {
+      seen[k].end = seen_at(seen[k].way.back().hit).sight;
+    }
+  }
+  ways = specular_ways(occluder_, second_tries, seed, tried_again);
+  for (std::size_t k = 0; k < second_tries.size(); ++k) {
+    if (has_left(ways[k])) continue;
+    const Sight end = sight_of_second_try(patch, second_tries[k], ways[k].back().hit);
+    seen[tried_again[k]] = {std::move(ways[k]), end};
   }
   return seen;
 }

@@ -3,6 +3,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include "visibility/occluder.h"
+#include "visibility/specular_ways.h"
 
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,12 @@ enum class Sight { patch, nothing, back, contact };
 struct Seen {
   Sight sight = Sight::nothing;
   std::optional<Hit> hit = {};
+};
+
+/// What a ray meets on its way over specular polygons, and what ends it.
+struct SeenWay {
+  Way way;
+  Sight end = Sight::nothing;
 };
 
 /// How many rays have met this.
@@ -39,13 +46,21 @@ class Sights {
   /// probability of their transmittance, drawn by `seed`.
   std::vector<Seen> of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
 
+  /// The same of specular_ways().
+  std::vector<SeenWay> along_ways(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
+
+  /// Whether a side that is met has patches.
+  bool has_patches(const Hit& hit) const;
+
   /// Does another face lie against the one that was hit, where it was? One that lies over it and faces the same way, as
   /// a rug on a floor, is met from behind, where it has no patches.
   bool is_in_contact(const Hit& hit) const;
 
  private:
   Seen seen_at(const Hit& hit) const;
-  bool has_patches(const Hit& hit) const;
+  std::vector<std::uint8_t> covered_starts(PatchIndex patch, std::vector<Ray>& rays) const;
+  Ray moved(PatchIndex patch, Ray ray) const;
+  Sight sight_of_second_try(PatchIndex patch, const Ray& ray, const Hit& hit) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;

@@ -55,6 +55,7 @@ struct Occluder::Tracer {
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
   float arriving_along(const ExactRay& ray, Crossed crossed) const;
+  std::array<Crossed, ShadowPacket::size> crossed_by(const ShadowPacket& packet, unsigned blocked) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
@@ -141,21 +142,42 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   return static_cast<std::uint16_t>(blocked);
 }
 
-std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket& packet) const {
-  const unsigned blocked = occluded(packet);
-  std::array<float, ShadowPacket::size> arriving{};
-  for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
-  if (tracer_->specular.empty()) return arriving;
+// Of the rays whose bit is not set in `blocked`.
+std::array<Crossed, ShadowPacket::size> Occluder::Tracer::crossed_by(const ShadowPacket& packet,
+                                                                     unsigned blocked) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
   for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = (blocked >> k & 1) != 0 ? 0 : -1;
   std::array<Crossed, ShadowPacket::size> crossed;
   Context context{new_context(), nullptr, &packet, nullptr, crossed.data()};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  if (!tracer_->panes.planes.empty()) rtcOccluded16(valid, tracer_->panes.scene, &context.embree, &rays);
+  if (!panes.planes.empty()) rtcOccluded16(valid, panes.scene, &context.embree, &rays);
+  return crossed;
+}
+
+std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket& packet) const {
+  const unsigned blocked = occluded(packet);
+  std::array<float, ShadowPacket::size> arriving{};
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
+  if (tracer_->specular.empty()) return arriving;
+  const std::array<Crossed, ShadowPacket::size> crossed = tracer_->crossed_by(packet, blocked);
   for (unsigned k = 0; k < ShadowPacket::size; ++k)
-    if (valid[k] != 0) arriving[k] = tracer_->arriving_along(exact_ray(packet, k), crossed[k]);
+    if (arriving[k] > 0) arriving[k] = tracer_->arriving_along(exact_ray(packet, k), crossed[k]);
   return arriving;
+}
+
+std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> Occluder::crossings(
+    const ShadowPacket& packet) const {
+  const unsigned blocked = occluded(packet);
+  std::array<Crossed, ShadowPacket::size> crossed = tracer_->crossed_by(packet, blocked);
+  std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> found;
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) {
+    if ((blocked >> k & 1) != 0) continue;
+    const auto begin = crossed[k].polygons.begin();
+    found[k].emplace(begin, begin + static_cast<std::ptrdiff_t>(crossed[k].count));
+    std::sort(found[k]->begin(), found[k]->end());
+  }
+  return found;
 }
 
 // The first polygon that can block between two points, in recentred coordinates.
@@ -214,6 +236,8 @@ double Occluder::transmittance(PolygonIndex polygon, const Vector& direction) co
 double Occluder::specular_reflectance(PolygonIndex polygon, const Vector& direction) const {
   return tracer_->specular.reflectance(polygon, direction);
 }
+
+const SpecularFaces& Occluder::specular_faces() const { return tracer_->specular; }
 
 Vector Occluder::mirrored(PolygonIndex polygon, const Vector& direction) const {
   return tracer_->specular.mirrored(polygon, direction);

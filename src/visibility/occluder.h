@@ -105,6 +105,9 @@ class Occluder {
   /// reflections are not followed.
   double specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
 
+  /// The polygons that let light through or go on from them as from mirrors.
+  const SpecularFaces& specular_faces() const;
+
   /// The unit direction of a ray after it was reflected at a polygon as at a mirror.
   Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
 
@@ -118,6 +121,10 @@ class Occluder {
   /// directions are distributed as what the polygon keeps of light from all directions alike: if it is opaque,
   /// square_to_cosine_hemisphere().
   Vector held_direction(PolygonIndex polygon, double u, double v) const;
+
+  /// The clear polygons that each ray of a packet crosses between its ends, in their order in the scene; nothing where
+  /// an opaque one blocks it.
+  std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> crossings(const ShadowPacket& packet) const;
 
   /// 1 for each segment along which nothing arrives, else 0.
   std::vector<std::uint8_t> occluded(std::span<const Segment> segments) const;

@@ -234,6 +234,50 @@ class RelightTest(ToolTest):
         self.assertEqual(refused.returncode, INPUT, refused.stderr)
         self.assertIn("rays.ff: found rows of rays with --solver cg", refused.stderr)
 
+    def test_colours_of_panes_and_mirrors(self):
+        """Rows that were found with a grey pane and mirror are those that are found with coloured ones."""
+        self.write("panes.obj", """mtllib panes.mtl
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+v -1 -1 2
+v 1 -1 2
+v 1 1 2
+v -1 1 2
+v 0 -1 0
+v 0 1 0
+v 0 1 2
+v 0 -1 2
+usemtl wall
+f 1 2 3 4
+f 5 8 7 6
+f 1 5 6 2
+f 4 3 7 8
+f 2 6 7 3
+usemtl mirror
+f 1 4 8 5
+usemtl pane
+f 9 10 11 12
+""")
+        self.write("panes.mtl", "newmtl wall\nKd 0.6 0.6 0.6\nKe 1 1 1\nnewmtl mirror\nKd 0 0 0\nKs 0.8 0.8 0.8\n"
+                   "illum 3\nnewmtl pane\nKd 0 0 0\nd 0.5\nTf 0.8 0.8 0.8\n")
+        self.good("form-factors", "panes.obj", "--storage", "rays", "--patches", "200", "-o", "panes.ff")
+        info = json.loads((self.folder / "panes.ff" / "info.json").read_text())
+        self.assertTrue(info["specular"])
+        self.assertIn("pane", info["classes"])
+        self.assertIn("mirror mirrored", info["classes"])
+        colours = ["--set", "pane.transmittance=0.8,0.1,0.05", "--set", "mirror.specular_reflectance=0.9,0.7,0.3"]
+        self.good("relight", "panes.ff", *colours, "--report", "again.json", "-o", "again.vtp")
+        self.good("form-factors", "panes.obj", "--storage", "rays", "--patches", "200", *colours, "-o", "red.ff")
+        self.good("relight", "red.ff", "--report", "fresh.json", "-o", "fresh.vtp")
+        again, fresh = self.report("again.json"), self.report("fresh.json")
+        for a, b in zip(again["energy_balance"]["absorbed_W"], fresh["energy_balance"]["absorbed_W"]):
+            self.assertAlmostEqual(a / b, 1, delta=1e-9)
+        refused = self.run_tool("relight", "panes.ff", "--set", "pane.index=1.7", "-o", "x.vtp")
+        self.assertEqual(refused.returncode, INPUT, refused.stderr)
+        self.assertIn("with the same index of refraction", refused.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

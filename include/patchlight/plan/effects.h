@@ -18,9 +18,9 @@ enum class Effect : std::uint8_t {
   sky,
   mirrors,         ///< light that mirrors and clear faces reflect without scattering it
   closure,         ///< correction of form factors so that rows sum up to what is seen
-  bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors; not
-                   ///< simulated, so below
-  gloss,           ///< of materials that a file says are partly mirrors
+  bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors: by rows
+                   ///< of rays alone
+  gloss,           ///< of materials that a file says are partly mirrors; not simulated, so below
   glass            ///< of materials that a file says are transparent
 };
 

@@ -50,7 +50,8 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, in
 struct KnownShares {
   const LostShare& lost;
   const std::vector<PatchIndex>&
-      place;  ///< of each patch of the new mesh: the same patch in the other one, or no_patch
+      place;                      ///< of each patch of the new mesh: the same patch in the other one, or no_patch
+  bool ends_at_specular = false;  ///< rays end at clear polygons and mirrors as at all others
 };
 
 /// The same bits, with as many rays, but without tracing those of patches that are known.

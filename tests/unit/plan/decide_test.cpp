@@ -129,6 +129,16 @@ TEST(Decide, NamesWhatIsNotSimulatedOnlyWhereItIs) {
   }
 }
 
+TEST(Decide, TellsColoursOfPanesApartByRays) {
+  EffectFacts facts = usual_facts();
+  facts.coloured_specular = 1;
+  Request request;
+  request.assembly.storage = Storage::rays;
+  const Decision decided = decision(facts, Effect::bands_of_panes, request);
+  EXPECT_TRUE(decided.simulate);
+  EXPECT_EQ(decided.reason, "colours of 1 clear or mirroring material change light between patches");
+}
+
 TEST(Decide, ObeysTheRequestAndMarksIt) {
   Request request;
   request.effects.skip = {Effect::occlusion};

@@ -1,0 +1,178 @@
+#include "pipeline/exchange_and_light.h"
+
+#include "patchlight/base/error.h"
+
+#include "base/vectors.h"
+#include "pipeline/lamps_apart.h"
+#include "pipeline/problem_of.h"
+#include "plan/planned_scene.h"
+#include "transport/bright_patches.h"
+#include "transport/row_blocks.h"
+#include "visibility/occluder.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Half as many towards bright patches as over the hemisphere, in packets of both halves.
+RayOptions rays_as_planned(const AssemblyOptions& assembly) {
+  constexpr int packets = 32;
+  return {.rays = assembly.rays,
+          .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
+          .lost_share_rays = assembly.lost_share_rays,
+          .seed = assembly.seed};
+}
+
+// H = F_lamps E_lamps for factors of one value per patch and lamp.
+Field irradiance_by(const LampValues& factors, const Field& exitance) {
+  return (factors.cast<double>().matrix() * exitance.matrix()).array();
+}
+
+}  // namespace
+
+Field emitted_in_rows(const RayLight& light) {
+  Field exitance = light.lit.problem.exitance;
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
+    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
+  return exitance;
+}
+
+Field direct_of(const RayLight& light) {
+  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
+  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
+    if (more->size() > 0) direct += *more;
+  return direct;
+}
+
+namespace {
+
+// The light of the lamps apart, as means over whole patches.
+RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
+  RayLight light{.lit = std::move(lit),
+                 .is_apart = {},
+                 .by_lamps = {},
+                 .lamp_standard_error = {},
+                 .in_mirrors = {},
+                 .distance = {},
+                 .is_missed = {}};
+  const RadiosityProblem& problem = light.lit.problem;
+  light.is_apart.assign(patches, 0);
+  Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
+  for (std::size_t k = 0; k < exchange.lamps.size(); ++k) {
+    const auto [begin, end] = exchange.lamps[k];
+    exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(begin);
+    std::fill(light.is_apart.begin() + begin, light.is_apart.begin() + end, 1);
+  }
+  const LampFactors& factors = exchange.lamp_factors;
+  for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
+  light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
+  return light;
+}
+
+// What the light makes bright.
+BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
+  const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
+  return {mesh, summed_over_bands(expected), bright, run.tracing->between_patches()};
+}
+
+// Rows, with rays towards that.
+TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
+  const Occluder& occluder = run.tracing->between_patches();
+  const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
+  const RayOptions options = rays_as_planned(plan.assembly);
+  if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
+  const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
+  return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
+}
+
+// The side of a polygon from which rays went on in another way than they would now; none if there is no such.
+std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>& then,
+                                       const std::vector<std::array<double, 2>>& now) {
+  for (PolygonIndex p = 0; p < now.size(); ++p) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double before = then.empty() ? 0 : then[p][side];
+      // From what lets nothing go on any more, rays that do count nothing.
+      if (now[p][side] != 0 && now[p][side] != before) return p;
+    }
+  }
+  return std::nullopt;
+}
+
+// Colours may differ, but rays have gone on from the polygons from which they would go on now.
+void require_same_kinds(const RayExchange& known, const Run& run) {
+  const auto now = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
+  const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();
+  const std::optional<PolygonIndex> other = is_as_long ? other_kind(known.specular_kinds, now) : 0;
+  if (!other) return;
+  throw InputError("given.ray_rows",
+                   "found rows of rays that go on in another way from polygon " + std::to_string(*other + 1) + " of '" +
+                       run.scene.materials[run.scene.polygons[*other].material].name +
+                       "' than light does now; expected the clear faces and mirrors of then, with the same index of "
+                       "refraction: only their colours may differ. Make the form factors anew");
+}
+
+}  // namespace
+
+ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  LitProblem lit = lit_problem(run, plan, mesh, area);
+  const bool is_known = static_cast<bool>(run.with.ray_exchange);
+  RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
+                                  : traced_lamps(run, plan, mesh, lit.problem);
+  RayLight light = light_of(exchange, std::move(lit), mesh.size());
+  light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
+  if (!is_known) {
+    exchange.rows = traced_rows(run, plan, mesh, light);
+    if (run.tracing->has_specular_faces())
+      exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
+    return {std::move(exchange), std::move(light)};
+  }
+  require_same_kinds(exchange, run);
+  // Not stored, as it is of the materials.
+  exchange.rows.lost.clear = clear_shares(mesh, run.tracing->between_patches());
+  const BrightPatches now = bright_patches_of(run, mesh, light);
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);
+  light.rays_per_patch = static_cast<double>(exchange.rows.rays) / mesh.size();
+  return {std::move(exchange), std::move(light)};
+}
+
+namespace {
+
+Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
+  Field columns(all.rows(), static_cast<Eigen::Index>(all.size() > 0 ? bands.size() : 0));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = all.col(bands[static_cast<std::size_t>(k)]);
+  return columns;
+}
+
+}  // namespace
+
+ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
+                           const Plan& plan, const PatchMesh& mesh) {
+  // 1. What lamps send straight, also through clear faces.
+  ExchangeAndLight found{all.exchange, {}};
+  found.exchange.lamp_factors = factors_of_lamps(all.exchange.lamps, part, plan, mesh);
+
+  // 2. Other light is known of each band.
+  const RayLight& light = all.light;
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  LitProblem lit{problem_of(part.scene, mesh, area, plan.sides.emit_from_back, reflections_of(plan)),
+                 columns_of(light.lit.direct_standard_error, bands)};
+  lit.problem.direct_irradiance = columns_of(light.lit.problem.direct_irradiance, bands);
+  found.light = light_of(found.exchange, std::move(lit), mesh.size());
+  found.light.in_mirrors = {columns_of(light.in_mirrors.irradiance, bands),
+                            columns_of(light.in_mirrors.standard_error, bands)};
+  found.light.is_missed = light.is_missed;
+  found.light.rays_per_patch = light.rays_per_patch;
+  return found;
+}
+
+RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  return exchange_and_light(run, plan, mesh).exchange;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "lighting/direct_irradiance.h"
+#include "pipeline/lit_problem.h"
+#include "transport/ray_exchange.h"
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// Rows of rays, and the light of lamps, which is found apart from them: from a small bright source a row of some rays
+/// would tell little, and smoothing would blur its shadows.
+struct RayLight {
+  LitProblem lit;                      ///< the problem as lit_problem() has it: with all that patches emit
+  std::vector<std::uint8_t> is_apart;  ///< per patch: what it emits counts in by_lamps, not in rows
+  std::array<Field, 2> by_lamps;       ///< irradiance straight from them, by both halves of the samples, W/m^2
+  Field lamp_standard_error;           ///< of its mean, W/m^2
+  DirectIrradiance in_mirrors;  ///< what the same lamps send over mirrors and clear faces; empty where there are none
+  std::vector<float> distance;  ///< as TracedRows has it
+  std::vector<std::uint8_t>
+      is_missed;              ///< per patch: bright, but rows that are known have sent no ray there on purpose
+  double rays_per_patch = 0;  ///< mean number over the hemisphere
+};
+
+/// Rows as they were traced, of the geometry alone, and the light that goes with them, as means over whole patches.
+struct ExchangeAndLight {
+  RayExchange exchange;
+  RayLight light;
+};
+
+/// Lamps are apart where they emit more than four times the mean over all patches, the strongest first, up to sixteen
+/// triangles and convex quadrilaterals: what all surfaces emit alike, and the light of many lamps, stays in the rows,
+/// which send rays towards bright patches on purpose. By Steps::ray_exchange where it is given; lamps that it does
+/// not know are found apart as well, by shadow rays. \throws Cancelled; InputError when these are too many.
+ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
+
+/// The same in some of its bands, by the run `part` that has no others: rows are the same, what lamps send straight
+/// through clear faces is found anew.
+ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
+                           const Plan& plan, const PatchMesh& mesh);
+
+/// Rows and lamps alone, to be used again. \throws Cancelled.
+RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh);
+
+/// What patches emit but for lamps apart, W/m^2.
+Field emitted_in_rows(const RayLight& light);
+
+/// The irradiance by light that comes from no patch of the rows, W/m^2.
+Field direct_of(const RayLight& light);
+
+}  // namespace patchlight

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "pipeline/run.h"
+#include "pipeline/stage_clock.h"
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace patchlight {
+
+/// Bands that clear faces and mirrors treat alike. Form factors over these are one set for each colour of light.
+struct LightColour {
+  std::vector<Eigen::Index> bands;  ///< of the run's scene
+  Scene scene;                      ///< in_bands() of it
+  std::shared_ptr<const Tracing> tracing;
+};
+
+/// The colours that a run by rows of rays has to tell apart; empty where one set of form factors is that of all bands:
+/// by pairs, too, which take the mean of all bands by luminance.
+std::vector<LightColour> light_colours(const Run& run);
+
+/// A mesh solved in each colour by itself, as if it was all light that there is, and put together. \throws Cancelled,
+/// InputError.
+SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
+                             StageClock& clock);
+
+}  // namespace patchlight

@@ -1,0 +1,221 @@
+#include "patchlight/base/error.h"
+#include "patchlight/simulate.h"
+
+#include "pipeline/ray_form_factors.h"
+#include "scene/specular_faces.h"
+#include "support/scenes.h"
+#include "transport/rows_by_class.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace patchlight::coloured_passage_test {
+namespace {
+
+using namespace test;
+
+// A material of as many bands as `values` has.
+Material even(const Spectrum& values, double reflectance, double exitance = 0) {
+  Material material;
+  material.reflectance = Spectrum::Constant(values.size(), reflectance);
+  material.exitance = Spectrum::Constant(values.size(), exitance);
+  return material;
+}
+
+Material mirror(const Spectrum& specular_reflectance) {
+  Material material = even(specular_reflectance, 0);
+  material.name = "mirror";
+  material.specular_reflectance = specular_reflectance;
+  return material;
+}
+
+Material glass(const Spectrum& transmittance) {
+  Material material = even(transmittance, 0.02);
+  material.name = "glass";
+  material.transmittance = transmittance;
+  return material;
+}
+
+Spectrum one(double value) { return Spectrum::Constant(1, value); }
+
+// A closed room of 4 x 3 x 2.5 m, divided at x = 2 by a pane from wall to wall, with a mirror at low x; all else sends
+// out light of its own, so much alike that no patch is bright.
+Scene divided_room(const Spectrum& reflected, const Spectrum& transmitted, double exitance_beyond) {
+  Scene scene = empty_scene(
+      {even(reflected, 0.6, 1), mirror(reflected), glass(transmitted), even(reflected, 0.5, exitance_beyond)});
+  std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(2, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 4, 5})
+    scene = with_quad(std::move(scene), faces[k], k == 5 ? MaterialIndex{1} : MaterialIndex{0});
+  faces = box_faces(Point(2, 0, 0), Point(4, 3, 2.5), true);
+  for (const std::size_t k : {0, 1, 2, 3, 4}) scene = with_quad(std::move(scene), faces[k], 3);
+  scene = with_quad(std::move(scene), {Point(2, 0, 0), Point(2, 0, 2.5), Point(2, 3, 2.5), Point(2, 3, 0)}, 2);
+  scene.polygons.back().back_material = 2;
+  return scene;
+}
+
+Request by_few_rays(PatchIndex patches) {
+  Request request;
+  request.assembly.storage = Storage::rays;
+  request.assembly.rays = 64;
+  request.mesh.sides = Sides::front;
+  request.mesh.patches = patches;
+  request.solver.solver = Solver::gmres;
+  request.solver.relative_error = 1e-13;
+  return request;
+}
+
+double largest_difference(const Field& a, const Field& b) { return (a - b).abs().maxCoeff(); }
+
+TEST(ColouredPassage, IsInEachBandThatOfAGreySceneOfThisValue) {
+  // Clear faces and mirrors alone have colours. The rays are the same ones, so nothing but rounding differs.
+  const Spectrum reflected = rgb(1, 0.5, 0.1);
+  const Spectrum transmitted = rgb(0.85, 0.05, 0.4);
+  const Simulation coloured = simulate(divided_room(reflected, transmitted, 0.6), by_few_rays(400));
+  for (Eigen::Index band = 0; band < 3; ++band) {
+    const Scene grey = divided_room(one(reflected[band]), one(transmitted[band]), 0.6);
+    const Simulation alone = simulate(grey, by_few_rays(400));
+    ASSERT_EQ(alone.mesh.size(), coloured.mesh.size());
+    EXPECT_LT(largest_difference(coloured.solution.radiosity.col(band), alone.solution.radiosity.col(0)), 1e-12);
+    EXPECT_LT(largest_difference(coloured.solution.irradiance.col(band), alone.solution.irradiance.col(0)), 1e-12);
+    EXPECT_LT(largest_difference(coloured.ray_standard_error.col(band), alone.ray_standard_error.col(0)), 1e-12);
+    EXPECT_NEAR(coloured.balance.absorbed[band], alone.balance.absorbed[0], 1e-11);
+  }
+}
+
+TEST(ColouredPassage, OfGreyInThreeBandsIsGrey) {
+  const Simulation three = simulate(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6), by_few_rays(400));
+  const Simulation single = simulate(divided_room(one(0.7), one(0.8), 0.6), by_few_rays(400));
+  for (Eigen::Index band = 0; band < 3; ++band)
+    EXPECT_LT(largest_difference(three.solution.radiosity.col(band), single.solution.radiosity.col(0)), 1e-12);
+}
+
+// A black room with a lamp in it, and one beyond a red pane of index 1, in which all but the pane reflects and nothing
+// emits: what gets through is red.
+TEST(ColouredPassage, BehindARedPaneIsRed) {
+  const Scene scene = divided_room(rgb(0, 0, 0), rgb(0.8, 0.08, 0), 0);
+  const Simulation simulation = simulate(scene, by_few_rays(600));
+  const PatchRange beyond = simulation.mesh.patches_on(8, Side::front);
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(3);
+  for (PatchIndex i = beyond.begin; i < beyond.end; ++i) mean += simulation.solution.radiosity.row(i).transpose();
+  EXPECT_GT(mean[0], 0);
+  EXPECT_LT(mean[1], 0.15 * mean[0]);
+  EXPECT_LT(mean[2], 1e-12 * mean[0]);
+}
+
+// The rows of one scene, and its patches, for another one.
+Steps with_rows_of(const Scene& scene, const Request& request) {
+  const RayFormFactors found = find_ray_form_factors(scene, request);
+  Steps with;
+  with.ray_exchange = [found](const PatchMesh&) { return found.exchange; };
+  with.mesh = [found] { return found.mesh; };
+  return with;
+}
+
+// The same patches, and rays of its own.
+Simulation fresh_on_mesh_of(const Steps& with, const Scene& scene, const Request& request) {
+  Steps own;
+  own.mesh = with.mesh;
+  return simulate(scene, request, {}, own);
+}
+
+// Three bands, in the colours of a scene in which nothing was seen yet.
+TEST(ColouredPassage, HasTheSameRowsInAllColours) {
+  const Request request = by_few_rays(400);
+  const Steps with = with_rows_of(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6), request);
+  const Scene red = divided_room(rgb(1, 0.5, 0.1), rgb(0.85, 0.05, 0.4), 0.6);
+  const Simulation again = simulate(red, request, {}, with);
+  const Simulation fresh = fresh_on_mesh_of(with, red, request);
+  EXPECT_EQ(largest_difference(again.solution.radiosity, fresh.solution.radiosity), 0);
+  EXPECT_EQ(largest_difference(again.ray_standard_error, fresh.ray_standard_error), 0);
+}
+
+// A lamp, which is apart from the rows, sends its light through the pane and over the mirror as well.
+TEST(ColouredPassage, OfALampIsThatOfThePanesOfNow) {
+  const auto with_lamp = [](Scene scene) {
+    scene.materials.push_back(even(rgb(1, 1, 1), 0, 20));
+    return with_quad(std::move(scene), {Point(0.5, 1, 2.4), Point(0.5, 1.5, 2.4), Point(1, 1.5, 2.4), Point(1, 1, 2.4)},
+                     4);
+  };
+  const Request request = by_few_rays(400);
+  const Steps with = with_rows_of(with_lamp(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.6, 0.6, 0.6), 0.6)), request);
+  const Scene red = with_lamp(divided_room(rgb(0.6, 0.5, 0.4), rgb(0.65, 0.5, 0.4), 0.6));
+  const Simulation again = simulate(red, request, {}, with);
+  const Simulation fresh = fresh_on_mesh_of(with, red, request);
+  EXPECT_LT(largest_difference(again.solution.radiosity, fresh.solution.radiosity),
+            1e-6 * fresh.solution.radiosity.maxCoeff());
+}
+
+TEST(ColouredPassage, IsRefusedWhereRaysHaveGoneAnotherWay) {
+  const Request request = by_few_rays(100);
+  const Scene scene = divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6);
+  const Steps with = with_rows_of(scene, request);
+  Scene thicker = scene;
+  thicker.materials[2].index = 1.7;
+  EXPECT_THROW(simulate(thicker, request, {}, with), InputError);
+  Scene more = scene;
+  more.materials[0].specular_reflectance = rgb(0.2, 0.2, 0.2);
+  EXPECT_THROW(simulate(more, request, {}, with), InputError);
+  Scene opaque = scene;
+  opaque.materials[2].transmittance = rgb(0, 0, 0);
+  EXPECT_LT(largest_difference(simulate(opaque, request, {}, with).solution.radiosity,
+                               fresh_on_mesh_of(with, opaque, request).solution.radiosity),
+            1e-12);
+}
+
+// What all patches of a polygon's front send to those of another's by ways of a class, sum_i A_i F_ij, m^2, by either
+// half of the rays.
+using Exchanged = std::map<std::tuple<std::uint32_t, PolygonIndex, PolygonIndex>, std::array<double, 2>>;
+
+Exchanged exchanged_by_class(const RowsByClass& by_class, const PatchMesh& mesh, const Eigen::VectorXd& area) {
+  Exchanged sums;
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (const ClassEntry& e : by_class.halves[half])
+      sums[{e.way_class, mesh.polygon[e.from], mesh.polygon[e.to]}][half] +=
+          area[e.from] * static_cast<double>(e.form_factor);
+  }
+  return sums;
+}
+
+// Light can go the same way back: A_i F_ij = A_j F_ji by the ways of each class alone. The halves are independent:
+// their difference has twice the standard error of their mean as its own, and of some hundred pairs the sum of squares
+// is that of the differences, but for chance.
+TEST(ColouredPassage, IsSymmetricInEachClassOfWays) {
+  const Scene scene = divided_room(one(0.7), one(0.8), 0.6);
+  Request request = by_few_rays(800);
+  request.assembly.rays = 1024;
+  const RayFormFactors found = find_ray_form_factors(scene, request);
+  const SpecularFaces faces(scene, Reflections::followed);
+  const RowsByClass by_class = rows_by_class(found.exchange.rows, scene, faces);
+  const Exchanged sums = exchanged_by_class(by_class, found.mesh, found.area);
+  double squares = 0, variances = 0;
+  std::size_t pairs = 0;
+  for (const auto& [key, there] : sums) {
+    const auto [way_class, from, to] = key;
+    const auto found_back = sums.find({way_class, to, from});
+    if (from >= to || found_back == sums.end()) continue;
+    const auto& back = found_back->second;
+    const double mean = 0.5 * (there[0] + there[1]), other = 0.5 * (back[0] + back[1]);
+    if (mean < 0.01) continue;
+    ++pairs;
+    squares += (mean - other) * (mean - other);
+    variances += 0.25 * (std::pow(there[0] - there[1], 2) + std::pow(back[0] - back[1], 2));
+    EXPECT_NEAR(mean / other, 1, 0.25) << name_of(by_class.classes[way_class], scene) << ' ' << from << ' ' << to;
+  }
+  EXPECT_GT(pairs, 50U);
+  EXPECT_LT(squares, 2 * variances);
+  const auto has = [&](const std::string& name) {
+    return std::any_of(by_class.classes.begin(), by_class.classes.end(),
+                       [&](const WayClass& one_class) { return name_of(one_class, scene) == name; });
+  };
+  EXPECT_TRUE(has("straight") && has("glass") && has("mirror mirrored") && has("glass mirrored") &&
+              has("mirror mirrored + glass"));
+}
+
+}  // namespace
+}  // namespace patchlight::coloured_passage_test
