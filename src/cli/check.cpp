@@ -145,9 +145,9 @@ std::string object_lines(const SceneReport& report, bool all) {
 // The largest rooms first.
 std::string room_lines(const Scene& scene, bool all) {
   if (scene.rooms.empty()) return {};
-  std::vector<std::pair<double, const Room*>> rooms;
+  std::vector<std::pair<double, const NamedRoom*>> rooms;
   std::set<std::string> storeys;
-  for (const Room& room : scene.rooms) {
+  for (const NamedRoom& room : scene.rooms) {
     rooms.emplace_back(area_of(floor_of(room.faces, scene.up)), &room);
     if (!room.storey.empty()) storeys.insert(room.storey);
   }

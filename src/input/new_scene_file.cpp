@@ -60,7 +60,7 @@ bool is_under_something(const Floor& floor, double top) {
 
 std::vector<NamedFloor> rooms_of(const Scene& scene) {
   std::vector<NamedFloor> places;
-  for (const Room& room : scene.rooms) {
+  for (const NamedRoom& room : scene.rooms) {
     Floor floor = floor_of(room.faces, scene.up);
     if (is_under_something(floor, top_of(scene))) places.push_back({room.name, std::move(floor)});
   }

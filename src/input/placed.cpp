@@ -16,7 +16,7 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
     camera.eye = placement * camera.eye;
     camera.target = placement * camera.target;
   }
-  for (Room& room : scene.rooms)
+  for (NamedRoom& room : scene.rooms)
     for (std::vector<Point>& face : room.faces)
       for (Point& corner : face) corner = placement * corner;
   if (placement.linear().determinant() >= 0) return scene;

@@ -155,7 +155,7 @@ class HoneybeeScene {
     const HbJson::json_pointer place("/properties/radiance/modifier_set");
     const std::string set =
         room.contains(place) && room.at(place).is_string() ? room.at(place).get<std::string>() : std::string();
-    Room body{room.value("display_name", room.at("identifier").get<std::string>()), room.value("story", ""), {}};
+    NamedRoom body{room.value("display_name", room.at("identifier").get<std::string>()), room.value("story", ""), {}};
     add_shades(room, set);
     for (const HbJson& face : room.at("faces")) {
       body.faces.push_back(points_of(face.at("geometry").at("boundary"), metres_));

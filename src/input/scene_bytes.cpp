@@ -127,7 +127,7 @@ Material read_material(Reader& in) {
   return material;
 }
 
-void write_room(Writer& out, const Room& room) {
+void write_room(Writer& out, const NamedRoom& room) {
   out.text(room.name);
   out.text(room.storey);
   out.plain(room.faces.size());
@@ -137,8 +137,8 @@ void write_room(Writer& out, const Room& room) {
   }
 }
 
-Room read_room(Reader& in) {
-  Room room;
+NamedRoom read_room(Reader& in) {
+  NamedRoom room;
   room.name = in.text();
   room.storey = in.text();
   room.faces.resize(in.count());
@@ -171,7 +171,7 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(found.materials);
   }
   out.plain(scene.rooms.size());
-  for (const Room& room : scene.rooms) write_room(out, room);
+  for (const NamedRoom& room : scene.rooms) write_room(out, room);
   out.text(scene.file);
   out.text(scene.sha256);
   out.plain(scene.metres_per_unit);
@@ -201,7 +201,7 @@ Scene scene_from_bytes(std::string_view bytes) {
     found.materials = in.plain<std::size_t>();
   }
   scene.rooms.resize(in.count());
-  for (Room& room : scene.rooms) room = read_room(in);
+  for (NamedRoom& room : scene.rooms) room = read_room(in);
   scene.file = in.text();
   scene.sha256 = in.text();
   scene.metres_per_unit = in.plain<double>();

@@ -197,7 +197,7 @@ std::vector<SensorGroup> over_rooms(const Scene& scene, const FloorGrid& grid, c
   std::vector<SensorGroup> groups;
   std::vector<std::string> names;
   bool found = false;
-  for (const Room& room : scene.rooms) {
+  for (const NamedRoom& room : scene.rooms) {
     names.push_back(room.name);
     if (room.name != grid.room && !matches(room.name, grid.room)) continue;
     found = true;

@@ -5,6 +5,7 @@
 #include "patchlight/scene/sides.h"
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace patchlight {
@@ -45,5 +46,21 @@ std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 /// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for
 /// more than 2^31 patches.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts = {});
+
+/// The same for several numbers: what is found for one narrows the search for the next.
+class EdgeSearch {
+ public:
+  /// Keeps references to all three.
+  EdgeSearch(const Scene& scene, const KeptSides& sides, const ContactLines& contacts);
+  ~EdgeSearch();
+  EdgeSearch(const EdgeSearch&) = delete;
+  EdgeSearch& operator=(const EdgeSearch&) = delete;
+  double edge_for(std::size_t patches);
+  double patches_with(double max_edge);
+
+ private:
+  class PatchNumber;
+  std::unique_ptr<PatchNumber> number_;
+};
 
 }  // namespace patchlight

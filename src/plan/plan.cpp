@@ -100,11 +100,13 @@ struct PatchSize {
 double parents_edge_for(const Scene& scene, const KeptSides& sides, const ContactLines& contacts, std::size_t wanted,
                         std::size_t least) {
   constexpr double enough = 0.8;
+  constexpr double close_enough = 0.05;
   constexpr int guesses = 6;
   // What no memory holds is refused later, and not meshed to find that out.
   constexpr std::size_t too_many = 5'000'000;
   if (wanted > too_many) return 2 * max_edge_for(scene, sides, wanted, contacts);
-  double edge = max_edge_for(scene, sides, wanted / 4, contacts);
+  EdgeSearch search(scene, sides, contacts);
+  double edge = search.edge_for(wanted / 4);
   double number = static_cast<double>(nest(tessellate(scene, sides, edge, contacts)).patches.size());
   const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
   // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
@@ -114,21 +116,33 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, const Contac
   std::size_t many = wanted;
   for (int k = 0; k < guesses && many > few + 1; ++k) {
     const std::size_t parents = (few + many) / 2;
-    const double guess = max_edge_for(scene, sides, parents, contacts);
+    const double guess = search.edge_for(parents);
     const auto patches = static_cast<double>(nest(tessellate(scene, sides, guess, contacts)).patches.size());
     if (miss(patches) < miss(number)) edge = guess, number = patches;
+    if (miss(number) < close_enough) break;
     (patches < static_cast<double>(wanted) ? few : many) = parents;
   }
   return edge;
+}
+
+// What is refined begins with no more than it has to; but so many rows of rays are not traced twice for nothing.
+std::size_t patches_wanted(std::size_t asked, std::size_t least, const Request& request) {
+  const bool begins_coarse = refines(request.accuracy) && request.assembly.storage != Storage::rays;
+  return begins_coarse ? std::max(asked, least) : enough_patches(asked, least);
+}
+
+// About so many patches there will be, or the least that the edge asked for allows.
+std::size_t expected_patches(const Scene& scene, const Request& request, const KeptSides& sides,
+                             const ContactLines& contacts) {
+  if (request.mesh.max_edge) return least_patches_with(scene, sides, *request.mesh.max_edge, contacts);
+  return patches_wanted(patches_asked(request), least_patches(scene, sides, contacts), request);
 }
 
 // The largest edge for the number of patches that is asked for.
 PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides,
                          const ContactLines& contacts) {
   const std::size_t least = least_patches(scene, sides, contacts);
-  // What is refined begins with no more than it has to; but so many rows of rays are not traced twice for nothing.
-  const bool begins_coarse = refines(request.accuracy) && request.assembly.storage != Storage::rays;
-  const std::size_t wanted = begins_coarse ? std::max(asked, least) : enough_patches(asked, least);
+  const std::size_t wanted = patches_wanted(asked, least, request);
   // A nested mesh is made from parents with edges twice as long.
   PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, contacts, wanted, least) / 2
                                                   : max_edge_for(scene, sides, wanted, contacts),
@@ -141,10 +155,9 @@ PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& r
 PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides, const ContactLines& contacts) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  PatchSize size =
-      request.mesh.max_edge
-          ? PatchSize{*request.mesh.max_edge, least_patches_with(scene, sides, *request.mesh.max_edge, contacts), {}}
-          : patch_size_for(asked, scene, request, sides, contacts);
+  PatchSize size = request.mesh.max_edge
+                       ? PatchSize{*request.mesh.max_edge, expected_patches(scene, request, sides, contacts), {}}
+                       : patch_size_for(asked, scene, request, sides, contacts);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;
   for (Problem& problem : problems_with_size(scene)) of_size.push_back(std::move(problem.what));
@@ -199,12 +212,12 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
-  PatchSize size = patch_size(scene, asked, sides, contacts);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const bool mirrors = (facts.mirrors > 0 || facts.openings > 0) && !contains(asked.effects.skip, Effect::mirrors);
-  const auto [request, note_on_storage] = choose_storage(asked, given, {size.patches, reflects, mirrors});
-  if (request.assembly.storage == Storage::rays) size = patch_size(scene, request, sides, contacts);
+  const auto [request, note_on_storage] =
+      choose_storage(asked, given, {expected_patches(scene, asked, sides, contacts), reflects, mirrors});
+  PatchSize size = patch_size(scene, request, sides, contacts);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);

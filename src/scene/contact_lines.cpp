@@ -259,7 +259,7 @@ std::size_t number_of(const ContactLines& contacts) {
 }
 
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
-  FaceTree tree = tree_of_faces(scene);
+  FaceTree tree = tree_of_faces(scene, FaceOrder::by_place);
   double area = 0;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) area += tree.face(p).area;
   const std::vector<std::uint8_t> is_bent = bent_faces(scene);

@@ -39,7 +39,8 @@ FlatFace flat_face(const std::vector<Point>& corners) {
   return face;
 }
 
-FaceTree::FaceTree(std::vector<FlatFace> faces) : faces_(std::move(faces)), order_(faces_.size()) {
+FaceTree::FaceTree(std::vector<FlatFace> faces, FaceOrder order)
+    : faces_(std::move(faces)), kept_together_(order), order_(faces_.size()) {
   std::iota(order_.begin(), order_.end(), 0U);
   if (!order_.empty()) add_nodes(0, static_cast<std::uint32_t>(order_.size()));
 }
@@ -65,7 +66,7 @@ FaceTree::Node FaceTree::node_of(std::uint32_t begin, std::uint32_t end) const {
   return node;
 }
 
-// By direction first, then along the axis on which the means or the farthest corners spread most.
+// By direction first if that is asked for, then along the axis on which the means or the farthest corners spread most.
 std::uint32_t FaceTree::halve(const Node& node, std::uint32_t end) {
   const auto halved_by = [&](Vector FlatFace::*place, const Box& spread) {
     Eigen::Index axis = 0;
@@ -76,6 +77,7 @@ std::uint32_t FaceTree::halve(const Node& node, std::uint32_t end) {
         [&](std::uint32_t a, std::uint32_t b) { return (faces_[a].*place)[axis] < (faces_[b].*place)[axis]; });
     return middle;
   };
+  if (kept_together_ == FaceOrder::by_place) return halved_by(&FlatFace::mean, node.means);
   if (node.normals.sizes().maxCoeff() > one_direction) return halved_by(&FlatFace::normal, node.normals);
   if (node.means.sizes().maxCoeff() >= node.farthest.sizes().maxCoeff()) return halved_by(&FlatFace::mean, node.means);
   return halved_by(&FlatFace::farthest, node.farthest);
@@ -94,11 +96,11 @@ void FaceTree::add_nodes(std::uint32_t begin, std::uint32_t end) {
   nodes_[own].next = static_cast<std::uint32_t>(nodes_.size());
 }
 
-FaceTree tree_of_faces(const Scene& scene) {
+FaceTree tree_of_faces(const Scene& scene, FaceOrder order) {
   std::vector<FlatFace> faces;
   faces.reserve(scene.polygons.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) faces.push_back(flat_face(corner_points(scene, p)));
-  return FaceTree(std::move(faces));
+  return FaceTree(std::move(faces), order);
 }
 
 }  // namespace patchlight

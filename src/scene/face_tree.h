@@ -42,10 +42,14 @@ struct FaceQuery {
   bool is_near(const Point& point) const { return std::abs(normal.dot(point) - offset) <= tolerance; }
 };
 
-/// A tree over faces. O(n log n) to build.
+/// Which faces a tree keeps together: those of one direction, for queries that ask for parallel ones, or those at one
+/// place, for queries that ask for what a box meets.
+enum class FaceOrder : std::uint8_t { by_direction, by_place };
+
+/// A tree over faces. O(n log n) to build. The order changes what a search costs, and in which order it visits.
 class FaceTree {
  public:
-  explicit FaceTree(std::vector<FlatFace> faces);
+  explicit FaceTree(std::vector<FlatFace> faces, FaceOrder order = FaceOrder::by_direction);
 
   const FlatFace& face(std::size_t k) const { return faces_[k]; }
 
@@ -82,11 +86,12 @@ class FaceTree {
   void add_nodes(std::uint32_t begin, std::uint32_t end);
 
   std::vector<FlatFace> faces_;
+  FaceOrder kept_together_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };
 
 /// Of all polygons of a scene, in order.
-FaceTree tree_of_faces(const Scene& scene);
+FaceTree tree_of_faces(const Scene& scene, FaceOrder order = FaceOrder::by_direction);
 
 }  // namespace patchlight

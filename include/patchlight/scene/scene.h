@@ -41,7 +41,7 @@ struct Polygon {
 };
 
 /// A room that a model names, as IfcSpace does: a body of air.
-struct Room {
+struct NamedRoom {
   std::string name;                       ///< "A102"
   std::string storey = {};                ///< "Level1"; empty if unknown
   std::vector<std::vector<Point>> faces;  ///< corners, metres
@@ -97,7 +97,7 @@ struct Scene {
   bool photometric = false;                       ///< lights are stated in lumens or lux: illuminance has a meaning
   std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
   std::vector<Camera> cameras;                    ///< where pictures are taken from
-  std::vector<Room> rooms;                        ///< that the models name
+  std::vector<NamedRoom> rooms;                   ///< that the models name
 };
 
 /// How many bands the scene's spectra have. There must be a material.
