@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks and solves the real models that docs/models.md describes, and makes its pictures.
 # usage: scripts/real_models.sh MODELS OUT [NAME...]    MODELS: folder of the models; names: veach-ajar radiator duplex
-# kitchen furniture openroom duplex-daylight ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
+# kitchen furniture openroom duplex-daylight honeybee ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
 # tool, build/src/patchlight if not set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,7 +10,7 @@ models=${1:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 out=${2:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 shift 2
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom duplex-daylight ies)
+[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom duplex-daylight honeybee ies)
 tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 if [ ! -d "$models" ]; then
   echo "real models: $models is not there; left out"
@@ -88,8 +88,14 @@ for name in "${names[@]}"; do
       options=(--unit cm --storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
-      files=("$models/duplex-ifc/Duplex_A.ifc")
-      options=(--set Sash.radiance=100 --set 'Glass*.transmittance=0' --patches 100000 --camera 3,-4.7,1.6 7.5,-1.5,0.9 75)
+      rm -f "$out/duplex.toml"
+      "$tool" new "$models/duplex-ifc/Duplex_A.ifc" -o "$out/duplex.toml" >/dev/null
+      files=("$out/duplex.toml")
+      options=(--view A102 --points-output "$out/duplex.csv")
+      ;;
+    honeybee)
+      files=("$models/honeybee-rooms/model_radiance_grid_views.hbjson")
+      options=(--sky overcast:10000lx --patches 6000 --points-output "$out/honeybee.csv")
       ;;
     kitchen)
       python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
@@ -155,22 +161,11 @@ END
       options=(--patches 8000 --points-output "$out/openroom.csv")
       ;;
     duplex-daylight)
-      # Panes are solids whose two faces count once; the sashes that they lie in are clear in full.
       cat >"$out/duplex-daylight.toml" <<END
 up = "z"
 
 [[model]]
 file = "$models/duplex-ifc/Duplex_A.ifc"
-
-[[material]]
-name = "Glass*"
-transmittance = 0.88
-reflectance = 0.05
-
-[[material]]
-name = "Sash"
-transmittance = 1
-reflectance = 0
 
 [weather]
 file = "$models/weather-ies/USA_CA_Oakland.Intl.AP.724930_TMY3.epw"
@@ -221,7 +216,7 @@ END
     --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
   cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in
-    openroom) python3 scripts/sensor_map.py "$out/openroom.csv" "$out/openroom.svg" ;;
+    openroom | honeybee) python3 scripts/sensor_map.py "$out/$name.csv" "$out/$name.svg" ;;
     duplex-daylight)
       python3 scripts/sensor_map.py "$out/duplex-daylight.csv" "$out/duplex-daylight.svg" --column E_v_lx
       ;;

@@ -4,6 +4,7 @@
 #include "cli/parse_value.h"
 #include "light/solar_position.h"
 
+#include <chrono>
 #include <cmath>
 #include <regex>
 #include <tuple>
@@ -53,9 +54,12 @@ Instant instant(const std::string& text) {
   std::smatch found;
   const bool matches = std::regex_match(text, found, form);
   const auto part = [&](std::size_t k) { return found[k].matched ? std::stoi(found[k]) : 0; };
-  if (!matches || part(2) < 1 || part(2) > 12 || part(3) < 1 || part(3) > 31 || part(4) > 24 || part(5) > 59)
+  const std::chrono::year_month_day day(std::chrono::year(part(1)), std::chrono::month(static_cast<unsigned>(part(2))),
+                                        std::chrono::day(static_cast<unsigned>(part(3))));
+  if (!matches || !day.ok() || part(4) > 23 || part(5) > 59 || part(6) > 59 || part(8) > 14 || part(9) > 59)
     throw refusal("--sun", text,
-                  "a date and time with its offset, as 2024-06-21T12:00:00Z or 2024-06-21T13:00+01:00, before the @");
+                  "a day of the calendar and a time with its offset, as 2024-06-21T12:00:00Z or "
+                  "2024-06-21T13:00+01:00, before the @");
   const double minutes_east = (found[7].str() == "-" ? -1 : 1) * (60 * part(8) + part(9));
   return {part(1), part(2), part(3), part(4) + (part(5) - minutes_east) / 60.0 + part(6) / 3600.0};
 }
@@ -110,16 +114,16 @@ void take_weather(DaylightSetting& daylight, const std::string& text) {
 void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
   add(command, "--sky", "KIND[:STRENGTH]",
       "the sky: overcast, uniform or clear (this with --sun) and the\nilluminance of the open ground by it, as in "
-      "overcast:10000lx,\nwhich is the default; or perez:DIRECT,DIFFUSE, as measured in\nW/m^2; default: as in the "
-      "scene "
-      "file",
+      "overcast:10000lx,\nwhich is the default; or perez:DIRECT,DIFFUSE, as measured in\nW/m^2; default: none, or what "
+      "the scene "
+      "file has",
       [&daylight](const std::string& text) { take_sky(daylight, text); });
   add(command, "--sun", "PLACE[:LX]",
       "where the sun stands, as ALTITUDE,AZIMUTH in degrees, the second\nfrom north over east, or "
       "TIME@LATITUDE,LONGITUDE, "
       "and how strong\nit is across its rays: 40,180:80000lx,\n2024-06-21T12:00:00Z@52.5,13.4:80000lx; with a clear "
       "sky "
-      "and\nwithout a strength it only shapes the sky; default: as in the\nscene file",
+      "and\nwithout a strength it only shapes the sky; default: none, or what\nthe scene file has",
       [&daylight](const std::string& text) { take_sun(daylight, text); });
   add(command, "--ground", "R", "reflectance of the ground below the horizon, 0 to 1; default: 0.2",
       [&daylight](const std::string& text) {
@@ -128,7 +132,7 @@ void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
       });
   add(command, "--weather", "FILE@HOUR",
       "sun and sky of an hour of an EPW file, which begins at\nMONTH-DAY-HOUR, standard time: city.epw@6-21-12; "
-      "default: as in\nthe scene file",
+      "default: none, or\nwhat the scene file has",
       [&daylight](const std::string& text) { take_weather(daylight, text); });
 }
 

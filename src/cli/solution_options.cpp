@@ -35,8 +35,11 @@ void require_extension(const std::string& option, const std::string& file, const
 
 // Sensors may be asked for by --points, or by a scene file among the models.
 bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& options) {
-  const auto is_scene_file = [](const path& model) { return model.extension() == ".toml"; };
-  return !options.points.empty() || arguments.read.format == "toml" ||
+  const auto is_scene_file = [](const path& model) {
+    return model.extension() == ".toml" || model.extension() == ".hbjson";
+  };
+  const std::string& format = arguments.read.format;
+  return !options.points.empty() || format == "toml" || format == "hbjson" ||
          std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
 }
 

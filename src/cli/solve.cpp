@@ -76,14 +76,25 @@ class Iterates {
     if (!wanted_) return {};
     const auto is_it = [&](const std::vector<IterateIrradiance>& iterates) {
       return iterates.size() == simulation.solution.history.size() &&
-             iterates.front().rows() == static_cast<Eigen::Index>(simulation.mesh.size());
+             iterates.front().rows() == static_cast<Eigen::Index>(simulation.mesh.size()) &&
+             iterates.front().cols() == simulation.problem.exitance.cols();
     };
     const auto found = std::find_if(solutions_.rbegin(), solutions_.rend(), is_it);
+    if (found == solutions_.rend() && is_solved_by_colours(simulation))
+      throw InputError("--series",
+                       "found clear faces or mirrors of several colours, whose light is solved colour by colour; a "
+                       "series needs one solution: leave it out, or give --skip colour");
     if (found == solutions_.rend()) throw Cancelled();
     return std::move(*found);
   }
 
  private:
+  bool is_solved_by_colours(const Simulation& simulation) const {
+    return std::any_of(solutions_.begin(), solutions_.end(), [&](const std::vector<IterateIrradiance>& iterates) {
+      return !iterates.empty() && iterates.front().cols() != simulation.problem.exitance.cols();
+    });
+  }
+
   static constexpr std::size_t most = 3;
   bool wanted_;
   std::deque<std::vector<IterateIrradiance>> solutions_;

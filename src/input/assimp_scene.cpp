@@ -149,7 +149,8 @@ std::string inner_name(const std::string& name) {
 // Collects the faces of all nodes.
 class AssimpCollector {
  public:
-  AssimpCollector(Scene scene, const aiScene& model) : scene_(std::move(scene)), model_(model) {}
+  AssimpCollector(Scene scene, const aiScene& model, bool has_seams)
+      : scene_(std::move(scene)), model_(model), has_seams_(has_seams) {}
 
   void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above,
                 const std::string& storey_above) {
@@ -160,7 +161,7 @@ class AssimpCollector {
     for (unsigned int k = 0; k < node.mNumMeshes; ++k) {
       const aiMesh& mesh = *model_.mMeshes[node.mMeshes[k]];
       if (group.starts_with(space_class)) {
-        add_to_room(mesh, to_scene, inner_name(group), storey);
+        add_to_room(mesh, to_scene, group, storey);
       } else {
         add_mesh(mesh, to_scene, group);
       }
@@ -177,10 +178,10 @@ class AssimpCollector {
 
  private:
   // A space is air: its body tells where a room is.
-  void add_to_room(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& name,
+  void add_to_room(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& space,
                    const std::string& storey) {
-    const bool goes_on = !scene_.rooms.empty() && scene_.rooms.back().name == name;
-    if (!goes_on) scene_.rooms.push_back({name, storey, {}});
+    if (scene_.rooms.empty() || last_space_ != space) scene_.rooms.push_back({inner_name(space), storey, {}});
+    last_space_ = space;
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
       std::vector<Point>& corners = scene_.rooms.back().faces.emplace_back();
       for (unsigned int k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
@@ -198,7 +199,7 @@ class AssimpCollector {
       const aiVector3D& p = mesh.mVertices[v];
       scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
     }
-    const std::set<Seam> seams = seams_of(mesh);
+    const std::set<Seam> seams = has_seams_ ? seams_of(mesh) : std::set<Seam>();
     // A mirrored copy keeps its front where it was: the corners run the other way.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
@@ -222,6 +223,8 @@ class AssimpCollector {
 
   Scene scene_;
   const aiScene& model_;
+  bool has_seams_;
+  std::string last_space_;  // with its identifier
   std::map<std::string, std::uint32_t> groups_;
   std::size_t other_primitives_ = 0;
 };
@@ -244,7 +247,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   scene = with_materials(std::move(scene), *model);
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
-  AssimpCollector collector(std::move(scene), *model);
+  AssimpCollector collector(std::move(scene), *model, format.has_seams);
   collector.add_node(*model->mRootNode, to_scene, "", "");
   scene = with_used_materials(std::move(collector).scene());
   scene.metres_per_unit = metres_per_unit;

@@ -8,7 +8,8 @@ namespace patchlight {
 
 /// What one of assimp's formats carries.
 struct AssimpFormat {
-  std::string extension;                               ///< without its dot, lower case: the only importer that is asked
+  std::string extension;   ///< without its dot, lower case: the only importer that is asked
+  bool has_seams = false;  ///< extruded profiles walk along seams to their holes: pairs of walls on these are no faces
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from assimp's axes to those of the file
 };
 

@@ -35,14 +35,14 @@ void require_consistent(const DaylightSetting& setting) {
     throw InputError("read.daylight.sun", "found a strength, which is known from what was measured; leave it out");
 }
 
-SunEntry sun_of(const DaylightSetting& setting) {
+SunEntry sun_entry(const DaylightSetting& setting) {
   SunEntry sun;
   sun.position = SolarPosition{setting.sun->altitude, setting.sun->azimuth};
   if (setting.sun_illuminance > 0) sun.normal_irradiance = irradiance_for(setting.sun_illuminance);
   return sun;
 }
 
-SkyEntry sky_of(const DaylightSetting& setting) {
+SkyEntry sky_entry(const DaylightSetting& setting) {
   if (setting.sky != SkyKind::perez) return {*setting.sky, irradiance_for(setting.sky_illuminance), {}};
   SolarIrradiance measured = setting.measured.value_or(SolarIrradiance{});
   measured.day_of_year = setting.sun->day_of_year;
@@ -65,8 +65,8 @@ LightEntries lights_of(const DaylightSetting& setting, const std::filesystem::pa
     lights.weather =
         read_epw(setting.weather->file, setting.weather->month, setting.weather->day, setting.weather->hour);
   }
-  if (setting.sun) lights.sun = sun_of(setting);
-  if (setting.sky) lights.sky = sky_of(setting);
+  if (setting.sun) lights.sun = sun_entry(setting);
+  if (setting.sky) lights.sky = sky_entry(setting);
   if (setting.sky || setting.weather) lights.ground_reflectance = setting.ground_reflectance.value_or(usual_ground);
   return lights;
 }

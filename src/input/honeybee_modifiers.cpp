@@ -3,7 +3,6 @@
 #include "base/lower_case.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,18 +15,18 @@ namespace {
 
 using HoneybeeJson = nlohmann::json;
 
-double value_of(const HoneybeeJson& item, const std::string& key, double otherwise) {
+double number_in(const HoneybeeJson& item, const std::string& key, double otherwise) {
   const auto found = item.find(key);
   return found != item.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
 // "r_reflectance" and so on.
 Spectrum bands_of_key(const HoneybeeJson& item, const std::string& quantity, double otherwise) {
-  return rgb(value_of(item, "r_" + quantity, otherwise), value_of(item, "g_" + quantity, otherwise),
-             value_of(item, "b_" + quantity, otherwise));
+  return rgb(number_in(item, "r_" + quantity, otherwise), number_in(item, "g_" + quantity, otherwise),
+             number_in(item, "b_" + quantity, otherwise));
 }
 
-std::string text_of(const HoneybeeJson& item, const std::string& key) {
+std::string text_in(const HoneybeeJson& item, const std::string& key) {
   const auto found = item.find(key);
   return found != item.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -62,7 +61,7 @@ Material generic_material(const std::string& kind) {
 }
 
 Material glass(Material material, const HoneybeeJson& modifier) {
-  material.index = value_of(modifier, "refraction_index", 1.52);
+  material.index = number_in(modifier, "refraction_index", 1.52);
   material.reflectance = rgb(0, 0, 0);
   material.transmittance = transmittance_for(bands_of_key(modifier, "transmissivity", 0), material.index);
   return material;
@@ -71,9 +70,9 @@ Material glass(Material material, const HoneybeeJson& modifier) {
 // Radiance's trans: of what is not reflected specularly the share transmitted_diff (1 - transmitted_spec) is scattered
 // out of the other side.
 Material sheet(Material material, const HoneybeeJson& modifier) {
-  const double transmitted = value_of(modifier, "transmitted_diff", 0);
-  const double straight = value_of(modifier, "transmitted_spec", 0);
-  const Spectrum colour = bands_of_key(modifier, "reflectance", 0) * (1 - value_of(modifier, "specularity", 0));
+  const double transmitted = number_in(modifier, "transmitted_diff", 0);
+  const double straight = number_in(modifier, "transmitted_spec", 0);
+  const Spectrum colour = bands_of_key(modifier, "reflectance", 0) * (1 - number_in(modifier, "specularity", 0));
   material.reflectance = colour * (1 - transmitted);
   if (straight > 0.5) {
     material.transmittance = colour * transmitted * straight;
@@ -85,17 +84,17 @@ Material sheet(Material material, const HoneybeeJson& modifier) {
 
 // As Radiance has them; nothing for kinds that are not known.
 std::optional<Material> material_of(const HoneybeeJson& modifier) {
-  const std::string type = in_lower_case(text_of(modifier, "type"));
-  Material material{text_of(modifier, "identifier"), rgb(0, 0, 0), rgb(0, 0, 0)};
+  const std::string type = in_lower_case(text_in(modifier, "type"));
+  Material material{text_in(modifier, "identifier"), rgb(0, 0, 0), rgb(0, 0, 0)};
   const Spectrum reflectance = bands_of_key(modifier, "reflectance", 0);
   if (type == "plastic") {
-    const double specularity = value_of(modifier, "specularity", 0);
+    const double specularity = number_in(modifier, "specularity", 0);
     material.reflectance = reflectance * (1 - specularity) + specularity;
     return material;
   }
   if (type == "metal" || type == "mirror") {
-    const double specularity = type == "mirror" ? 1 : value_of(modifier, "specularity", 0.9);
-    const bool is_smooth = value_of(modifier, "roughness", 0) == 0;
+    const double specularity = type == "mirror" ? 1 : number_in(modifier, "specularity", 0.9);
+    const bool is_smooth = number_in(modifier, "roughness", 0) == 0;
     material.reflectance = reflectance * (is_smooth ? 1 - specularity : 1);
     if (is_smooth && specularity > 0) material.specular_reflectance = reflectance * specularity;
     return material;
@@ -109,18 +108,38 @@ std::optional<Material> material_of(const HoneybeeJson& modifier) {
   return std::nullopt;
 }
 
-// Where a modifier set has the modifier of a kind: its part, and the key there.
-const std::map<std::string, std::array<const char*, 2>>& places_in_sets() {
-  static const std::map<std::string, std::array<const char*, 2>> places = {
-      {"floor", {"floor_set", "interior_modifier"}},
-      {"wall", {"wall_set", "interior_modifier"}},
-      {"ceiling", {"roof_ceiling_set", "interior_modifier"}},
-      {"door", {"door_set", "exterior_modifier"}},
-      {"window", {"aperture_set", "window_modifier"}},
-      {"interior_window", {"aperture_set", "interior_modifier"}},
-      {"exterior_shade", {"shade_set", "exterior_modifier"}},
-      {"interior_shade", {"shade_set", "interior_modifier"}}};
+// Where a modifier set has the modifier of a kind: its part, and the keys there of what stands outdoors and of other.
+struct PlaceInSet {
+  const char* part;
+  const char* outdoors;
+  const char* other;
+};
+
+const std::map<std::string, PlaceInSet>& places_in_sets() {
+  static const std::map<std::string, PlaceInSet> places = {
+      {"floor", {"floor_set", "exterior_modifier", "interior_modifier"}},
+      {"wall", {"wall_set", "exterior_modifier", "interior_modifier"}},
+      {"ceiling", {"roof_ceiling_set", "exterior_modifier", "interior_modifier"}},
+      {"door", {"door_set", "exterior_modifier", "interior_modifier"}},
+      {"glass_door", {"door_set", "exterior_glass_modifier", "interior_glass_modifier"}},
+      {"window", {"aperture_set", "window_modifier", "interior_modifier"}},
+      {"operable_window", {"aperture_set", "operable_modifier", "interior_modifier"}},
+      {"skylight", {"aperture_set", "skylight_modifier", "interior_modifier"}},
+      {"exterior_shade", {"shade_set", "exterior_modifier", "exterior_modifier"}},
+      {"interior_shade", {"shade_set", "interior_modifier", "interior_modifier"}}};
   return places;
+}
+
+bool is_outdoors(const HoneybeeJson& item) {
+  const HoneybeeJson::json_pointer place("/boundary_condition/type");
+  return item.contains(place) && item.at(place) == "Outdoors";
+}
+
+// Where honeybee has one generic modifier for several kinds.
+std::string generic_kind(const std::string& kind, bool outdoors) {
+  const bool is_glass = kind == "window" || kind == "operable_window" || kind == "skylight" || kind == "glass_door";
+  if (is_glass) return outdoors ? "window" : "interior_window";
+  return kind;
 }
 
 }  // namespace
@@ -131,19 +150,20 @@ const nlohmann::json* HoneybeeModifiers::modifier(const std::string& identifier)
   const auto list = radiance_.find("modifiers");
   if (list == radiance_.end()) return nullptr;
   for (const HoneybeeJson& one : *list) {
-    if (text_of(one, "identifier") == identifier) return &one;
+    if (text_in(one, "identifier") == identifier) return &one;
   }
   return nullptr;
 }
 
-std::string HoneybeeModifiers::of_set(const std::string& set, const std::string& kind) const {
+std::string HoneybeeModifiers::of_set(const std::string& set, const std::string& kind, bool outdoors) const {
   const auto sets = radiance_.find("modifier_sets");
   const auto place = places_in_sets().find(kind);
   if (set.empty() || sets == radiance_.end() || place == places_in_sets().end()) return {};
   for (const HoneybeeJson& one : *sets) {
-    if (text_of(one, "identifier") != set) continue;
-    const auto part = one.find(place->second[0]);
-    return part != one.end() && part->is_object() ? text_of(*part, place->second[1]) : std::string();
+    if (text_in(one, "identifier") != set) continue;
+    const auto part = one.find(place->second.part);
+    if (part == one.end() || !part->is_object()) return {};
+    return text_in(*part, outdoors ? place->second.outdoors : place->second.other);
   }
   return {};
 }
@@ -151,13 +171,15 @@ std::string HoneybeeModifiers::of_set(const std::string& set, const std::string&
 Material HoneybeeModifiers::material(const nlohmann::json& item, const std::string& set, const std::string& kind) {
   const HoneybeeJson::json_pointer own("/properties/radiance/modifier");
   std::string name = item.contains(own) && item.at(own).is_string() ? item.at(own).get<std::string>() : std::string();
-  if (name.empty()) name = of_set(set, kind);
-  if (name.empty()) return generic_material(kind);
+  const bool outdoors = is_outdoors(item);
+  const std::string generic = generic_kind(kind, outdoors);
+  if (name.empty()) name = of_set(set, kind, outdoors);
+  if (name.empty()) return generic_material(generic);
   const HoneybeeJson* const found = modifier(name);
   const std::optional<Material> material = found != nullptr ? material_of(*found) : std::nullopt;
   if (material) return *material;
   if (std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
-  return generic_material(kind);
+  return generic_material(generic);
 }
 
 }  // namespace patchlight

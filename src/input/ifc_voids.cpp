@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -25,10 +26,25 @@ struct StepEntity {
   std::size_t end = 0;              // behind its semicolon
 };
 
+// Behind the comment that begins at `begin`; the last letter without an end.
+std::size_t behind_comment(std::string_view text, std::size_t begin) {
+  const std::size_t end = text.find("*/", begin + 2);
+  return end == std::string_view::npos ? text.size() : end + 2;
+}
+
+// The first letter from `begin` on that is neither space nor of a comment.
+std::size_t first_letter(std::string_view text, std::size_t begin) {
+  std::size_t at = text.find_first_not_of(" \t\r\n", begin);
+  while (at != std::string_view::npos && text.substr(at, 2) == "/*")
+    at = text.find_first_not_of(" \t\r\n", behind_comment(text, at));
+  return at;
+}
+
 // The end of the statement that begins at `begin`: behind the next semicolon outside of strings; npos without one.
 std::size_t end_of_statement(std::string_view text, std::size_t begin) {
   bool in_string = false;
   for (std::size_t k = begin; k < text.size(); ++k) {
+    if (!in_string && text.substr(k, 2) == "/*") k = behind_comment(text, k) - 1;
     if (text[k] == '\'') in_string = !in_string;
     if (text[k] == ';' && !in_string) return k + 1;
   }
@@ -36,18 +52,41 @@ std::size_t end_of_statement(std::string_view text, std::size_t begin) {
 }
 
 std::optional<StepEntity> parsed(std::string_view text, std::size_t begin, std::size_t end) {
-  const std::size_t hash = text.find_first_not_of(" \t\r\n", begin);
+  const std::size_t hash = first_letter(text, begin);
   if (hash >= end || text[hash] != '#') return std::nullopt;
   StepEntity statement{.begin = hash, .end = end};
   const char* const last = text.data() + end;
   const auto [after, error] = std::from_chars(text.data() + hash + 1, last, statement.id);
   if (error != std::errc()) return std::nullopt;
-  const std::size_t equals = text.find('=', static_cast<std::size_t>(after - text.data()));
-  const std::size_t bracket = equals < end ? text.find('(', equals) : end;
+  const std::string_view whole = text.substr(0, end);
+  const std::size_t equals = whole.find('=', static_cast<std::size_t>(after - text.data()));
+  const std::size_t bracket = equals < end ? whole.find('(', equals) : end;
   if (bracket >= end) return std::nullopt;
   statement.keyword = trimmed(text.substr(equals + 1, bracket - equals - 1));
   statement.arguments = text.substr(bracket, end - 1 - bracket);
   return statement;
+}
+
+// The arguments between the outer brackets, at commas outside of strings and of inner brackets.
+std::vector<std::string_view> arguments_of(std::string_view arguments) {
+  std::vector<std::string_view> parts;
+  const std::string_view inner = trimmed(arguments);
+  if (inner.size() < 2 || inner.back() != ')') return parts;
+  int depth = 0;
+  bool in_string = false;
+  std::size_t begin = 1;
+  for (std::size_t k = 1; k < inner.size(); ++k) {
+    const char letter = inner[k];
+    if (letter == '\'') in_string = !in_string;
+    if (in_string) continue;
+    const bool is_end = k + 1 == inner.size();
+    if ((letter == ',' && depth == 0) || is_end) {
+      parts.push_back(trimmed(inner.substr(begin, k - begin)));
+      begin = k + 1;
+    }
+    depth += letter == '(' ? 1 : letter == ')' ? -1 : 0;
+  }
+  return parts;
 }
 
 // The numbers behind each # of a text.
@@ -83,10 +122,12 @@ struct Entities {
 
 Entities entities_of(std::string_view text) {
   Entities found;
+  // A number that stands anywhere is taken, in comments, too.
+  for (const Id id : references(text)) found.largest = std::max(found.largest, id);
+  if (found.largest >= std::numeric_limits<Id>::max() / 2) return found;
   for (std::size_t begin = 0, end = 0; (end = end_of_statement(text, begin)) != std::string_view::npos; begin = end) {
     const std::optional<StepEntity> statement = parsed(text, begin, end);
     if (!statement) continue;
-    found.largest = std::max(found.largest, statement->id);
     if (statement->keyword == "IFCCARTESIANPOINT") {
       if (const auto place = place_of(statement->arguments)) found.points.emplace(statement->id, *place);
     } else if (statement->keyword == "IFCPOLYLINE") {
@@ -123,9 +164,11 @@ std::optional<ClosedCurve> curve_of(const Entities& entities, Id curve) {
 
 // The points of the one walk over all curves of a profile: its third argument is the outline, its fourth the voids.
 std::vector<Id> walk_of(const Entities& entities, const StepEntity& profile) {
+  const std::vector<std::string_view> arguments = arguments_of(profile.arguments);
+  if (arguments.size() != 4) return {};
   std::vector<std::vector<Id>> ids;
   std::vector<std::vector<Place2d>> rings;
-  for (const Id id : references(profile.arguments)) {
+  for (const Id id : references(std::string(arguments[2]) + "," + std::string(arguments[3]))) {
     std::optional<ClosedCurve> curve = curve_of(entities, id);
     if (!curve) return {};
     ids.push_back(std::move(curve->ids));
@@ -153,7 +196,8 @@ JoinedVoids with_joined_voids(std::string_view text) {
     }
     ++result.joined;
     // The type and the name of the profile stay; what follows is the first curve.
-    const std::string head(profile.arguments.substr(0, profile.arguments.find(",#")));
+    const std::vector<std::string_view> arguments = arguments_of(profile.arguments);
+    const std::string head = "(" + std::string(arguments[0]) + "," + std::string(arguments[1]);
     std::string points;
     for (const Id id : walk) points += (points.empty() ? "#" : ",#") + std::to_string(id);
     points += ",#" + std::to_string(walk[0]);

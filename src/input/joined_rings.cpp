@@ -82,11 +82,23 @@ std::optional<std::vector<RingCorner>> joined_rings(const std::vector<std::vecto
     all.push_back(std::move(ring));
   }
   if (all.empty() || corners > most_corners) return std::nullopt;
-  std::optional<Ring> joined = std::move(all[0]);
-  for (std::size_t k = 1; joined && k < all.size(); ++k)
-    joined = with_hole(*joined, all[k], {all.begin() + static_cast<std::ptrdiff_t>(k) + 1, all.end()});
-  if (!joined) return std::nullopt;
-  return joined->corners;
+  // A hole that others hide from the outline is joined once these are.
+  Ring joined = std::move(all[0]);
+  std::vector<Ring> left(all.begin() + 1, all.end());
+  while (!left.empty()) {
+    bool is_any_joined = false;
+    for (std::size_t k = 0; k < left.size() && !is_any_joined; ++k) {
+      std::vector<Ring> others = left;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+      std::optional<Ring> more = with_hole(joined, left[k], others);
+      if (!more) continue;
+      joined = std::move(*more);
+      left = std::move(others);
+      is_any_joined = true;
+    }
+    if (!is_any_joined) return std::nullopt;
+  }
+  return joined.corners;
 }
 
 }  // namespace patchlight

@@ -17,6 +17,7 @@ namespace patchlight {
 namespace {
 
 constexpr std::size_t most_cameras = 3;
+constexpr std::size_t most_named = 12;
 constexpr double eye_height = 1.6;     // metres
 constexpr double target_height = 1.3;  // metres
 constexpr double from_walls = 0.5;     // metres
@@ -29,12 +30,12 @@ struct NamedFloor {
   Floor floor;
 };
 
-std::string quoted(const std::string& text) {
+std::string toml_text(const std::string& text) {
   std::string result = "\"";
   for (const char letter : text) {
     if (letter == '"' || letter == '\\') result += '\\';
-    const bool is_control = static_cast<unsigned char>(letter) < 0x20;
-    result += is_control ? ' ' : letter;
+    const bool is_control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+    result += is_control ? '?' : letter;
   }
   return result + "\"";
 }
@@ -59,10 +60,11 @@ bool is_under_something(const Floor& floor, double top) {
 }
 
 std::vector<NamedFloor> rooms_of(const Scene& scene) {
+  const double top = top_of(scene);
   std::vector<NamedFloor> places;
   for (const NamedRoom& room : scene.rooms) {
     Floor floor = floor_of(room.faces, scene.up);
-    if (is_under_something(floor, top_of(scene))) places.push_back({room.name, std::move(floor)});
+    if (is_under_something(floor, top)) places.push_back({room.name, std::move(floor)});
   }
   return largest_first(std::move(places));
 }
@@ -90,6 +92,9 @@ std::string place_text(const Point& point) {
 // From one of the two places of a floor that are farthest apart, away from walls, to the other.
 std::optional<Camera> camera_in(const NamedFloor& place) {
   const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
+  constexpr double most_cells = 5000;
+  const auto [corner, x, y] = rectangle_over(place.floor, 0);
+  if (!(cells_along(x.norm(), spacing) * cells_along(y.norm(), spacing) <= most_cells)) return std::nullopt;
   const SensorGroup grid = floor_grid(place.floor, 0, spacing, from_walls);
   Camera camera{Point::Zero(), Point::Zero(), 70, place.name};
   double farthest = 0;
@@ -120,14 +125,14 @@ std::string model_tables(const Scene& scene, const std::vector<std::filesystem::
     const std::filesystem::path absolute = std::filesystem::absolute(model);
     const std::filesystem::path relative = absolute.lexically_relative(folder);
     const bool is_near = !relative.empty() && *relative.begin() != "..";
-    text << "[[model]]\nfile = " << quoted((is_near ? relative : absolute).string()) << '\n';
+    text << "[[model]]\nfile = " << toml_text((is_near ? relative : absolute).string()) << '\n';
     if (metres_per_unit != 1) text << "unit = " << shortest(metres_per_unit) << '\n';
     text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
     std::string list;
     for (const std::string& name : classes) {
       const bool is_loose = name.find("Furnish") != std::string::npos || name.find("Flow") != std::string::npos ||
                             name.find("Member") != std::string::npos || name.find("Railing") != std::string::npos;
-      if (is_loose) list += (list.empty() ? "" : ", ") + quoted(name);
+      if (is_loose) list += (list.empty() ? "" : ", ") + toml_text(name);
     }
     text << (list.empty() ? "\"chairs*\"" : list) << "]\n\n";
   }
@@ -139,19 +144,20 @@ std::string spectrum_text(const Spectrum& spectrum) {
   return values.find(',') == std::string::npos ? values : "[" + values + "]";
 }
 
+// Commented out: it says what is so without it.
 std::string material_tables(const Scene& scene) {
   std::ostringstream text;
   for (const Material& material : scene.materials) {
     if (material.second_face || !(material.transmittance > 0).any()) continue;
-    text << "[[material]]\nname = " << quoted(material.name)
-         << "\ntransmittance = " << spectrum_text(material.transmittance)
+    text << "# [[material]]\n# name = " << toml_text(material.name)
+         << "\n# transmittance = " << spectrum_text(material.transmittance)
          << "  # straight through, at right angles; 0 makes it opaque\n"
-         << "reflectance = " << spectrum_text(material.reflectance)
-         << "  # diffuse\nindex = " << shortest(material.index) << "\n\n";
+         << "# reflectance = " << spectrum_text(material.reflectance)
+         << "  # diffuse\n# index = " << shortest(material.index) << "\n\n";
   }
-  if (!text.str().empty()) return "# Glass, as the file has it.\n" + text.str();
+  if (!text.str().empty()) return "# Glass, as the model has it. What is changed here counts.\n" + text.str();
   return "# No material is clear. A window lets light in with:\n# [[material]]\n# name = \"Glass*\"\n"
-         "# transmittance = 0.8\n\n";
+         "# transmittance = 0.8\n# reflectance = 0\n\n";
 }
 
 std::string sky_tables(const Scene& scene) {
@@ -166,19 +172,53 @@ std::string sky_tables(const Scene& scene) {
 }
 
 std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
+  if (!scene.sensors.empty()) return "# The model has sensors of its own.\n\n";
   std::ostringstream text;
   const std::string rest = "height = 0.8      # metres above the floor\nspacing = 0.5\nfrom_walls = 0.5\n\n";
   if (!scene.rooms.empty()) {
     text
         << "# A grid over the floor of every room; results are told room by room.\n[[sensors]]\nname = \"work plane\"\n"
         << "room = \"*\"        # or one of:";
-    for (std::size_t k = 0; k < std::min<std::size_t>(places.size(), 12); ++k)
-      text << (k > 0 ? ", " : " ") << places[k].name;
-    text << '\n' << rest;
+    for (std::size_t k = 0; k < std::min(places.size(), most_named); ++k)
+      text << (k > 0 ? ", " : " ") << toml_text(places[k].name);
+    text << (places.size() > most_named ? ", ..." : "") << '\n' << rest;
   } else if (!places.empty()) {
-    text << "# A grid over the largest floor.\n[[sensors]]\nname = \"work plane\"\nfloor = " << quoted(places[0].name)
-         << '\n'
+    text << "# A grid over the largest floor.\n[[sensors]]\nname = \"work plane\"\nfloor = "
+         << toml_text(places[0].name) << '\n'
          << rest;
+  }
+  return text.str();
+}
+
+// Of how much glass is near, m^2 / m^2.
+double glass_near(const Scene& scene, const Point& point) {
+  double sum = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!is_opening(scene, p)) continue;
+    const std::vector<Point> corners = corner_points(scene, p);
+    const double area = area_vector(corners).norm();
+    sum += area / ((corners[0] - point).squaredNorm() + area);
+  }
+  return sum;
+}
+
+// From one end of the largest rooms to the other, towards the glass. A model with views of its own needs none.
+std::string camera_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
+  if (scene.rooms.empty() || !scene.cameras.empty()) return {};
+  std::ostringstream text;
+  std::set<std::string> names;
+  for (const NamedFloor& place : places) {
+    std::optional<Camera> camera = names.size() < most_cameras ? camera_in(place) : std::nullopt;
+    if (!camera || !names.insert(camera->name).second) continue;
+    if (glass_near(scene, camera->eye) > glass_near(scene, camera->target)) {
+      const Vector lower = (eye_height - target_height) * place.floor.up;
+      const Point eye = camera->target + lower;
+      camera->target = camera->eye - lower;
+      camera->eye = eye;
+    }
+    if (names.size() == 1) text << "# Views for --view NAME, from inside the largest rooms towards their glass.\n";
+    text << "[[camera]]\nname = " << toml_text(camera->name) << "\neye = " << place_text(camera->eye)
+         << "\ntarget = " << place_text(camera->target) << "\nfield_of_view = 70  # degrees, upright\n\n";
   }
   return text.str();
 }
@@ -195,14 +235,7 @@ std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
   text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << sky_tables(scene)
        << sensor_tables(scene, places);
-  std::size_t cameras = 0;
-  for (const NamedFloor& place : places) {
-    const std::optional<Camera> camera = cameras < most_cameras ? camera_in(place) : std::nullopt;
-    if (!camera) continue;
-    if (cameras++ == 0) text << "# Views for --view NAME: from one end of the largest rooms to the other.\n";
-    text << "[[camera]]\nname = " << quoted(camera->name) << "\neye = " << place_text(camera->eye)
-         << "\ntarget = " << place_text(camera->target) << "\nfield_of_view = 70  # degrees, upright\n\n";
-  }
+  text << camera_tables(scene, places);
   return text.str();
 }
 

@@ -26,6 +26,13 @@ const std::map<std::string, double>& honeybee_units() {
   return units;
 }
 
+// What an optional key has; null counts as absent.
+template <typename Value>
+Value value_or(const HbJson& item, const char* key, Value otherwise) {
+  const auto found = item.find(key);
+  return found == item.end() || found->is_null() ? otherwise : found->get<Value>();
+}
+
 // An empty list where there is none.
 const HbJson& list_of(const HbJson& item, const char* key) {
   static const HbJson none = HbJson::array();
@@ -33,7 +40,7 @@ const HbJson& list_of(const HbJson& item, const char* key) {
   return found != item.end() && found->is_array() ? *found : none;
 }
 
-std::vector<Point> points_of(const HbJson& list, double metres) {
+std::vector<Point> hb_points(const HbJson& list, double metres) {
   std::vector<Point> points;
   for (const HbJson& point : list)
     points.push_back(metres * Point(point.at(0).get<double>(), point.at(1).get<double>(), point.at(2).get<double>()));
@@ -52,7 +59,11 @@ std::vector<Point> outline_with_holes(const std::vector<std::vector<Point>>& rin
     for (const Point& point : ring) flat.emplace_back(x.dot(point), y.dot(point));
   }
   const auto walk = joined_rings(plane);
-  if (!walk) throw InputError(where, "a hole or an opening lies outside of its face; expected it within");
+  if (!walk)
+    throw InputError(where,
+                     "its holes and openings cannot be joined to its outline; expected them within it, apart from each "
+                     "other, and at "
+                     "most 2,000 corners");
   std::vector<Point> outline;
   for (const auto& [ring, corner] : *walk) outline.push_back(rings[ring][corner]);
   return outline;
@@ -105,8 +116,8 @@ class HoneybeeScene {
 
   std::vector<std::vector<Point>> rings_of(const HbJson& item) const {
     const HbJson& geometry = item.at("geometry");
-    std::vector<std::vector<Point>> rings = {points_of(geometry.at("boundary"), metres_)};
-    for (const HbJson& hole : list_of(geometry, "holes")) rings.push_back(points_of(hole, metres_));
+    std::vector<std::vector<Point>> rings = {hb_points(geometry.at("boundary"), metres_)};
+    for (const HbJson& hole : list_of(geometry, "holes")) rings.push_back(hb_points(hole, metres_));
     return rings;
   }
 
@@ -121,17 +132,24 @@ class HoneybeeScene {
     for (const HbJson& shade : list_of(owner, "indoor_shades")) add(shade, set, "interior_shade");
   }
 
+  static const char* kind_of_opening(const HbJson& face, const HbJson& opening, bool is_clear) {
+    if (opening.at("type") != "Aperture") return is_clear ? "glass_door" : "door";
+    const HbJson::json_pointer type("/face_type");
+    if (face.contains(type) && face.at(type) == "RoofCeiling") return "skylight";
+    return value_or(opening, "is_operable", false) ? "operable_window" : "window";
+  }
+
   // Those between two rooms are in the file twice, back to back.
   void add_openings(const HbJson& face, const std::string& set) {
     for (const char* const key : {"apertures", "doors"}) {
       for (const HbJson& opening : list_of(face, key)) {
         const HbJson& condition = opening.at("boundary_condition");
         const bool is_inside = condition.at("type") == "Surface";
-        const bool is_clear = opening.at("type") == "Aperture" || opening.value("is_glass", false);
+        const bool is_clear = opening.at("type") == "Aperture" || value_or(opening, "is_glass", false);
         add_shades(opening, set);
         if (is_inside && done_.count(condition.at("boundary_condition_objects").at(0).get<std::string>()) > 0) continue;
         done_.insert(opening.at("identifier").get<std::string>());
-        add(opening, set, !is_clear ? "door" : is_inside ? "interior_window" : "window");
+        add(opening, set, kind_of_opening(face, opening, is_clear));
       }
     }
   }
@@ -145,7 +163,7 @@ class HoneybeeScene {
       std::vector<std::vector<Point>> rings = rings_of(face);
       for (const char* const key : {"apertures", "doors"})
         for (const HbJson& opening : list_of(face, key))
-          rings.push_back(points_of(opening.at("geometry").at("boundary"), metres_));
+          rings.push_back(hb_points(opening.at("geometry").at("boundary"), metres_));
       add_outline(outline_with_holes(rings, where(face)), face, index_of(modifiers_.material(face, set, kind->second)));
     }
     add_openings(face, set);
@@ -155,10 +173,12 @@ class HoneybeeScene {
     const HbJson::json_pointer place("/properties/radiance/modifier_set");
     const std::string set =
         room.contains(place) && room.at(place).is_string() ? room.at(place).get<std::string>() : std::string();
-    NamedRoom body{room.value("display_name", room.at("identifier").get<std::string>()), room.value("story", ""), {}};
+    NamedRoom body{value_or(room, "display_name", room.at("identifier").get<std::string>()),
+                   value_or<std::string>(room, "story", ""),
+                   {}};
     add_shades(room, set);
     for (const HbJson& face : room.at("faces")) {
-      body.faces.push_back(points_of(face.at("geometry").at("boundary"), metres_));
+      body.faces.push_back(hb_points(face.at("geometry").at("boundary"), metres_));
       add_face(face, set);
     }
     scene_.rooms.push_back(std::move(body));
@@ -169,8 +189,8 @@ class HoneybeeScene {
     group.name = grid.at("identifier").get<std::string>();
     group.file = scene_.file;
     for (const HbJson& sensor : grid.at("sensors")) {
-      const Point at = points_of(HbJson::array({sensor.at("pos")}), metres_).front();
-      const Vector direction = points_of(HbJson::array({sensor.at("dir")}), 1).front();
+      const Point at = hb_points(HbJson::array({sensor.at("pos")}), metres_).front();
+      const Vector direction = hb_points(HbJson::array({sensor.at("dir")}), 1).front();
       if (!(direction.stableNorm() > 0))
         throw InputError(scene_.file + ": " + group.name, "a sensor looks along 0, 0, 0; expected a direction");
       group.sensors.push_back({at, direction.stableNormalized()});
@@ -180,9 +200,9 @@ class HoneybeeScene {
   }
 
   void add_view(const HbJson& view) {
-    const Point eye = points_of(HbJson::array({view.at("position")}), metres_).front();
-    const Vector way = points_of(HbJson::array({view.at("direction")}), 1).front();
-    const double angle = view.value("v_size", 60.0);
+    const Point eye = hb_points(HbJson::array({view.at("position")}), metres_).front();
+    const Vector way = hb_points(HbJson::array({view.at("direction")}), 1).front();
+    const double angle = value_or(view, "v_size", 60.0);
     if (!(way.stableNorm() > 0) || !(angle > 0 && angle < 180)) {
       scene_.notes.push_back("view '" + view.at("identifier").get<std::string>() +
                              "' is no perspective below 180 degrees: left out");
@@ -203,7 +223,7 @@ Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
   const std::string bytes = read_text(file, file.string(), "the model file");
   try {
     const HbJson model = HbJson::parse(bytes);
-    const std::string unit = model.value("units", "Meters");
+    const std::string unit = value_or<std::string>(model, "units", "Meters");
     const auto known = honeybee_units().find(unit);
     if (known == honeybee_units().end())
       throw InputError(file.string(), "units: found '" + unit +

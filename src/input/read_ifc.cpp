@@ -25,7 +25,7 @@ Eigen::Matrix3d back_to_z_up() {
 
 std::string note_on_voids(std::size_t profiles) {
   return std::to_string(profiles) + (profiles == 1 ? " profile has" : " profiles have") +
-         " voids with curved outlines, which are not cut: frames made of them are read as boards";
+         " voids that are no polygons within it, which are not cut: frames made of them are read as boards";
 }
 
 }  // namespace
@@ -35,10 +35,13 @@ Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
   AssimpFormat format;
   format.extension = "ifc";
   format.turn = back_to_z_up();
-  const JoinedVoids joined = with_joined_voids(bytes);
-  Scene scene =
-      read_isolated(file.string(), [&] { return assimp_scene(joined.text, file.string(), format, metres_per_unit); });
-  if (joined.left > 0) scene.notes.push_back(note_on_voids(joined.left));
+  Scene scene = read_isolated(file.string(), [&] {
+    const JoinedVoids joined = with_joined_voids(bytes);
+    format.has_seams = joined.joined > 0;
+    Scene read = assimp_scene(joined.text, file.string(), format, metres_per_unit);
+    if (joined.left > 0) read.notes.push_back(note_on_voids(joined.left));
+    return read;
+  });
   scene.up = Vector::UnitZ();
   scene.up_stated = true;
   scene.sha256 = sha256({&bytes, 1});

@@ -68,7 +68,8 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   scene.metres_per_unit = 1;
   if (file.up) scene.up = *file.up;
   scene.up_stated = scene.up_stated || file.up;
-  scene.cameras.insert(scene.cameras.end(), file.cameras.begin(), file.cameras.end());
+  // Of views with one name the first counts.
+  scene.cameras.insert(scene.cameras.begin(), file.cameras.begin(), file.cameras.end());
   return with_settings(std::move(scene), file.settings);
 }
 

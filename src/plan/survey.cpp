@@ -170,17 +170,16 @@ std::string setting_for(const LampHint& hint) {
 }  // namespace
 
 std::string advice_without_lamp(const Scene& scene) {
-  const std::string by_scene_file =
-      "; read.daylight.sky=overcast:10000lx gives it daylight, and patchlight new MODEL -o SCENE.toml writes a scene "
+  const std::string daylight =
+      "for daylight add read.daylight.sky=overcast:10000lx, or let patchlight new MODEL -o SCENE.toml write a scene "
       "file "
-      "to change, in which luminaires stand as well (docs/lights.md)";
+      "to change (luminaires stand there, too: docs/lights.md)";
   const std::vector<LampHint> hints = possible_lamps(scene);
   if (hints.empty()) {
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
-    return "no material emits, and none looks like a lamp; choose one with read.settings MATERIAL.radiance=R,G,B "
-           "from " +
-           first_few(names) + by_scene_file;
+    return "no material emits, and none looks like a lamp; " + daylight +
+           "; or choose a lamp with read.settings MATERIAL.radiance=R,G,B from " + first_few(names);
   }
   std::string advice = "no material emits";
   for (const LampHint& hint : hints) {
@@ -188,7 +187,7 @@ std::string advice_without_lamp(const Scene& scene) {
         "; '" + hint.material + "' looks like a lamp (" + hint.reason + "): " + setting_for(hint) + " switches it on";
     if (&hint - hints.data() == 2) break;
   }
-  return advice + by_scene_file;
+  return advice + "; " + daylight;
 }
 
 const char* name_of(SkyKind kind) {

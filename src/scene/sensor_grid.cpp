@@ -16,7 +16,7 @@ constexpr double level_cosine = 1 - 1e-6;
 // An edge without direction, in steps of a millimetre, so that polygons that share it find each other.
 using EdgeKey = std::array<std::array<std::int64_t, 3>, 2>;
 
-EdgeKey key_of(const Point& a, const Point& b) {
+EdgeKey edge_key(const Point& a, const Point& b) {
   const auto in_steps = [](const Point& p) {
     constexpr double steps = 1000;  // per metre
     return std::array{std::llround(steps * p.x()), std::llround(steps * p.y()), std::llround(steps * p.z())};
@@ -37,7 +37,8 @@ std::vector<Edge> rim_of(const Floor& floor) {
   for (const std::vector<Point>& outline : floor.outlines) {
     for (std::size_t k = 0; k < outline.size(); ++k) {
       const Edge edge = {outline[k], outline[(k + 1) % outline.size()]};
-      ++edges.try_emplace(key_of(edge[0], edge[1]), 0, edge).first->second.first;
+      const EdgeKey key = edge_key(edge[0], edge[1]);
+      if (key[0] != key[1]) ++edges.try_emplace(key, 0, edge).first->second.first;
     }
   }
   std::vector<Edge> rim;

@@ -57,7 +57,9 @@ class BuildingTest(ToolTest):
                 ("--sky", "overcast:dark", ["illuminance in lx"]),
                 ("--sky", "perez:300", ["perez:DIRECT,DIFFUSE"]),
                 ("--sun", "100,0:5lx", ["altitude"]),
-                ("--sun", "2024-13-01T12:00:00Z@50,10:5lx", ["date and time"]),
+                ("--sun", "2024-13-01T12:00:00Z@50,10:5lx", ["day of the calendar"]),
+                ("--sun", "2024-02-30T12:00:00Z@50,10:5lx", ["day of the calendar"]),
+                ("--sun", "2024-02-29T12:00:00+15:00@50,10:5lx", ["day of the calendar"]),
                 ("--ground", "2", ["0 to 1"]),
                 ("--weather", "city.epw@13-1-5", ["MONTH-DAY-HOUR"])):
             self.refused(USAGE, [option, *parts], "solve", "court.obj", option, value, "-o", "x.vtp")

@@ -101,6 +101,31 @@ TEST_F(Honeybee, ModifiersBecomeMaterials) {
   EXPECT_NEAR(material_of(glow, "floor").exitance[1], 2 * std::numbers::pi, 1e-12);
 }
 
+// What stands outdoors has the exterior modifier of its room's set; null counts as absent.
+TEST_F(Honeybee, ModifierSetsAreThoseOfRooms) {
+  std::string text = room("");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace(R"("display_name": "Office")",
+          R"("display_name": null, "properties": {"radiance": {"modifier_set": "dark"}})");
+  replace(R"("modifiers": [)", R"("modifier_sets": [{"identifier": "dark", "wall_set": {"exterior_modifier": "outer",
+    "interior_modifier": "inner"}, "floor_set": {"exterior_modifier": null, "interior_modifier": "inner"}}],
+    "modifiers": [{"type": "Plastic", "identifier": "outer", "r_reflectance": 0.1},
+    {"type": "Plastic", "identifier": "inner", "r_reflectance": 0.3},)");
+  const auto at_wall = [](const Scene& scene) { return material_of(scene, "wall").reflectance[0]; };
+  const Scene outside = read_scene(write("set.hbjson", text));
+  EXPECT_EQ(outside.rooms[0].name, "office_1");
+  EXPECT_EQ(at_wall(outside), 0.1);
+  EXPECT_EQ(material_of(outside, "floor").reflectance[0], 0.2);
+  replace(R"("face_type": "Wall", "apertures": [)", R"("face_type": "Wall", "apertures": [)");
+  const std::size_t wall = text.rfind(outdoors, text.find("AirBoundary"));
+  text.replace(text.rfind(outdoors, wall), outdoors.size(), R"(, "boundary_condition": {"type": "Ground"})");
+  EXPECT_EQ(at_wall(read_scene(write("set.hbjson", text))), 0.3);
+}
+
 TEST_F(Honeybee, WhatCannotBeCarriedIsNamed) {
   const Scene scene = with(modifier("blind"));
   EXPECT_TRUE(any_contains(scene.notes, "generic ones are taken: blind"));

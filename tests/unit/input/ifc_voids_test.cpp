@@ -2,6 +2,7 @@
 
 #include "patchlight/input/read_scene.h"
 
+#include "input/joined_rings.h"
 #include "model_files.h"
 
 namespace patchlight::ifc_voids_test {
@@ -62,6 +63,31 @@ double area_of(const Scene& scene) {
 
 class IfcVoids : public ModelFiles {};
 
+double area_of_walk(const std::vector<std::vector<Eigen::Vector2d>>& rings, const std::vector<RingCorner>& walk) {
+  double twice = 0;
+  for (std::size_t k = 0; k < walk.size(); ++k) {
+    const auto& [ra, a] = walk[k];
+    const auto& [rb, b] = walk[(k + 1) % walk.size()];
+    twice += rings[ra][a].x() * rings[rb][b].y() - rings[ra][a].y() * rings[rb][b].x();
+  }
+  return twice / 2;
+}
+
+// A square of 7 with nine windows of 1 close together: all are joined, and the walk's area is what they leave.
+TEST(JoinedRings, ReachHolesBehindOthers) {
+  using Ring = std::vector<Eigen::Vector2d>;
+  const auto square = [](double x, double y, double edge) {
+    return Ring{{x, y}, {x + edge, y}, {x + edge, y + edge}, {x, y + edge}};
+  };
+  std::vector<Ring> rings = {square(0, 0, 7)};
+  for (const int k : {4, 0, 1, 2, 3, 5, 6, 7, 8}) rings.push_back(square(1.9 + 1.1 * (k % 3), 1.9 + 1.1 * (k / 3), 1));
+  const auto walk = joined_rings(rings);
+  ASSERT_TRUE(walk.has_value());
+  EXPECT_NEAR(area_of_walk(rings, *walk), 49 - 9, 1e-12);
+  EXPECT_EQ(walk->size(), 4U + 9 * (4 + 2));
+  EXPECT_FALSE(joined_rings({square(0, 0, 1), Ring{{0, 0}, {1, 0}}}).has_value());
+}
+
 // Volume h (A - sum of voids), surface twice that area and h times all rims. Coordinates are single precision.
 TEST_F(IfcVoids, AreCutOutOfWhatIsExtruded) {
   const Scene scene = read_scene(write("plate.ifc", plate(two_voids)));
@@ -72,12 +98,31 @@ TEST_F(IfcVoids, AreCutOutOfWhatIsExtruded) {
   EXPECT_EQ(scene.polygons.size(), 2U + 4 + 4 + 3);
 }
 
+// Spaces after commas, names with a number sign, and comments, as other programs write them.
+TEST_F(IfcVoids, AreFoundHoweverTheFileIsSpaced) {
+  std::string text = plate(two_voids);
+  const std::string tight = "(.AREA.,$,#104,(#204,#208))";
+  text.replace(text.find(tight), tight.size(), "( .AREA. , 'No. #7, (left)' , #104 , ( #204 , #208 ) )");
+  EXPECT_NEAR(std::abs(volume_of(read_scene(write("plate.ifc", text)))), 0.1 * 12.5, 1e-5);
+  text.replace(text.find("#200="), 5, "/* it isn't; see #9000 */ #200=");
+  const JoinedVoids found = with_joined_voids(text);
+  EXPECT_EQ(found.joined, 1U);
+  EXPECT_NE(found.text.find("#9001=IFCPOLYLINE"), std::string::npos);
+}
+
+// Linear time: a statement without an equal sign is not looked for beyond its end.
+TEST_F(IfcVoids, OfManyDamagedStatementsEndSoon) {
+  std::string text;
+  for (int k = 0; k < 400'000; ++k) text += "#1;";
+  EXPECT_EQ(with_joined_voids(text).text.size(), text.size());
+}
+
 TEST_F(IfcVoids, WithCurvesStayAndAreNamed) {
   const JoinedVoids found = with_joined_voids(plate(round_void));
   EXPECT_EQ(found.text, plate(round_void));
   EXPECT_EQ(found.left, 1U);
   const Scene scene = read_scene(write("plate.ifc", plate(round_void)));
-  EXPECT_TRUE(any_contains(scene.notes, "1 profile has voids with curved outlines, which are not cut"));
+  EXPECT_TRUE(any_contains(scene.notes, "1 profile has voids that are no polygons within it, which are not cut"));
 }
 
 TEST_F(IfcVoids, LeaveEverythingElseAsItIs) {
