@@ -15,7 +15,7 @@ struct Opening {
   PolygonIndex polygon = no_polygon;  ///< none: a hole
   Vector normal;                      ///< unit
   Point centre;
-  double radius = 0;  ///< metres: no corner is farther from the centre
+  double radius = 0;                            ///< metres: no corner is farther from the centre
   double area = 0;                              ///< m^2
   std::vector<std::array<Point, 3>> triangles;  ///< that it consists of, in one plane
   std::vector<double> upto = {};                ///< per triangle: the area of it and all before, m^2
