@@ -24,7 +24,7 @@ class NumberedClasses {
   std::vector<WayClass> classes_;
 };
 
-Passage passage_of(const SpecularStop& stop, const Scene& scene) {
+SpecularMeeting meeting_of(const SpecularStop& stop, const Scene& scene) {
   return {material_on(scene.polygons[stop.polygon], stop.side()), stop.step() == RayStep::mirrored};
 }
 
@@ -40,7 +40,7 @@ std::vector<ClassEntry> entries_by_class(const RayRows& rows, const Scene& scene
     tell_form_factors(stops, faces, [&](const SpecularStop& stop, double form_factor) {
       if (stop.patch < SpecularStop::at_back && form_factor > 0)
         entries.push_back({i, stop.patch, numbered.number_of(way), static_cast<float>(form_factor)});
-      if (goes_on(stop.step())) way.push_back(passage_of(stop, scene));
+      if (goes_on(stop.step())) way.push_back(meeting_of(stop, scene));
       if (stop.step() == RayStep::ends || stop.step() == RayStep::kept) way.clear();
     });
   }
@@ -51,9 +51,9 @@ std::vector<ClassEntry> entries_by_class(const RayRows& rows, const Scene& scene
 
 std::string name_of(const WayClass& way_class, const Scene& scene) {
   std::string name;
-  for (const Passage& passage : way_class) {
+  for (const SpecularMeeting& meeting : way_class) {
     if (!name.empty()) name += " + ";
-    name += scene.materials[passage.material].name + (passage.is_mirrored ? " mirrored" : "");
+    name += scene.materials[meeting.material].name + (meeting.is_mirrored ? " mirrored" : "");
   }
   return name.empty() ? "straight" : name;
 }

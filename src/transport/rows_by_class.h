@@ -14,17 +14,17 @@
 namespace patchlight {
 
 /// A specular material on a way, and whether light was mirrored there or went through.
-struct Passage {
+struct SpecularMeeting {
   MaterialIndex material = 0;
   bool is_mirrored = false;
 
-  bool operator<(const Passage& other) const {
+  bool operator<(const SpecularMeeting& other) const {
     return std::tie(material, is_mirrored) < std::tie(other.material, other.is_mirrored);
   }
 };
 
-/// Ways over the same specular materials, each as often, in any order; the passages are sorted.
-using WayClass = std::vector<Passage>;
+/// Ways over the same specular materials, each as often, in any order; the meetings are sorted.
+using WayClass = std::vector<SpecularMeeting>;
 
 /// The name of a class: "glass + mirror mirrored"; "straight" without any.
 std::string name_of(const WayClass& way_class, const Scene& scene);
