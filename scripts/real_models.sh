@@ -73,8 +73,7 @@ for name in "${names[@]}"; do
   echo "real models: $name"
   case $name in
     veach-ajar)
-      python3 scripts/mitsuba_to_obj.py "$models/veach-ajar/scene.xml" "$out/veach-ajar.obj" 2>/dev/null
-      files=("$out/veach-ajar.obj")
+      files=("$models/veach-ajar/scene.xml")
       options=(--patches 60000 --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
       ;;
     radiator)
@@ -98,11 +97,10 @@ for name in "${names[@]}"; do
       options=(--sky overcast:10000lx --patches 6000 --points-output "$out/honeybee.csv")
       ;;
     kitchen)
-      python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
       # Nothing in it emits: three spheres in the middle of the room.
-      cat >"$out/kitchen.toml" <<'END'
+      cat >"$out/kitchen.toml" <<END
 [[model]]
-file = "kitchen.obj"
+file = "$models/kitchen/kitchen.xml"
 
 [[luminaire]]
 name = "bulbs"
@@ -131,13 +129,8 @@ END
       printf 'void plastic %s 0 0 5 %s %s %s 0 0\n' white_paint_70 .7 .7 .7 white_paint_50 .5 .5 .5 carpet_20 .2 .2 .2 \
         >"$out/openroom.mat"
       printf 'void glass glass_60 0 0 3 .654 .654 .654\n' >>"$out/openroom.mat"
-      python3 scripts/radiance_to_obj.py "$out/openroom.obj" "$out/openroom.mat" "$models"/frads-office/openroom/*.rad
-      cat >"$out/openroom.toml" <<'END'
-up = "z"
-
-[[model]]
-file = "openroom.obj"              # in metres
-
+      printf '[[model]]\nfile = "%s"\n\n' "$out/openroom.mat" "$models"/frads-office/openroom/*.rad >"$out/openroom.toml"
+      cat >>"$out/openroom.toml" <<'END'
 [sky]
 kind = "overcast"
 illuminance = 10000
