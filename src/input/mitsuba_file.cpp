@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <system_error>
 
 namespace patchlight {
@@ -46,6 +47,28 @@ Eigen::Matrix4d with_linear(const Eigen::Matrix3d& linear) {
 
 MitsubaFile::MitsubaFile(const std::filesystem::path& file, const std::filesystem::path& confine) {
   add(file, confine, file.string(), 0);
+  struct Textures : pugi::xml_tree_walker {
+    std::vector<pugi::xml_node> found;
+    bool for_each(pugi::xml_node& node) override {
+      if (std::string_view(node.name()) == "texture") found.push_back(node);
+      return true;
+    }
+  } textures;
+  for (const std::unique_ptr<XmlFile>& xml : files_) xml->document.traverse(textures);
+  std::set<std::filesystem::path> pictures;
+  for (const pugi::xml_node& texture : textures.found) {
+    if (text(texture, "type") == "bitmap") pictures.insert(picture_file(texture));
+  }
+  pictures_ = picture_colours({pictures.begin(), pictures.end()}, confine, file.string());
+}
+
+std::filesystem::path MitsubaFile::picture_file(const pugi::xml_node& texture) const {
+  return std::filesystem::path(files_[0]->file).parent_path() / word(texture, "filename", "");
+}
+
+std::optional<Spectrum> MitsubaFile::picture(const pugi::xml_node& texture) const {
+  const auto found = pictures_.by_file.find(picture_file(texture).string());
+  return found == pictures_.by_file.end() ? std::nullopt : std::optional(found->second);
 }
 
 void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,

@@ -3,11 +3,13 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
 
+#include "input/picture_colours.h"
 #include "input/xml_file.h"
 
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,10 @@ class MitsubaFile {
   /// The first nested element of a kind ("bsdf"), or the one that a <ref> there names; empty if there is none.
   pugi::xml_node nested(const pugi::xml_node& node, const std::string& kind) const;
 
+  /// The mean colour of the picture that a texture of the type bitmap names; nothing where it cannot be read.
+  std::optional<Spectrum> picture(const pugi::xml_node& texture) const;
+  const PictureColours& pictures() const { return pictures_; }
+
   /// The numbers of an attribute, separated by blanks and commas. \throws InputError where one is none.
   std::vector<double> numbers(const pugi::xml_node& node, const char* attribute) const;
 
@@ -58,6 +64,7 @@ class MitsubaFile {
   const XmlFile& file_of(const pugi::xml_node& node) const;
   Vector axes(const pugi::xml_node& node, double otherwise) const;
   Eigen::Matrix4d step(const pugi::xml_node& node) const;
+  std::filesystem::path picture_file(const pugi::xml_node& texture) const;
   double only_number(const pugi::xml_node& node, const char* attribute) const;
 
   std::vector<std::unique_ptr<XmlFile>> files_;
@@ -66,6 +73,7 @@ class MitsubaFile {
   std::vector<pugi::xml_node> elements_;
   std::map<std::string, std::string> defaults_;
   std::map<std::string, pugi::xml_node> by_id_;
+  PictureColours pictures_;
 };
 
 }  // namespace patchlight

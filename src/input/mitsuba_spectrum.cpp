@@ -111,7 +111,10 @@ Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const
 }
 
 MitsubaColour of_texture(const MitsubaFile& file, const pugi::xml_node& node) {
-  if (file.text(node, "type") != "checkerboard") return {rgb(0.5, 0.5, 0.5), "textures count as 0.5"};
+  const std::string kind = file.text(node, "type");
+  if (const std::optional<Spectrum> mean = kind == "bitmap" ? file.picture(node) : std::nullopt)
+    return {*mean, "pictures count by their mean colour"};
+  if (kind != "checkerboard") return {rgb(0.5, 0.5, 0.5), "textures that cannot be read count as 0.5"};
   return {(field_colour(file, node, "color0", 0.4) + field_colour(file, node, "color1", 0.2)) / 2,
           "checkerboards count by their mean"};
 }

@@ -15,8 +15,8 @@ struct MitsubaColour {
   std::string simplified;  ///< for a note; empty if nothing is lost
 };
 
-/// What <rgb>, <srgb>, <spectrum>, <blackbody>, <float> or a texture says; textures that are no checkerboards count as
-/// 0.5. Nothing for another element. \throws InputError naming the line.
+/// What <rgb>, <srgb>, <spectrum>, <blackbody>, <float> or a texture says; pictures and checkerboards count by their
+/// mean, other textures as 0.5. Nothing for another element. \throws InputError naming the line.
 std::optional<MitsubaColour> mitsuba_colour(const MitsubaFile& file, const pugi::xml_node& node);
 
 /// The linear RGB (Rec. 709) of a spectrum that is piecewise linear between (wavelength in nm, value), 0 beyond, by the

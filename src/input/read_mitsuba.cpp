@@ -43,6 +43,9 @@ class MitsubaReader {
       digests.push_back(sha256({&xml->bytes, 1}));
       if (digests.size() > 1) scene_.inputs.emplace_back(xml->file);
     }
+    const PictureColours& pictures = file_.pictures();
+    for (const auto& [name, colour] : pictures.by_file) scene_.inputs.emplace_back(name);
+    digests.insert(digests.end(), pictures.digests.begin(), pictures.digests.end());
     digests.insert(digests.end(), meshes_.digests.begin(), meshes_.digests.end());
     scene_.inputs.insert(scene_.inputs.end(), meshes_.files.begin(), meshes_.files.end());
     scene_.sha256 = sha256(digests);

@@ -130,6 +130,11 @@ class RadianceReader {
     const std::string where = at_line(file, command.line);
     std::vector<std::string> words = command_words(command.words[0]);
     if (words.empty() || words[0] != "xform") {
+      const bool is_sky = !words.empty() && (words[0] == "gensky" || words[0] == "gendaylit");
+      if (is_sky)
+        return left_out_.add(
+            "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
+            where + " !" + words[0]);
       constexpr std::size_t most = 60;
       left_out_.add(
           "programs other than !xform are not run, what they would print is left out; run them and put it in "

@@ -154,6 +154,15 @@ TEST_F(Mitsuba, ColoursAreLinearRgb) {
   EXPECT_EQ(colour("<texture name=\"reflectance\" type=\"bitmap\"/>")[0], .5);
 }
 
+TEST_F(Mitsuba, PicturesCountByTheirMean) {
+  write("paint.png", two_pixels());
+  const Material painted = material(
+      R"(<bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="paint.png"/></texture></bsdf>)");
+  EXPECT_NEAR(painted.reflectance[0], .5, 1e-12);
+  EXPECT_EQ(painted.reflectance[1], 0);
+  EXPECT_NEAR(painted.reflectance[2], std::pow((128 / 255. + .055) / 1.055, 2.4) / 2, 1e-12);
+}
+
 // Red light, beyond 600 nm, is more red than green, and has no blue; the three parts of a spectrum add up to it.
 TEST(RgbOfWavelengths, IsLinearAndTellsColoursApart) {
   using Samples = std::vector<std::pair<double, double>>;
