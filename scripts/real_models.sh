@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks and solves the real models that docs/models.md describes, and makes its pictures.
 # usage: scripts/real_models.sh MODELS OUT [NAME...]    MODELS: folder of the models; names: veach-ajar radiator duplex
-# kitchen furniture openroom duplex-daylight honeybee ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
+# kitchen furniture openroom office house duplex-daylight honeybee ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
 # tool, build/src/patchlight if not set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,7 +10,7 @@ models=${1:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 out=${2:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 shift 2
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom duplex-daylight honeybee ies)
+[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom office house duplex-daylight honeybee ies)
 tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 if [ ! -d "$models" ]; then
   echo "real models: $models is not there; left out"
@@ -71,6 +71,7 @@ END
 printf '| model | polygons | patches | storage | CPU s | GB | stated error |\n|---|---|---|---|---|---|---|\n' >"$out/costs.md"
 for name in "${names[@]}"; do
   echo "real models: $name"
+  unit=()
   case $name in
     veach-ajar)
       files=("$models/veach-ajar/scene.xml")
@@ -84,7 +85,8 @@ for name in "${names[@]}"; do
         'v 30 249 160' 'v -30 249 160' 'usemtl wall' 'f 1 4 3 2' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' \
         'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
       files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
-      options=(--unit cm --storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
+      unit=(--unit cm)
+      options=(--storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
       rm -f "$out/duplex.toml"
@@ -153,6 +155,16 @@ END
       files=("$out/openroom.toml")
       options=(--patches 8000 --points-output "$out/openroom.csv")
       ;;
+    office)
+      # Its files are in feet.
+      files=("$models/frads-office/Objects/materials.mat" "$models"/frads-office/Objects/*.rad)
+      unit=(--unit ft)
+      options=(--sky overcast:10000lx --patches 20000 --camera 11.5,13.5,2.4 3,1,0.9 75)
+      ;;
+    house)
+      files=("$models/gbxml-urban-house/Urban_House_MEP.xml")
+      options=(--sky overcast:10000lx --patches 15000 --camera -4.2,3.3,5.3 1.6,7.5,4.9 75)
+      ;;
     duplex-daylight)
       cat >"$out/duplex-daylight.toml" <<END
 up = "z"
@@ -202,10 +214,10 @@ END
       ;;
   esac
   # A model without a lamp is reported, and ends with exit code 2.
-  "$tool" check "${files[@]}" $([ "$name" = radiator ] && echo --unit cm) >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
+  "$tool" check "${files[@]}" "${unit[@]}" >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
   [ ${#options[@]} -gt 0 ] || continue
   # An accuracy that was not reached ends with exit code 3.
-  "$tool" solve "${files[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+  "$tool" solve "${files[@]}" "${unit[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
     --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
   cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
+#include "input/gltf_compression.h"
 #include "input/picture_colours.h"
 #include "input/text.h"
 
@@ -23,19 +24,17 @@ constexpr std::string_view glb_signature = "glTF";
 
 // Extensions that a file may require: what they change is simulated, or named in the notes.
 bool is_known(const std::string& extension) {
-  static constexpr std::array<std::string_view, 6> known = {"KHR_mesh_quantization", "KHR_texture_transform",
-                                                            "KHR_lights_punctual",   "KHR_texture_basisu",
-                                                            "EXT_texture_webp",      "MSFT_texture_dds"};
+  static constexpr std::array<std::string_view, 8> known = {
+      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",        "KHR_texture_basisu",
+      "EXT_texture_webp",      "MSFT_texture_dds",      "KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   return extension.starts_with("KHR_materials_") || std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 void require_known_extensions(const tinygltf::Model& model, const std::string& file) {
   for (const std::string& extension : model.extensionsRequired) {
     if (is_known(extension)) continue;
-    const bool compressed = extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression";
-    throw InputError(file, "requires the extension " + extension +
-                               ", which is not supported; export the model without " +
-                               (compressed ? "compression" : "it"));
+    throw InputError(file,
+                     "requires the extension " + extension + ", which is not supported; export the model without it");
   }
 }
 
@@ -135,7 +134,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   GltfModel result;
   result.files.confine = confine;
   result.files.bytes.push_back(read_text(file, file.string(), "the model file"));
-  const std::string bytes = result.files.bytes[0];
+  const std::string bytes = readable_gltf(result.files.bytes[0]);
   if (bytes.size() > std::numeric_limits<unsigned int>::max()) throw InputError(file.string(), "is larger than 4 GB");
   const auto size = static_cast<unsigned int>(bytes.size());
 
@@ -156,6 +155,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   if (!good) {
     throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it anew");
   }
+  result.model = decompressed(std::move(result.model), file.string());
   return result;
 }
 
