@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/cut_openings.h"
 #include "input/gbxml_materials.h"
@@ -39,10 +40,14 @@ class GbxmlReader {
 
   Scene scene() && {
     for (const pugi::xml_node& campus : xml_.document.document_element().children("Campus")) {
+      turned_ = finite_number(trimmed(campus.child("Location").child_value("CADModelAzimuth"))).value_or(0);
       for (const pugi::xml_node& surface : campus.children("Surface")) add_surface(surface);
       for (const pugi::xml_node& building : campus.children("Building")) add_rooms(building);
     }
     scene_.notes.push_back(usual_reflectances());
+    if (turned_ != 0)
+      scene_.notes.push_back("CADModelAzimuth " + rounded(turned_) +
+                             " is left out: north is y unless a scene file says otherwise");
     for (std::string& note :
          note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
       scene_.notes.push_back(std::move(note));
@@ -179,6 +184,7 @@ class GbxmlReader {
   LeftOut left_out_;
   std::map<std::string, std::vector<std::vector<Point>>> faces_of_space_;
   std::set<std::string> room_names_;
+  double turned_ = 0;  // what is up in plan to true north, degrees
 };
 
 }  // namespace
