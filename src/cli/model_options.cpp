@@ -31,6 +31,9 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
                   "do")
       ->allow_extra_args(false)
       ->option_text("NAME");
+  command.add_flag("--keep-faces", options.keep_faces,
+                   "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
+                   "and share edges become one");
 }
 
 }  // namespace
@@ -109,6 +112,7 @@ ReadOptions read_options(const ModelOptions& options) {
   read.confine = options.confine;
   read.only = options.only;
   read.leave_out = options.leave_out;
+  read.keep_faces = options.keep_faces;
   read.daylight = options.daylight;
   read.settings = material_settings(options.settings);
   return read;

@@ -13,6 +13,7 @@
 #include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml_sensors.h"
+#include "scene/joined_faces.h"
 #include "scene/limits.h"
 #include "scene/repair.h"
 
@@ -127,6 +128,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   scene = repair(std::move(scene));
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
+  if (!options.keep_faces) scene = with_joined_faces(std::move(scene));
   scene = set_upright(std::move(scene), options);
   for (const SceneFile& file : scene_files) {
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);

@@ -65,6 +65,7 @@ struct ReadOptions {
   std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be
   std::vector<std::string> only = {};       ///< objects, groups or materials, nothing else takes part; empty: all
   std::vector<std::string> leave_out = {};  ///< those that do not; both names, or patterns with * and ?
+  bool keep_faces = false;  ///< coplanar neighbours of one object and material stay apart, see joined_faces()
   DaylightSetting daylight = {};
   std::string format = {};  ///< an extension without its dot; if empty, that of the file
 };
