@@ -31,6 +31,11 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
                   "do")
       ->allow_extra_args(false)
       ->option_text("NAME");
+  add(command, "--detail", "LENGTH",
+      "bodies that are smaller, as 5cm, are left out, and those that\ndiffer by less from a box become boxes; a note "
+      "tells "
+      "what went;\ndefault: all stay",
+      [&options](const std::string& text) { options.detail = length("--detail", text); });
   command.add_flag("--keep-faces", options.keep_faces,
                    "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
                    "and share edges become one");
@@ -112,6 +117,7 @@ ReadOptions read_options(const ModelOptions& options) {
   read.confine = options.confine;
   read.only = options.only;
   read.leave_out = options.leave_out;
+  read.detail = options.detail;
   read.keep_faces = options.keep_faces;
   read.daylight = options.daylight;
   read.settings = material_settings(options.settings);
