@@ -159,6 +159,11 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   scene = with_settings(std::move(scene), options.settings);
   check(scene);
   scene = set_upright(std::move(scene), options);
+  if (asks_for_daylight(options.daylight)) {
+    scene.sun.reset();
+    scene.sky.reset();
+    scene = with_daylight(std::move(scene), options, true);
+  }
   check_limits(scene);
   return scene;
 }

@@ -84,7 +84,8 @@ std::vector<std::string> readable_formats();
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// A scene that was read before, with the settings and the upright axis of these options. \throws InputError when no
+/// A scene that was read before, with the settings, the upright axis and the daylight of these options, which takes the
+/// place of its own. \throws InputError when no
 /// material bears the name of a setting, or settings make a material that check() refuses.
 Scene with_options(Scene scene, const ReadOptions& options);
 
