@@ -255,7 +255,7 @@ points = [[0.1, 0.2, 0.5, 0, 0, 1]]
                       name + ".json", *EXACT)
         self.good("form-factors", "day.toml", *mesh, "-o", "day.ff")
         self.good("relight", "day.ff", "-o", "again.vtp", "--report", "again.json", *EXACT)
-        self.good("relight", "day.ff", "--sky", "overcast:5000lx", "-o", "less.vtp", "--report", "less.json", *EXACT)
+        self.good("relight", "day.ff", "--sky", "overcast:5000lx", "--ground", "0", "-o", "less.vtp", "--report", "less.json", *EXACT)
         for fresh, again in (("day", "again"), ("dull", "less")):
             for key in ("arriving_W", "absorbed_W"):
                 for a, b in zip(self.report(fresh + ".json")["energy_balance"][key],
