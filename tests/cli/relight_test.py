@@ -263,7 +263,7 @@ points = [[0.1, 0.2, 0.5, 0, 0, 1]]
                     self.assertAlmostEqual(a, b, delta=FLOAT_STORAGE * abs(a))
         self.assertNotEqual(self.report("day.json")["energy_balance"]["arriving_W"],
                             self.report("dull.json")["energy_balance"]["arriving_W"])
-        self.assertEqual(len(self.report("again.json")["sensors"]), 1)
+        self.assertEqual(self.report("again.json")["sensors"]["groups"][0]["name"], "desk")
 
     def test_colours_of_panes_and_mirrors(self):
         """Rows that were found with a grey pane and mirror are those that are found with coloured ones."""
