@@ -19,6 +19,7 @@ std::string formats(const std::string& separator) {
 }
 
 void add_choice_options(CLI::App& command, ModelOptions& options) {
+  command.option_defaults()->group("The model");
   command
       .add_option("--only", options.only,
                   "only faces of objects, groups or materials of this name take\npart (* and ? stand for any letters: "
@@ -44,6 +45,7 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
 }  // namespace
 
 void add_file_options(CLI::App& command, ModelOptions& options) {
+  command.option_defaults()->group("The model");
   command
       .add_option(
           "MODEL", options.models,
@@ -81,6 +83,7 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
 }
 
 void add_up_option(CLI::App& command, std::optional<Vector>& up) {
+  command.option_defaults()->group("The model");
   add(command, "--up", "y|z",
       "the model's upright axis: where down is for lamps, sky and\npictures; default: as the format says (y: glTF; z: "
       "IFC), else that\nacross which most area lies, or against the lamps' light",
@@ -90,6 +93,7 @@ void add_up_option(CLI::App& command, std::optional<Vector>& up) {
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
+  command.option_defaults()->group("The model");
   command
       .add_option("--set", settings,
                   "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "

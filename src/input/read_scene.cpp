@@ -101,7 +101,9 @@ Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vecto
 Scene with_sensors(Scene scene, const SceneFile& file) {
   for (const auto& entry : file.sensors) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
-      for (SensorGroup& group : sensors_over(scene, *grid)) scene.sensors.push_back(std::move(group));
+      FloorSensors found = sensors_over(scene, *grid);
+      for (SensorGroup& group : found.groups) scene.sensors.push_back(std::move(group));
+      if (!found.note.empty()) scene.notes.push_back(std::move(found.note));
     } else {
       scene.sensors.push_back(std::get<SensorGroup>(entry));
     }
