@@ -2,12 +2,10 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_image.h"
-#include "patchlight/output/write_report.h"
 #include "patchlight/output/write_result.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
-#include "patchlight/views/sensors.h"
-#include "patchlight/views/surface.h"
+#include "patchlight/views/views.h"
 
 #include "base/parallel.h"
 #include "cli/accuracy_options.h"

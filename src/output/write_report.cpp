@@ -1,4 +1,4 @@
-#include "patchlight/output/write_report.h"
+#include "patchlight/output/write_result.h"
 
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
-#include "patchlight/views/surface.h"
+#include "patchlight/views/views.h"
 
 #include <filesystem>
 

@@ -26,6 +26,7 @@ Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string
 }
 
 Scene number_faces(Scene scene) {
+  scene.faces = scene.polygons.size();
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) scene.polygons[p].face = p;
   return scene;
 }

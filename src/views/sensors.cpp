@@ -1,4 +1,4 @@
-#include "patchlight/views/sensors.h"
+#include "patchlight/views/views.h"
 
 #include "patchlight/gather/gather.h"
 

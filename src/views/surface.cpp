@@ -1,4 +1,4 @@
-#include "patchlight/views/surface.h"
+#include "patchlight/views/views.h"
 
 #include "render/smooth.h"
 #include "visibility/occluder.h"

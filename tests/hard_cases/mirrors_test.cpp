@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
-#include "patchlight/views/sensors.h"
+#include "patchlight/views/views.h"
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"

@@ -76,6 +76,7 @@ struct UnsimulatedMaterials {
 struct Scene {
   std::vector<Point> vertices;  ///< metres
   std::vector<Polygon> polygons;
+  std::size_t faces = 0;  ///< that the files have; read_scene() may cut and join them
   std::vector<Material> materials;
   Bands bands;                                ///< what the bands of all spectra stand for; empty: bands_of() tells
   std::vector<std::string> groups;            ///< names of objects and groups

@@ -1,7 +1,7 @@
 #include <patchlight/input/read_scene.h>
 #include <patchlight/output/write_result.h>
 #include <patchlight/simulate.h>
-#include <patchlight/views/surface.h>
+#include <patchlight/views/views.h>
 
 int main(int, char** arguments) {
   const patchlight::Scene scene = patchlight::read_scene(arguments[1]);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/simulate.h"
-#include "patchlight/views/surface.h"
+#include "patchlight/views/views.h"
 
 #include "visibility/tracing.h"
 

@@ -1,4 +1,4 @@
-#include "patchlight/output/write_report.h"
+#include "patchlight/output/write_result.h"
 
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
