@@ -3,7 +3,9 @@
 #include "patchlight/base/error.h"
 
 #include "accuracy/spaces.h"
+#include "base/near_match.h"
 #include "base/vectors.h"
+#include "scene/room_body.h"
 
 #include <algorithm>
 #include <optional>
@@ -18,10 +20,20 @@ constexpr const char* outside = ".outside";
 std::set<std::string> names_in(const Scene& scene) {
   std::set<std::string> known(scene.groups.begin(), scene.groups.end());
   for (const Material& material : scene.materials) known.insert(material.name);
+  for (const NamedRoom& room : scene.rooms) known.insert(room.name);
   return known;
 }
 
-// A material, object or group, or one side of it.
+// "a, b, c and 12 more, which patchlight check --all lists"
+std::string first_of(const std::vector<std::string>& names) {
+  constexpr std::size_t few = 20;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k == 0 ? "" : ", ") + names[k];
+  if (names.size() <= few) return list;
+  return list + " and " + std::to_string(names.size() - few) + " more, which patchlight check --all lists";
+}
+
+// A material, object, group or room, or one side of it.
 struct Interest {
   std::string name;
   std::optional<bool> is_inside = {};  // nothing: both sides
@@ -43,6 +55,18 @@ std::vector<Interest> interests_named(const Scene& scene, const std::vector<std:
   return interests;
 }
 
+// Of the rooms of this name, per patch whether it faces into one.
+std::vector<bool> facing_into(const Scene& scene, const PatchMesh& mesh, const std::string& name) {
+  std::vector<bool> faces(mesh.size(), false);
+  for (const NamedRoom& room : scene.rooms) {
+    if (room.name != name) continue;
+    const RoomBody body(room.faces);
+    for (PatchIndex i = 0; i < mesh.size(); ++i)
+      faces[i] = faces[i] || body.holds(mesh.centroid[i] + body.step() * mesh.normal[i]);
+  }
+  return faces;
+}
+
 bool is_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, const Interest& interest) {
   const std::uint32_t group = scene.polygons[mesh.polygon[i]].group;
   return scene.materials[mesh.material[i]].name == interest.name ||
@@ -57,12 +81,13 @@ Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std
   const bool sides =
       std::any_of(interests.begin(), interests.end(), [](const Interest& i) { return i.is_inside.has_value(); });
   const Eigen::VectorXd within = sides ? inside_shells(scene, mesh, Dividing::all) : Eigen::VectorXd();
-  Eigen::VectorXd interest(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const auto counts = [&](const Interest& one) {
-      return is_of(scene, mesh, i, one) && (!one.is_inside || *one.is_inside == (within[i] == 1));
-    };
-    interest[i] = std::any_of(interests.begin(), interests.end(), counts) ? 1 : 0;
+  Eigen::VectorXd interest = Eigen::VectorXd::Zero(mesh.size());
+  for (const Interest& one : interests) {
+    const std::vector<bool> into_room = facing_into(scene, mesh, one.name);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      const bool is_meant = is_of(scene, mesh, i, one) || into_room[i];
+      if (is_meant && (!one.is_inside || *one.is_inside == (within[i] == 1))) interest[i] = 1;
+    }
   }
   return interest;
 }
@@ -80,11 +105,11 @@ void require_names(const Scene& scene, const std::vector<std::string>& names) {
   const std::set<std::string> known = names_in(scene);
   for (const std::string& name : names) {
     if (known.contains(interest_named(name, known).name)) continue;
-    std::string all;
-    for (const std::string& other : known) all += (all.empty() ? "" : ", ") + other;
-    throw InputError(scene.file, "found no material, object or group '" + name +
-                                     "' to be interested in; expected one of " + all +
-                                     ", or one of these with .inside or .outside");
+    const std::vector<std::string> all(known.begin(), known.end());
+    const std::string hint = suggestion(name, all);
+    throw InputError(scene.file, "found no material, object, group or room '" + name + "' to be interested in" + hint +
+                                     (hint.empty() ? "; expected one of " + first_of(all) : " Expected a name") +
+                                     ", or one with .inside or .outside");
   }
 }
 

@@ -10,7 +10,8 @@
 
 namespace patchlight {
 
-/// 1 for each patch of a material, object or group with one of these names, else 0; without names 1 for all. A name
+/// 1 for each patch of a material, object or group with one of these names, or that faces into a room of one, else 0;
+/// without names 1 for all. A name
 /// that ends in ".inside" or ".outside" means the patches of what is named before that are inside a closed shell, or
 /// not.
 Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names);

@@ -22,7 +22,7 @@ void add_refinement_options(CLI::App& command, Request& request) {
   command
       .add_option(
           "--interest", request.accuracy.interest,
-          "material, object or group, or a side of one, e.g. room.inside:\nthe error is that of its patches, and "
+          "material, object, group or room, or a side of one, e.g. room.inside:\nthe error is that of its patches, and "
           "refinement serves them; may be\nrepeated; default: all")
       ->allow_extra_args(false)
       ->option_text("NAME");
