@@ -14,9 +14,6 @@ std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& ro
 /// The files of points that a scene file names.
 std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame);
 
-/// The tables [[camera]]. \throws InputError.
-std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame);
-
 /// The grid over the floor of the groups that it names, or one over that of each of the rooms. \throws InputError when
 /// there are no such groups or rooms, or no floor.
 std::vector<SensorGroup> sensors_over(const Scene& scene, const FloorGrid& grid);

@@ -1,6 +1,5 @@
-#include "patchlight/views/views.h"
-
 #include "patchlight/gather/gather.h"
+#include "patchlight/views/views.h"
 
 #include "gather/doubtful_sensors.h"
 #include "gather/mirrored_gather.h"
