@@ -6,6 +6,7 @@
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/accuracy_options.h"
 #include "cli/checkpoint.h"
@@ -185,7 +186,8 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
-  results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
+  results.provenance = {
+      .command_line = arguments.command_line, .exposure = exposure, .scene_hash = scene_hash(results.scene)};
 
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
