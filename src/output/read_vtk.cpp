@@ -117,7 +117,7 @@ StoredSolution read_vtk(const std::filesystem::path& file) {
   if (reader->CanReadFile(file.c_str()) == 0) refuse_file(file, "this is no VTK file of polygons");
   reader->Update();
   vtkPolyData& polygons = *reader->GetOutput();
-  if (polygons.GetNumberOfCells() == 0) refuse_file(file, "there are no patches in it");
+  if (polygons.GetNumberOfCells() == 0) refuse_file(file, "there are no patches in it, or it is damaged");
   StoredSolution stored;
   add_run(stored, polygons, file);
   add_patches(stored, polygons, file);

@@ -95,11 +95,12 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
   cell_data.AddArray(numbers<vtkIntArray>("polygon", mesh.polygon));
   cell_data.AddArray(numbers<vtkIntArray>("side", mesh.side));
-  // Not known of rows on demand.
-  if (simulation.transport.row_sum.size() > 0) {
-    cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
-    cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
-  }
+  // Not known of rows on demand. An array of another length than the others makes the file one that cannot be read.
+  const auto add_known = [&](const char* name, const Eigen::VectorXd& values) {
+    if (values.size() == radiance.rows()) cell_data.AddArray(numbers<vtkFloatArray>(name, values));
+  };
+  add_known("row_sum", simulation.transport.row_sum);
+  add_known("raw_row_sum", simulation.transport.raw_row_sum);
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");

@@ -204,7 +204,7 @@ void FinalGather::place_records(const Observer& observer) {
           gather_.record_at(one.at, hash({options_.seed, static_cast<std::uint64_t>(stride), n}),
                             least_pixels * one.pixel_width, most_pixels * one.pixel_width, options_.hemisphere);
     });
-    for (const IrradianceRecord& record : records) cache_.add(record);
+    cache_.add_graded(records);
   }
 }
 

@@ -142,13 +142,17 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   }
   const Eigen::VectorXd& weights = solved_.luminous_weights;
   record.uncertainty = std::sqrt((variance.matrix() * weights.cwiseAbs2()).value());
-  const double value = (found.irradiance.matrix() * weights).value();
-  const double slope = (found.gradient.matrix() * weights).norm();
+  const double value = (record.irradiance.matrix() * weights).value();
+  const double slope = (record.gradient.matrix() * weights).norm();
   const double wanted = std::min(share_of_distance * hemisphere.harmonic_mean(distances),
                                  slope > 0 ? value / slope : std::numeric_limits<double>::infinity());
   record.radius = std::clamp(wanted, least, most);
-  // Where it has to serve farther than its slope is good for, a part of that.
-  if (record.radius * slope > value && slope > 0) record.gradient *= value / (record.radius * slope);
+  // A record that has to serve farther than its slope is good for has none.
+  if (wanted < least) record.gradient.setZero();
+  for (Eigen::Index band = 0; band < record.irradiance.size(); ++band) {
+    const double change = record.radius * record.gradient.col(band).matrix().norm();
+    if (change > record.irradiance[band]) record.gradient.col(band) *= record.irradiance[band] / change;
+  }
   return record;
 }
 

@@ -14,6 +14,9 @@ namespace {
 constexpr double widest_turn = 0.985;   // cosine of 10 degrees
 constexpr double widest_offset = 0.15;  // 10 degrees over the radius of curved surfaces
 
+// How fast radii may grow with the distance from a record.
+constexpr double growth_of_radius = 0.4;
+
 using Cell = std::array<std::int64_t, 3>;
 
 Cell cell_of(const Point& point, int level) {
@@ -62,6 +65,21 @@ void IrradianceCache::add(const IrradianceRecord& record) {
       for (std::int64_t z = lower[2]; z <= upper[2]; ++z) cells_[key_of({x, y, z}, level)].push_back(index);
 }
 
+void IrradianceCache::add_graded(const std::vector<IrradianceRecord>& records) {
+  const std::size_t before = records_.size();
+  for (const IrradianceRecord& record : records) add(record);
+  // Cells keep records whose radius shrinks, which no longer serve there.
+  for (std::size_t k = before; k < records_.size(); ++k) {
+    IrradianceRecord& record = records_[k];
+    for (const Weighted& one : around(record.point, record.normal)) {
+      IrradianceRecord& other = records_[one.index];
+      const double distance = (other.point - record.point).norm();
+      other.radius = std::min(other.radius, record.radius + growth_of_radius * distance);
+      record.radius = std::min(record.radius, other.radius + growth_of_radius * distance);
+    }
+  }
+}
+
 std::vector<IrradianceCache::Weighted> IrradianceCache::around(const Point& point, const Vector& normal) const {
   std::vector<Weighted> found;
   for (const int level : levels_) {
@@ -69,7 +87,7 @@ std::vector<IrradianceCache::Weighted> IrradianceCache::around(const Point& poin
     if (cell == cells_.end()) continue;
     for (const std::uint32_t index : cell->second) {
       const double weight = weight_of(records_[index], point, normal);
-      if (weight > 0) found.push_back({&records_[index], weight});
+      if (weight > 0) found.push_back({index, weight});
     }
   }
   return found;
@@ -87,18 +105,19 @@ std::optional<CachedIrradiance> IrradianceCache::at(const Point& point, const Ve
   const Eigen::Index bands = luminous_weights_.size();
   Spectrum sum = Spectrum::Zero(bands);
   double weights = 0, squares = 0, own = 0, first = 0, second = 0;
-  for (const auto& [record, weight] : records) {
+  for (const auto& [index, weight] : records) {
     // E_i + (x - x_i) . grad E_i
-    const Vector way = point - record->point;
-    const Field& slope = record->gradient;
-    Spectrum predicted = record->irradiance;
+    const IrradianceRecord& record = records_[index];
+    const Vector way = point - record.point;
+    const Field& slope = record.gradient;
+    Spectrum predicted = record.irradiance;
     predicted += way.x() * slope.row(0) + way.y() * slope.row(1) + way.z() * slope.row(2);
     predicted = predicted.max(0.0);
     sum += weight * predicted;
     const double value = (predicted.matrix() * luminous_weights_).value();
     weights += weight;
     squares += weight * weight;
-    own += weight * weight * record->uncertainty * record->uncertainty;
+    own += weight * weight * record.uncertainty * record.uncertainty;
     first += weight * value;
     second += weight * value * value;
   }

@@ -37,6 +37,10 @@ class IrradianceCache {
 
   void add(const IrradianceRecord& record);
 
+  /// Several, after which no radius is larger than that of a record which it reaches and a share of the distance to it:
+  /// what one finds near an edge others do not cover up (Krivanek and others 2006, neighbour clamping).
+  void add_graded(const std::vector<IrradianceRecord>& records);
+
   std::size_t size() const { return records_.size(); }
 
   /// The sum of the weights of the records that may serve at a place of a surface with this unit normal.
@@ -47,7 +51,7 @@ class IrradianceCache {
 
  private:
   struct Weighted {
-    const IrradianceRecord* record;
+    std::uint32_t index;
     double weight;
   };
   std::vector<Weighted> around(const Point& point, const Vector& normal) const;

@@ -16,6 +16,9 @@ namespace {
 // So many lamps or luminaires get rays each; of more, some are chosen for each point.
 constexpr std::size_t few_lights = 4;
 
+// A lamp that is chosen gets so many, each of which says how the others count.
+constexpr std::uint32_t rays_of_lamp = 2;
+
 // Seeds of what one point asks for.
 enum Purpose : std::uint32_t { choice_of_lamp = 11, place_on_lamp, choice_of_luminaire, place_on_luminaire, to_sky };
 
@@ -32,7 +35,14 @@ struct LampRays {
   std::size_t first = 0, count = 0;  // of the rays
   std::vector<double> kernels;       // of each: the form factor that it stands for
   double form_factor = 0;
-  const Spectrum* exitance = nullptr;
+  Spectrum exitance;  // W/m^2, times as often as the lamp counts
+};
+
+// How a lamp is asked.
+struct LampChoice {
+  std::uint32_t rays = 0;
+  double factor = 1;
+  std::uint32_t seed = 0;
 };
 
 struct Rays {
@@ -82,26 +92,21 @@ std::array<double, 4> sample_of(const LitPoint& point, Purpose purpose, std::uin
   return pixel_sample(point.sample * rays + ray, hash({point.seed, purpose}));
 }
 
-void add_each_lamp(Rays& to, const Lights& lights, std::size_t index, const LitPoint& point, std::uint32_t rays) {
-  const auto each = std::max<std::uint32_t>(1, rays / static_cast<std::uint32_t>(lights.lamps.size()));
-  for (std::size_t l = 0; l < lights.lamps.size(); ++l) {
-    const LampFace& lamp = lights.lamps[l];
-    if (!(possible_light(lamp, point.at) > 0)) continue;
-    const std::span<const Point> corners(lamp.corners.data(), corner_count(lamp));
-    LampRays to_lamp{
-        index,         to.to_lamps.size(), each, {}, point_to_polygon(point.at.point, point.at.normal, corners),
-        &lamp.exitance};
-    for (std::uint32_t k = 0; k < each; ++k) {
-      const auto u = pixel_sample(point.sample * each + k, hash({point.seed, place_on_lamp, l}));
-      const Point place = square_to_quad(lamp.corners, u[0], u[1]);
-      to_lamp.kernels.push_back(kernel(lamp, point.at, place));
-      to.to_lamps.push_back({point.at.point, place, point.at.polygon, lamp.polygon});
-    }
-    to.lamps.push_back(std::move(to_lamp));
+// So many rays to a lamp, which counts `factor` times.
+void add_lamp(Rays& to, const LampFace& lamp, std::size_t index, const LitPoint& point, const LampChoice& choice) {
+  const std::span<const Point> corners(lamp.corners.data(), corner_count(lamp));
+  LampRays to_lamp{index, to.to_lamps.size(), choice.rays, {}, 0, choice.factor * lamp.exitance};
+  to_lamp.form_factor = point_to_polygon(point.at.point, point.at.normal, corners);
+  for (std::uint32_t k = 0; k < choice.rays; ++k) {
+    const auto u = pixel_sample(point.sample * choice.rays + k, choice.seed);
+    const Point place = square_to_quad(lamp.corners, u[0], u[1]);
+    to_lamp.kernels.push_back(kernel(lamp, point.at, place));
+    to.to_lamps.push_back({point.at.point, place, point.at.polygon, lamp.polygon});
   }
+  to.lamps.push_back(std::move(to_lamp));
 }
 
-void add_some_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint& point, std::uint32_t rays) {
+void add_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint& point, std::uint32_t rays) {
   std::vector<double> weights;
   double sum = 0;
   for (const LampFace& lamp : lights.lamps) {
@@ -109,15 +114,19 @@ void add_some_lamps(Rays& to, const Lights& lights, std::size_t index, const Lit
     sum += weights.back();
   }
   if (!(sum > 0)) return;
-  const double offset = sample_of(point, choice_of_lamp, 0, 1)[0];
-  const std::vector<Choice> chosen = choices(weights, sum, rays, offset);
-  for (std::uint32_t k = 0; k < rays; ++k) {
-    const LampFace& lamp = lights.lamps[chosen[k].index];
-    const auto u = sample_of(point, place_on_lamp, k, rays);
-    const Point place = square_to_quad(lamp.corners, u[0], u[1]);
-    const double factor = kernel(lamp, point.at, place) * sum / (weights[chosen[k].index] * rays);
-    if (!(factor > 0)) continue;
-    to.single.push_back({index, {point.at.point, place, point.at.polygon, lamp.polygon}, factor * lamp.exitance});
+  if (lights.lamps.size() <= few_lights) {
+    const auto each = std::max(rays_of_lamp, rays / static_cast<std::uint32_t>(lights.lamps.size()));
+    for (std::size_t l = 0; l < weights.size(); ++l) {
+      if (weights[l] > 0) add_lamp(to, lights.lamps[l], index, point, {each, 1, hash({point.seed, place_on_lamp, l})});
+    }
+    return;
+  }
+  const std::uint32_t count = std::max<std::uint32_t>(1, rays / rays_of_lamp);
+  const std::vector<Choice> chosen = choices(weights, sum, count, sample_of(point, choice_of_lamp, 0, 1)[0]);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::size_t l = chosen[k].index;
+    add_lamp(to, lights.lamps[l], index, point,
+             {rays_of_lamp, sum / (weights[l] * count), hash({point.seed, place_on_lamp, l, k})});
   }
 }
 
@@ -165,7 +174,7 @@ Spectrum lamp_irradiance(const LampRays& rays, const Field& through) {
     sum += g * shares.row(i);
     if (n > 1) sum -= (g - rays.form_factor) / static_cast<double>(n - 1) * (all - shares.row(i));
   }
-  return *rays.exitance * sum / static_cast<double>(n);
+  return rays.exitance * sum / static_cast<double>(n);
 }
 
 }  // namespace
@@ -175,10 +184,7 @@ Field light_samples(const Lights& lights, std::span<const LitPoint> points, std:
   Rays all;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const LitPoint& point = points[k];
-    if (!lights.lamps.empty() && lights.lamps.size() <= few_lights && rays > 1)
-      add_each_lamp(all, lights, k, point, rays);
-    else if (!lights.lamps.empty())
-      add_some_lamps(all, lights, k, point, rays);
+    if (!lights.lamps.empty()) add_lamps(all, lights, k, point, rays);
     if (!lighting.luminaires.empty()) add_luminaires(all, lights, k, point, rays);
     if (lighting.sun) add_arrival(all, k, point.at, from_sun(lighting, point.at), 1);
   }

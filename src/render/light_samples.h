@@ -27,8 +27,8 @@ struct LitPoint {
 };
 
 /// One estimate of the irradiance of each point (row) by lights that shine on it straight or through clear faces,
-/// W/m^2 per band; its mean over all samples is the irradiance. `rays` of them go to lamps and as many to luminaires,
-/// which choose among these, or to each one if there are few; one to the sun, and `rays` to the sky.
+/// W/m^2 per band; its mean over all samples is the irradiance. `rays` go to lamps, 2 or more, and as many to
+/// luminaires, which choose among these, or to each one if there are few; one to the sun, and `rays` to the sky.
 Field light_samples(const Lights& lights, std::span<const LitPoint> points, std::uint32_t rays);
 
 }  // namespace patchlight

@@ -5,6 +5,7 @@
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky.h"
+#include "pipeline/lamps_apart.h"
 #include "plan/planned_scene.h"
 #include "render/final_gather.h"
 #include "render/lens.h"
@@ -74,7 +75,8 @@ Eigen::VectorXd weight_of_pixels(const Image& image) {
   return is_lit ? inside : Eigen::VectorXd::Ones(inside.size()).eval();
 }
 
-// The brightest faces that emit. The light of those left out is gathered like that of patches which reflect.
+// The faces that emit much more than most do, the brightest first. The light of those left out is gathered like that of
+// patches which reflect.
 struct PictureLamps {
   std::vector<LampFace> faces;
   Field exitance;  // of their patches, 0 of all others
@@ -96,13 +98,15 @@ PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) 
     double flux;
   };
   std::vector<Lamp> sides;
+  const double mean = exitance.rowwise().mean().matrix().dot(simulation.problem.area) / simulation.problem.area.sum();
   for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
     for (const Side side : {Side::front, Side::back}) {
       const PatchRange patches = mesh.patches_on(polygon, side);
       if (patches.begin == patches.end || !(exitance.row(patches.begin) > 0).any()) continue;
       double area = 0;
       for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) area += mesh.area[patch];
-      sides.push_back({patches, area * exitance.row(patches.begin).mean()});
+      if (exitance.row(patches.begin).mean() > bright * mean)
+        sides.push_back({patches, area * exitance.row(patches.begin).mean()});
     }
   }
   std::stable_sort(sides.begin(), sides.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });

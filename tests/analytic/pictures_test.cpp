@@ -1,3 +1,4 @@
+#include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
@@ -27,6 +28,7 @@ Simulation solved(const Scene& scene, std::size_t patches, Storage storage = Sto
   Request request;
   request.mesh.patches = patches;
   request.assembly.storage = storage;
+  if (storage == Storage::rays) request.solver.solver = Solver::gmres;
   return simulate(scene, request);
 }
 

@@ -75,6 +75,15 @@ TEST(IrradianceCache, InterpolatesALinearIrradianceExactly) {
   EXPECT_GT(found->deviation, 0.05);
 }
 
+TEST(IrradianceCache, GradesRadii) {
+  IrradianceCache cache(Eigen::VectorXd::Ones(1));
+  cache.add_graded({record_of_linear(Point(0, 0, 0), 1)});
+  cache.add_graded({record_of_linear(Point(0.5, 0, 0), 0.1)});
+  // The first reaches as far as .1 + .4 * .5 now.
+  EXPECT_GT(cache.weight_at(Point(0, 0.29, 0), Vector::UnitZ()), 0);
+  EXPECT_EQ(cache.weight_at(Point(0, 0.31, 0), Vector::UnitZ()), 0);
+}
+
 TEST(IrradianceCache, ServesOneSideOfOneSurfaceUpToARadius) {
   IrradianceCache cache(Eigen::VectorXd::Ones(1));
   cache.add(record_of_linear(Point(0, 0, 0), 1));
