@@ -5,10 +5,11 @@
 
 #include "archive/bands_json.h"
 #include "archive/file_names.h"
+#include "archive/json_values.h"
+#include "archive/lights_json.h"
 #include "files/regular_file.h"
 #include "output/write_bytes.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -22,38 +23,9 @@
 namespace patchlight {
 namespace {
 
-// Keeps the keys in the order in which they are set.
-using Json = nlohmann::ordered_json;
-
 using Indices = std::vector<std::uint32_t>;
 
 constexpr const char* kind = "patchlight scene";
-
-bool is_utf8(const std::string& text) {
-  try {
-    return !Json(text).dump().empty();
-  } catch (const Json::type_error&) {
-    return false;
-  }
-}
-
-// A text; as an array of its bytes when it is not UTF-8, which JSON cannot hold.
-Json json_of(const std::string& text) {
-  if (is_utf8(text)) return text;
-  Json bytes = Json::array();
-  for (const char letter : text) bytes.push_back(static_cast<unsigned char>(letter));
-  return bytes;
-}
-
-Json json_of(const std::vector<std::string>& texts) {
-  Json list = Json::array();
-  for (const std::string& text : texts) list.push_back(json_of(text));
-  return list;
-}
-
-Json json_of(const Spectrum& spectrum) { return std::vector<double>(spectrum.begin(), spectrum.end()); }
-
-Json json_of(const Vector& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json materials_part(const Scene& scene) {
   Json part = Json::array();
@@ -116,23 +88,6 @@ Json sides_part(const KeptSides& sides) {
           {"notes", json_of(sides.notes)}};
 }
 
-std::string text_of(const Json& json) {
-  if (json.is_string()) return json.get<std::string>();
-  std::string text;
-  for (const Json& byte : json) text += static_cast<char>(byte.get<unsigned char>());
-  return text;
-}
-
-std::vector<std::string> texts_of(const Json& json) {
-  std::vector<std::string> texts;
-  for (const Json& text : json) texts.push_back(text_of(text));
-  return texts;
-}
-
-void require(bool condition, const std::string& otherwise) {
-  if (!condition) throw std::out_of_range(otherwise);
-}
-
 // `count` whole numbers from 0 up to, but without, `end`.
 Indices indices_of(const Json& json, std::size_t count, std::uint64_t end = std::uint64_t{1} << 32) {
   require(json.is_array() && json.size() == count,
@@ -144,16 +99,6 @@ Indices indices_of(const Json& json, std::size_t count, std::uint64_t end = std:
     indices.push_back(entry.get<std::uint32_t>());
   }
   return indices;
-}
-
-Vector vector_of(const Json& json) {
-  const auto coordinates = json.get<std::array<double, 3>>();
-  return {coordinates[0], coordinates[1], coordinates[2]};
-}
-
-Spectrum spectrum_of(const Json& json) {
-  const auto values = json.get<std::vector<double>>();
-  return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 std::vector<Material> materials_of(const Json& json) {
@@ -238,9 +183,8 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
 
 [[noreturn]] void refuse_lights(const std::filesystem::path& folder) {
   throw InputError(folder.string(),
-                   "its scene has luminaires, sun or sky, which are not kept with form factors; solve the scene file "
-                   "again, with given.form_factors " +
-                       folder.string());
+                   "its scene has luminaires, sun or sky, which earlier versions did not keep with form factors; make "
+                   "them anew: patchlight form-factors MODEL -o FOLDER");
 }
 
 StoredScene stored_scene_of(const Json& json) {
@@ -261,6 +205,8 @@ StoredScene stored_scene_of(const Json& json) {
   scene.polygons = polygons_of(json.at("polygons"), scene.materials.size());
   require(scene.metres_per_unit > 0 && std::isfinite(scene.metres_per_unit), "the unit has no length");
   require(scene.up.allFinite() && scene.up.norm() > 0, "no direction is up");
+  if (json.contains("lights"))
+    scene = with_views_of(with_lights_of(std::move(scene), json.at("lights")), json.at("views"));
   check(scene);
   KeptSides sides = sides_of(json.at("kept_sides"), scene.polygons.size());
   return {std::move(scene), std::move(sides)};
@@ -282,7 +228,8 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["materials"] = materials_part(scene);
   if (!scene.bands.empty()) json["bands"] = json_of(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);
-  json["has_point_or_daylight"] = has_point_or_daylight(scene);
+  json["lights"] = lights_part(scene);
+  json["views"] = views_part(scene);
   json["groups"] = json_of(scene.groups);
   json["vertices"] = vertices_part(scene);
   json["polygons"] = polygons_part(scene);
@@ -303,7 +250,7 @@ StoredScene read_stored_scene(const std::filesystem::path& folder) {
   bool lights_left_out = false;
   try {
     const Json json = Json::parse(stream);
-    lights_left_out = json.at("has_point_or_daylight").get<bool>();
+    lights_left_out = !json.contains("lights") && json.at("has_point_or_daylight").get<bool>();
     stored = stored_scene_of(json);
   } catch (const std::exception& error) {
     throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +

@@ -8,8 +8,17 @@ namespace patchlight {
 
 std::string rounded(double value, int digits) {
   if (!std::isfinite(value)) return "-";
+  // 2000 rather than 2e+03.
+  constexpr double least_with_exponent = 1e6;
+  const double size = std::abs(value);
+  const double step =
+      size < least_with_exponent && size >= 1 ? std::pow(10, std::floor(std::log10(size)) - digits + 1) : 0;
   std::ostringstream text;
-  text << std::setprecision(digits) << value;
+  if (step > 1) {
+    text << std::fixed << std::setprecision(0) << std::round(value / step) * step;
+  } else {
+    text << std::setprecision(digits) << value;
+  }
   return text.str();
 }
 

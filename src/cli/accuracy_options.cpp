@@ -10,6 +10,7 @@
 namespace patchlight::cli {
 
 void add_refinement_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Accuracy");
   add(command, "--accuracy", "ERROR",
       "relative error of the patches' mean radiosities, e.g. 1% or 0.01:\npatches and shadow rays are refined where it "
       "pays until the error\nbars are below; begins with --patches, here " +
@@ -28,6 +29,7 @@ void add_refinement_options(CLI::App& command, Request& request) {
 }
 
 void add_accuracy_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Accuracy");
   add_refinement_options(command, request);
   command.add_flag_callback(
       "--error-bars", [&request] { request.accuracy.error_bars = true; },

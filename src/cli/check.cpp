@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstring>
 #include <iomanip>
 #include <iostream>
 #include <set>
@@ -56,10 +58,10 @@ std::string size_line(const Scene& scene, const SceneReport& report) {
   return text.str();
 }
 
-std::string counts_lines(const SceneReport& report) {
+std::string counts_lines(const SceneReport& report, std::size_t faces) {
   std::ostringstream text;
-  text << "faces: " << counted(report.polygons, "polygon") << " of " << rounded(report.area, digits) << " m^2, "
-       << report.vertices << " vertices, " << counted(report.groups, "group") << '\n';
+  text << "faces: " << faces << ", as " << counted(report.polygons, "polygon") << " of " << rounded(report.area, digits)
+       << " m^2, " << report.vertices << " vertices, " << counted(report.groups, "group") << '\n';
   text << "shells: " << report.shells << ", of these " << report.closed_shells << " closed; ";
   if (report.open_edges == 0) {
     text << "no open edges\n";
@@ -216,11 +218,28 @@ std::string problem_lines(const Scene& scene, const SceneReport& report, bool al
 }
 
 const char* verdict(const SceneReport& report) {
-  if (!report.usable) return "cannot be solved as it is";
+  if (!report.usable) return "has no light yet; with one it can be solved";
   const bool has_errors = std::any_of(report.problems.begin(), report.problems.end(), [](const Problem& problem) {
     return severity_of(problem.kind) == Severity::error;
   });
   return has_errors ? "can be solved, but something of it is lost: see its errors" : "can be solved";
+}
+
+// In quotes where a shell would take it apart.
+std::string quoted(const std::string& word) {
+  const auto is_plain = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) || std::strchr("_./,:=-+", letter);
+  };
+  return std::all_of(word.begin(), word.end(), is_plain) ? word : "'" + word + "'";
+}
+
+// The command that comes next.
+std::string next_line(const CheckArguments& arguments, const SceneReport& report) {
+  std::string models;
+  for (const std::filesystem::path& file : arguments.models) models += " " + quoted(shown_name(file.string()));
+  const std::string result = arguments.models.front().stem().string();
+  return "next: patchlight solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
+         quoted(result + ".vtp") + " --picture " + quoted(result + ".png") + '\n';
 }
 
 }  // namespace
@@ -241,8 +260,8 @@ ExitCode check(const CheckArguments& arguments) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
-              << size_line(scene, report) << counts_lines(report) << sides_lines(report)
-              << room_lines(scene, arguments.all) << object_lines(report, arguments.all)
+              << next_line(arguments, report) << size_line(scene, report) << counts_lines(report, scene.faces)
+              << sides_lines(report) << room_lines(scene, arguments.all) << object_lines(report, arguments.all)
               << material_lines(report, arguments.all) << lamp_lines(report) << daylight_lines(scene)
               << problem_lines(scene, report, arguments.all) << std::flush;
   }

@@ -30,6 +30,7 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
   CheckOptions& to = *options;
   CLI::App& command = *tool.add_subcommand("check", "tells what a model holds and what is wrong with it");
   add_model_options(command, to.model);
+  command.option_defaults()->group("Results");
   add(command, "--sides", "auto|front|both",
       "counts the sides of the polygons that take part in a solve with\nthis option; default: they are not counted",
       [&to](const std::string& text) { to.sides = sides_named(text); });

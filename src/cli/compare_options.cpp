@@ -41,6 +41,7 @@ std::vector<Contestant> contestants(const std::string& text) {
 
 void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
   CompareOptions& compare = options.compare;
+  command.option_defaults()->group("Results");
   add(command, "-o,--output", "FOLDER", "folder for tables, plots and a series for ParaView per solver",
       [&options](const std::string& text) { options.output = text; });
   add(command, "--solvers", "A,B,...",
@@ -77,6 +78,7 @@ std::shared_ptr<CompareCommandOptions> add_compare(CLI::App& tool) {
   add_graded_option(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
+  command.option_defaults()->group("The run");
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
   return options;
 }

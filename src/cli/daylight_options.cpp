@@ -112,6 +112,7 @@ void take_weather(DaylightSetting& daylight, const std::string& text) {
 }  // namespace
 
 void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
+  command.option_defaults()->group("Daylight");
   add(command, "--sky", "KIND[:STRENGTH]",
       "the sky: overcast, uniform or clear (this with --sun) and the\nilluminance of the open ground by it, as in "
       "overcast:10000lx,\nwhich is the default; or perez:DIRECT,DIFFUSE, as measured in\nW/m^2; default: none, or what "

@@ -49,6 +49,7 @@ std::vector<Effect> effects_but(const std::vector<Effect>& without) {
 }
 
 void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects) {
+  command.option_defaults()->group("Effects");
   add_effects(command, "--force",
               "simulates an effect even where the scene does not call for it:\n" + names(effects, ", ") +
                   ";\nmay be repeated; default: as the scene calls for",

@@ -69,6 +69,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
   add_effect_options(command, to.request, {Effect::reach, Effect::backs, Effect::closure});
+  command.option_defaults()->group("Results");
   command
       .add_option(
           "-o,--output", to.output,
@@ -92,6 +93,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
           },
           "prints the form factors between materials or objects, too;\ninto the folder as CSV; default: patches only")
       ->option_text("material|object");
+  command.option_defaults()->group("Form factors and equations");
   add_without(command, to.request.assembly.short_cuts);
   command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
   add_patch_options(command, to.request);

@@ -8,6 +8,7 @@
 namespace patchlight::cli {
 
 void add_sides_option(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Patches");
   add(command, "--sides", "auto|front|both",
       "sides of the polygons that take part; auto leaves out those\nno light can reach; default auto",
       [&request](const std::string& text) { request.mesh.sides = sides_named(text); });
@@ -18,6 +19,7 @@ Sides sides_named(const std::string& text) {
 }
 
 void add_patch_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Patches");
   add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
       [&request](const std::string& text) {
         request.mesh.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
@@ -35,6 +37,7 @@ void add_patch_options(CLI::App& command, Request& request) {
 }
 
 void add_graded_option(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Patches");
   command.add_flag_callback(
       "--graded-edges", [&request] { request.mesh.graded_edges = true; },
       "patches of convex four-sided faces that nothing touches inside shrink\ntowards the edges where lit faces meet, "
@@ -43,12 +46,14 @@ void add_graded_option(CLI::App& command, Request& request) {
 }
 
 void add_closure_option(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Form factors and equations");
   command.add_flag_callback(
       "--no-closure", [&request] { request.assembly.close = false; },
       "form factors as computed; default: rows closed, so that no light\nis lost or made by their errors");
 }
 
 void add_relaxation_option(CLI::App& command, std::optional<double>& relaxation) {
+  command.option_defaults()->group("Form factors and equations");
   add(command, "--relaxation", "NUMBER",
       "relaxation factor of the solver sor, above 0 and below 2; default:\nestimated from the spectral radius",
       [&relaxation](const std::string& text) {
@@ -58,6 +63,7 @@ void add_relaxation_option(CLI::App& command, std::optional<double>& relaxation)
 }
 
 void add_sampling_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Form factors and equations");
   add(command, "--samples", "N", "shadow rays for a partly occluded pair of patches; default 8",
       [&request](const std::string& text) {
         request.assembly.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
@@ -82,6 +88,7 @@ void add_sampling_options(CLI::App& command, Request& request) {
 }
 
 void add_machine_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&request](const std::string& text) {
         request.resources.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));

@@ -19,6 +19,7 @@ std::string formats(const std::string& separator) {
 }
 
 void add_choice_options(CLI::App& command, ModelOptions& options) {
+  command.option_defaults()->group("The model");
   command
       .add_option("--only", options.only,
                   "only faces of objects, groups or materials of this name take\npart (* and ? stand for any letters: "
@@ -31,6 +32,11 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
                   "do")
       ->allow_extra_args(false)
       ->option_text("NAME");
+  add(command, "--detail", "LENGTH",
+      "bodies that are smaller, as 5cm, are left out, and those that\ndiffer by less from a box become boxes; a note "
+      "tells "
+      "what went;\ndefault: all stay",
+      [&options](const std::string& text) { options.detail = length("--detail", text); });
   command.add_flag("--keep-faces", options.keep_faces,
                    "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
                    "and share edges become one");
@@ -39,6 +45,7 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
 }  // namespace
 
 void add_file_options(CLI::App& command, ModelOptions& options) {
+  command.option_defaults()->group("The model");
   command
       .add_option(
           "MODEL", options.models,
@@ -76,6 +83,7 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
 }
 
 void add_up_option(CLI::App& command, std::optional<Vector>& up) {
+  command.option_defaults()->group("The model");
   add(command, "--up", "y|z",
       "the model's upright axis: where down is for lamps, sky and\npictures; default: as the format says (y: glTF; z: "
       "IFC), else that\nacross which most area lies, or against the lamps' light",
@@ -85,6 +93,7 @@ void add_up_option(CLI::App& command, std::optional<Vector>& up) {
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
+  command.option_defaults()->group("The model");
   command
       .add_option("--set", settings,
                   "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "
@@ -112,6 +121,7 @@ ReadOptions read_options(const ModelOptions& options) {
   read.confine = options.confine;
   read.only = options.only;
   read.leave_out = options.leave_out;
+  read.detail = options.detail;
   read.keep_faces = options.keep_faces;
   read.daylight = options.daylight;
   read.settings = material_settings(options.settings);

@@ -18,6 +18,7 @@ struct ModelOptions {
   double metres_per_unit = 1;
   std::optional<Vector> up;
   std::vector<std::string> only, leave_out;
+  double detail = 0;
   bool keep_faces = false;
   DaylightSetting daylight;
   std::string confine;

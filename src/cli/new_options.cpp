@@ -18,6 +18,7 @@ std::shared_ptr<NewOptions> add_new(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand(
       "new", "writes a commented scene file for a model: sky, glass, sensors in its rooms, views from inside");
   add_file_options(command, to.model);
+  command.option_defaults()->group("Results");
   add(command, "-o,--output", "SCENE.toml", "the scene file, which must not be there yet",
       [&to](const std::string& text) {
         if (!text.ends_with(".toml")) throw refusal("-o", text, "a name that ends in .toml");

@@ -86,6 +86,13 @@ double seconds(const std::string& option, const std::string& text) {
   throw refusal(option, text, "a time above 0 such as 30s, 2min or '1 h'; units: s, min, h");
 }
 
+double length(const std::string& option, const std::string& text) {
+  constexpr std::array<Unit, 6> units = {
+      {{"", 1}, {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
+  if (const std::optional<double> value = quantity(text, units)) return *value;
+  throw refusal(option, text, "a length above 0 such as 5cm or 0.05; units: m, cm, mm, in, ft");
+}
+
 double relative_error(const std::string& option, const std::string& text) {
   const bool percent = text.ends_with('%');
   const std::size_t end = percent ? text.find_last_not_of(" %") + 1 : text.size();

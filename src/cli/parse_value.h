@@ -39,6 +39,9 @@ double relative_error(const std::string& option, const std::string& text);
 /// The value of an option as a time above 0 in seconds, as in 30s, 2 min or 1h. \throws UsageError.
 double seconds(const std::string& option, const std::string& text);
 
+/// The value of an option as a length above 0 in metres, as in 5cm, '50 mm' or 0.05. \throws UsageError.
+double length(const std::string& option, const std::string& text);
+
 /// The value of an option as a point X,Y,Z. \throws UsageError.
 Point point(const std::string& option, const std::string& text);
 

@@ -28,11 +28,15 @@ const char* word_for(const Decision& decision) {
   return decision.simulate ? "on" : "off";
 }
 
+// Those that say which surfaces take part, and no property of light.
+bool is_of_surfaces(Effect effect) { return effect == Effect::reach || effect == Effect::backs; }
+
 // Two lines for each: the fact that decides, and what that costs or saves.
-std::string lines_of(const std::vector<Decision>& decisions) {
+std::string lines_of(const std::vector<Decision>& decisions, bool of_surfaces) {
   constexpr int width = 17;
   std::ostringstream text;
   for (const Decision& decision : decisions) {
+    if (is_of_surfaces(decision.effect) != of_surfaces) continue;
     text << std::left << std::setw(width) << name_of(decision.effect) << word_for(decision) << ": "
          << with_option_names(decision.reason) << '\n'
          << std::setw(width) << "" << (decision.simulate ? "takes: " : "saves: ") << decision.saving << '\n';
@@ -71,7 +75,9 @@ ExitCode plan(const PlanArguments& arguments) {
     for (const std::string& note : *notes) print_message("note", note);
   }
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
-            << lines_of(plan.decisions) << cost_lines(cost) << std::flush;
+            << "effects of light\n"
+            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
+            << lines_of(plan.decisions, true) << cost_lines(cost) << std::flush;
   return good;
 }
 

@@ -28,6 +28,7 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
       *tool.add_subcommand("plan", "tells what a solve would simulate and leave out, why, and what it would cost");
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
+  command.option_defaults()->group("Results");
   add(command, "--json", "FILE", "the same as JSON (.json)", [&to](const std::string& text) {
     if (!text.ends_with(".json")) throw refusal("--json", text, "a name that ends in .json");
     to.json = text;

@@ -1,5 +1,6 @@
 #include "cli/relight_options.h"
 
+#include "cli/daylight_options.h"
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
@@ -16,6 +17,7 @@ struct RelightOptions {
   std::string folder;
   std::vector<std::string> settings;
   std::optional<Vector> up;
+  DaylightSetting daylight;
   Request request;
   SolutionOptions solution;
 };
@@ -31,6 +33,7 @@ std::shared_ptr<RelightOptions> add_relight(CLI::App& tool) {
       ->option_text(" ");
   add_set_option(command, to.settings);
   add_up_option(command, to.up);
+  add_daylight_options(command, to.daylight);
   add_effect_options(command, to.request, effects_but({Effect::occlusion, Effect::reach, Effect::backs}));
   add_output_options(command, to.solution);
   add_solver_options(command, to.solution, to.request);
@@ -47,6 +50,7 @@ SolveArguments finish_relight(const RelightOptions& options) {
   arguments.form_factors = options.folder;
   arguments.read.settings = material_settings(options.settings);
   arguments.read.up = options.up;
+  arguments.read.daylight = options.daylight;
   arguments.request = options.request;
   arguments = with_solution(std::move(arguments), "relight", options.solution);
   check(arguments.request, {.form_factors = true});

@@ -30,6 +30,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
         if (!text.ends_with(".vtp")) throw refusal("--solution", text, "a name that ends in .vtp");
         to.solution = text;
       });
+  command.option_defaults()->group("Results and pictures");
   add(command, "-o,--output", "FILE",
       "the picture (.png), or its radiances (.hdr, .exr); of several\nviews each gets its name before the extension",
       [&to](const std::string& text) {
@@ -37,6 +38,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
         to.picture.file = text;
       });
   add_picture_options(command, to.picture, PictureQuality::final);
+  command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor", [&to](const std::string& text) {
     to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
   });

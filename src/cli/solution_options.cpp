@@ -78,6 +78,7 @@ path default_points_output(const SolveArguments& arguments) {
 }
 
 void add_points_options(CLI::App& command, SolutionOptions& options) {
+  command.option_defaults()->group("Sensors");
   add_file(command, "--points", options.points,
            "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
            "receiving side");
@@ -93,6 +94,7 @@ void add_points_options(CLI::App& command, SolutionOptions& options) {
 }  // namespace
 
 void add_output_options(CLI::App& command, SolutionOptions& options) {
+  command.option_defaults()->group("Results and pictures");
   command
       .add_option("-o,--output", options.results,
                   "solved patches: for ParaView (.vtp), or with vertex colors for\nviewers and the web (.ply, .glb); "
@@ -110,6 +112,7 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
 }
 
 void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request) {
+  command.option_defaults()->group("Form factors and equations");
   add_closure_option(command, request);
   add_relaxation_option(command, request.solver.relaxation);
   add(command, "--solver", solver_names("|"),
@@ -136,6 +139,7 @@ void add_solver_options(CLI::App& command, SolutionOptions& options, Request& re
 }
 
 void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
+  command.option_defaults()->group("The run");
   command.add_flag(
       "--discard", options.discards,
       "Ctrl-C writes nothing; default: what is there, once a\nmesh is solved or an iterate of the first is");

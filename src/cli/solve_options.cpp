@@ -26,6 +26,7 @@ struct SolveOptions {
 namespace {
 
 void add_checkpoint_option(CLI::App& command, SolveOptions& options) {
+  command.option_defaults()->group("Form factors and equations");
   add(command, "--checkpoint", "FOLDER",
       "with --storage rays, which it implies: rows are kept there while\nthe run lasts, so that one that is killed "
       "goes on where it was\nwhen it is started again; default: nothing is kept",
@@ -57,6 +58,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
   add_patch_options(command, to.request);
   add_graded_option(command, to.request);
   add_accuracy_options(command, to.request);
+  command.option_defaults()->group("Form factors and equations");
   add(command, "--form-factors", "FOLDER",
       "what patchlight form-factors has written for this model:\ntaken from there, with the options of then; "
       "default:\ncomputed",

@@ -28,6 +28,7 @@ void add_rays_option(CLI::App& command, Request& request) {
 }  // namespace
 
 void add_storage_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Form factors and equations");
   command.add_flag_callback(
       "--on-demand", [&request] { request.assembly.storage = Storage::on_demand; },
       "no matrix: form factors are computed whenever the solver asks for\nthem, and not closed; little memory, a first "
@@ -42,6 +43,7 @@ void add_storage_options(CLI::App& command, Request& request) {
 }
 
 void add_stored_options(CLI::App& command, Request& request) {
+  command.option_defaults()->group("Form factors and equations");
   add(command, "--storage", "tiles|rays",
       "form factors of all pairs of patches, or sparse rows of what some\nrays from each patch meet, for many patches; "
       "default tiles",

@@ -21,6 +21,7 @@ struct StudyCommandOptions {
 namespace {
 
 void add_study_options(CLI::App& command, StudyCommandOptions& options) {
+  command.option_defaults()->group("Results");
   add(command, "-o,--output", "FOLDER", "folder for the table, the facts and the plots",
       [&options](const std::string& text) { options.output = text; });
   add(command, "--sizes", "N",
@@ -56,6 +57,7 @@ std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
   add_patch_options(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
+  command.option_defaults()->group("The run");
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
   return options;
 }

@@ -29,6 +29,7 @@ struct VerifyCommandOptions {
 namespace {
 
 void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
+  command.option_defaults()->group("The check");
   add(command, "--paths", "N",
       "paths per patch, rounded up to 32 times a power of two; the noise\nof the check falls as their root; default "
       "4096",

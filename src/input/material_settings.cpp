@@ -4,12 +4,14 @@
 
 #include "base/near_match.h"
 #include "base/shortest.h"
+#include "input/faces_of.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace patchlight {
@@ -96,11 +98,12 @@ Material changed(Material material, const MaterialSetting& setting) {
   return material;
 }
 
-// The materials that a setting is for. A pattern does not mean those that are made up.
-std::vector<std::size_t> chosen(const std::vector<Material>& materials, const MaterialSetting& setting) {
+// The materials that a setting is for, of those that are in question. A pattern does not mean those that are made up.
+std::vector<std::size_t> chosen(const std::vector<Material>& materials, const std::vector<std::size_t>& candidates,
+                                const MaterialSetting& setting) {
   std::vector<std::size_t> by_pattern;
   std::vector<std::string> names;
-  for (std::size_t m = 0; m < materials.size(); ++m) {
+  for (const std::size_t m : candidates) {
     if (materials[m].name == setting.material) return {m};
     if (materials[m].second_face) continue;
     if (matches(materials[m].name, setting.material)) by_pattern.push_back(m);
@@ -108,14 +111,23 @@ std::vector<std::size_t> chosen(const std::vector<Material>& materials, const Ma
   }
   if (!by_pattern.empty()) return by_pattern;
   const std::string hint = suggestion(setting.material, names);
-  throw InputError(setting.where, "no face has a material '" + setting.material + "'" + hint +
+  throw InputError(setting.where, std::string("no face ") + (setting.of.empty() ? "" : "of '" + setting.of + "' ") +
+                                      "has a material '" + setting.material + "'" + hint +
                                       (hint.empty() ? "; expected one of " : " Expected one of ") + listed(names));
 }
 
+// Of all materials.
+std::vector<std::size_t> chosen(const std::vector<Material>& materials, const MaterialSetting& setting) {
+  std::vector<std::size_t> all(materials.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return chosen(materials, all, setting);
+}
+
 // \throws InputError when a setting gives an index to opaque materials alone.
-void require_transmittance(const std::vector<Material>& materials, const MaterialSetting& setting) {
+void require_transmittance(const std::vector<Material>& materials, const std::vector<std::size_t>& meant,
+                           const MaterialSetting& setting) {
   if (setting.quantity != Quantity::index) return;
-  for (const std::size_t m : chosen(materials, setting)) {
+  for (const std::size_t m : meant) {
     if (materials[m].transmittance.size() > 0) return;
   }
   throw InputError(setting.where, "found the index of refraction " + shortest(setting.value[0]) + " for material '" +
@@ -154,12 +166,20 @@ bool matches(std::string_view name, std::string_view pattern) {
 }
 
 Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
+  std::vector<std::vector<std::size_t>> meant;  // per setting its materials
   for (const MaterialSetting& setting : settings) {
-    for (const std::size_t m : chosen(scene.materials, setting)) {
-      scene.materials[m] = changed(scene.materials[m], setting);
+    if (setting.of.empty()) {
+      meant.push_back(chosen(scene.materials, setting));
+    } else {
+      const std::vector<bool> faces = faces_of(scene, setting.of, setting.where);
+      std::vector<std::size_t> materials = chosen(scene.materials, materials_of(scene, faces), setting);
+      OwnMaterials own = with_own_materials(std::move(scene), faces, std::move(materials), setting.of);
+      scene = std::move(own.scene);
+      meant.push_back(std::move(own.materials));
     }
+    for (const std::size_t m : meant.back()) scene.materials[m] = changed(scene.materials[m], setting);
   }
-  for (const MaterialSetting& setting : settings) require_transmittance(scene.materials, setting);
+  for (std::size_t k = 0; k < settings.size(); ++k) require_transmittance(scene.materials, meant[k], settings[k]);
   return scene;
 }
 

@@ -14,9 +14,11 @@
 #include "input/text.h"
 #include "input/toml_sensors.h"
 #include "scene/joined_faces.h"
+#include "scene/less_detail.h"
 #include "scene/limits.h"
 #include "scene/repair.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -83,11 +85,25 @@ Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
   return with_lights(std::move(scene), lights);
 }
 
+// Without what is smaller than is asked for, and with coplanar neighbours as one.
+Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
+  double detail = options.detail;
+  bool keep = options.keep_faces;
+  for (const SceneFile& file : files) {
+    detail = std::max(detail, file.detail);
+    keep = keep || file.keep_faces;
+  }
+  if (detail > 0) scene = with_less_detail(std::move(scene), detail);
+  return keep ? scene : with_joined_faces(std::move(scene));
+}
+
 // The sensors that a scene file asks for.
 Scene with_sensors(Scene scene, const SceneFile& file) {
   for (const auto& entry : file.sensors) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
-      for (SensorGroup& group : sensors_over(scene, *grid)) scene.sensors.push_back(std::move(group));
+      FloorSensors found = sensors_over(scene, *grid);
+      for (SensorGroup& group : found.groups) scene.sensors.push_back(std::move(group));
+      if (!found.note.empty()) scene.notes.push_back(std::move(found.note));
     } else {
       scene.sensors.push_back(std::get<SensorGroup>(entry));
     }
@@ -128,7 +144,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   scene = repair(std::move(scene));
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
-  if (!options.keep_faces) scene = with_joined_faces(std::move(scene));
+  scene = with_fewer_faces(std::move(scene), options, scene_files);
   scene = set_upright(std::move(scene), options);
   for (const SceneFile& file : scene_files) {
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);
@@ -145,6 +161,11 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   scene = with_settings(std::move(scene), options.settings);
   check(scene);
   scene = set_upright(std::move(scene), options);
+  if (asks_for_daylight(options.daylight)) {
+    scene.sun.reset();
+    scene.sky.reset();
+    scene = with_daylight(std::move(scene), options, true);
+  }
   check_limits(scene);
   return scene;
 }

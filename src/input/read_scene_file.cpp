@@ -13,7 +13,7 @@ SceneFile read_scene_file(const std::filesystem::path& file, const std::filesyst
   const std::string text = read_text(file, file.string(), "the scene file");
   const TomlValue root = parse_toml(text, file.string());
   allow_keys(root, {"unit", "up", "model", "material", "sensors", "camera", "luminaire", "north", "site", "sun", "sky",
-                    "weather", "ground"});
+                    "weather", "ground", "detail", "keep_faces"});
 
   SceneFile scene;
   scene.file = file.string();
@@ -26,6 +26,11 @@ SceneFile read_scene_file(const std::filesystem::path& file, const std::filesyst
   scene.sensors = sensors_of(root, frame);
   scene.cameras = cameras_of(root, frame);
   scene.lights = lights_of(root, frame);
+  if (const TomlValue* const detail = find(root, "detail")) scene.detail = frame.metres_per_unit * positive(*detail);
+  if (const TomlValue* const keep = find(root, "keep_faces")) {
+    if (keep->kind != TomlValue::Kind::truth) refuse(*keep, "true or false");
+    scene.keep_faces = keep->truth;
+  }
   std::vector<std::string> texts = {text};
   scene.inputs = sensor_files(root, frame);
   if (file != "-") scene.inputs.push_back(file);

@@ -47,6 +47,8 @@ struct SceneFile {
   std::vector<std::variant<SensorGroup, FloorGrid>> sensors;
   std::vector<Camera> cameras;
   LightEntries lights;
+  double detail = 0;        ///< ReadOptions::detail
+  bool keep_faces = false;  ///< ReadOptions::keep_faces
 };
 
 /// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError

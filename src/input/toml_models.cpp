@@ -123,9 +123,12 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
 }
 
 std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
-  allow_keys(table, {"name", "reflectance", "specular_reflectance", "transmittance", "diffuse_transmittance", "index",
-                     "exitance", "radiance"});
-  const TomlValue& name = required(table, "name", "the name of materials, or a pattern with * and ?");
+  allow_keys(table, {"name", "of", "reflectance", "specular_reflectance", "transmittance", "diffuse_transmittance",
+                     "index", "exitance", "radiance"});
+  const TomlValue* const of = find(table, "of");
+  const TomlValue& name =
+      of && !find(table, "name") ? *of : required(table, "name", "the name of materials, or a pattern with * and ?");
+  const std::string material = &name == of ? "*" : text(name);
   std::vector<MaterialSetting> settings;
   for (const auto& [key, quantity] :
        {std::pair("reflectance", Quantity::reflectance),
@@ -135,7 +138,7 @@ std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
         std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance)}) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
-    settings.push_back({text(name), quantity, spectrum(*value), name.where});
+    settings.push_back({material, quantity, spectrum(*value), name.where, of ? text(*of) : std::string()});
     if (is_share(quantity) && (settings.back().value > 1).any()) refuse(*value, "0 to 1 in every band");
     if (quantity == Quantity::index && !is_index(settings.back().value)) refuse(*value, expected_index);
   }

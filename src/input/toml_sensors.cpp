@@ -169,8 +169,9 @@ std::vector<SensorGroup> over_floor(const Scene& scene, const FloorGrid& grid, c
 }
 
 // The rooms that a pattern means, each with a grid of its own; those too narrow for one have none.
-std::vector<SensorGroup> over_rooms(const Scene& scene, const FloorGrid& grid, const std::string& where) {
+FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid, const std::string& where) {
   std::vector<SensorGroup> groups;
+  std::string narrow;
   std::vector<std::string> names;
   bool found = false;
   for (const NamedRoom& room : scene.rooms) {
@@ -178,9 +179,11 @@ std::vector<SensorGroup> over_rooms(const Scene& scene, const FloorGrid& grid, c
     if (room.name != grid.room && !matches(room.name, grid.room)) continue;
     found = true;
     const Floor floor = floor_of(room.faces, scene.up);
-    if (floor.outlines.empty()) continue;
-    SensorGroup group = grid_over(floor, grid, where);
-    if (group.sensors.empty()) continue;
+    SensorGroup group = floor.outlines.empty() ? SensorGroup() : grid_over(floor, grid, where);
+    if (group.sensors.empty()) {
+      narrow += (narrow.empty() ? "" : ", ") + room.name;
+      continue;
+    }
     group.name = names.back() == grid.room ? grid.name : grid.name + " " + room.name;
     groups.push_back(std::move(group));
   }
@@ -192,15 +195,17 @@ std::vector<SensorGroup> over_rooms(const Scene& scene, const FloorGrid& grid, c
   if (groups.empty())
     throw InputError(where, "sensors.spacing: no cell of these rooms has its middle " + rounded(grid.from_walls) +
                                 " m from the walls; expected a smaller from_walls or spacing");
-  return groups;
+  if (narrow.empty()) return {std::move(groups), {}};
+  return {std::move(groups), "rooms without sensors of '" + grid.name + "', as no place over their floor is " +
+                                 rounded(grid.from_walls) + " m from the walls: " + narrow};
 }
 
 }  // namespace
 
-std::vector<SensorGroup> sensors_over(const Scene& scene, const FloorGrid& grid) {
+FloorSensors sensors_over(const Scene& scene, const FloorGrid& grid) {
   const std::string where = grid.file + ":" + std::to_string(grid.line);
   if (!grid.room.empty()) return over_rooms(scene, grid, where);
-  return over_floor(scene, grid, where);
+  return {over_floor(scene, grid, where), {}};
 }
 
 }  // namespace patchlight

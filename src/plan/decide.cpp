@@ -81,7 +81,8 @@ Decision colour(const EffectFacts& facts) {
 std::string first_names(const std::vector<DarkSolid>& solids) {
   constexpr std::size_t few = 3;
   std::string list;
-  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k) list += (k > 0 ? ", " : "") + solids[k].name;
+  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k)
+    list += (k > 0 ? ", " : "") + solids[k].name.substr(0, solids[k].name.rfind(" ("));
   return solids.size() > few ? list + " and " + std::to_string(solids.size() - few) + " more" : list;
 }
 
@@ -97,8 +98,7 @@ std::optional<Decision> given_sides(Effect effect, const Request& request) {
 Decision reach(const EffectFacts& facts, const Request& request) {
   if (const auto decision = given_sides(Effect::reach, request)) return *decision;
   if (facts.dark_solids.empty())
-    return {Effect::reach, true, "no closed solid is without light inside",
-            "nothing more than without: there is nothing to leave out"};
+    return {Effect::reach, true, "no closed solid is without light inside", "no side is left out for it"};
   return {Effect::reach, false,
           "no light can get into " + counted(facts.dark_solids.size(), "closed solid") + ": " +
               first_names(facts.dark_solids),
@@ -108,8 +108,7 @@ Decision reach(const EffectFacts& facts, const Request& request) {
 Decision backs(const EffectFacts& facts, const Request& request) {
   if (const auto decision = given_sides(Effect::backs, request)) return *decision;
   if (facts.turned_away == 0)
-    return {Effect::backs, true, "no side is known to look into the dark",
-            "nothing more than without: there is nothing to leave out"};
+    return {Effect::backs, true, "no side is known to look into the dark", "no side is left out for it"};
   return {Effect::backs, false,
           "they look away from all light: out of what encloses the lamps, or nothing is before them",
           counted(facts.turned_away, "side") + " of faces without patches"};

@@ -38,13 +38,13 @@ std::uint64_t key_of(const Cell& cell, int level) {
 
 double weight_of(const IrradianceRecord& record, const Point& point, const Vector& normal) {
   const Vector way = point - record.point;
-  const double distance = way.norm();
-  if (!(distance < record.radius)) return 0;
+  const double square = way.squaredNorm();
+  if (!(square < record.radius * record.radius)) return 0;
   const double cosine = normal.dot(record.normal);
   if (!(cosine > widest_turn)) return 0;
   if (std::abs(record.normal.dot(way)) > widest_offset * record.radius) return 0;
   const double turn = std::sqrt(std::max(0.0, 1 - cosine) / (1 - widest_turn));
-  return 1 - std::max(distance / record.radius, turn);
+  return 1 - std::max(std::sqrt(square) / record.radius, turn);
 }
 
 }  // namespace

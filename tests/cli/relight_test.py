@@ -234,6 +234,37 @@ class RelightTest(ToolTest):
         self.assertEqual(refused.returncode, INPUT, refused.stderr)
         self.assertIn("rays.ff: found rows of rays with --solver cg", refused.stderr)
 
+    def test_keeps_luminaires_sun_and_sky(self):
+        """Light that comes from elsewhere than faces is found anew; another sky takes the place of that of then."""
+        lights = """[[luminaire]]
+kind = "point"
+position = [0.2, 0.1, 1.5]
+lumens = 500
+[sky]
+kind = "overcast"
+illuminance = %d
+[[sensors]]
+name = "desk"
+points = [[0.1, 0.2, 0.5, 0, 0, 1]]
+"""
+        # Patches of stored form factors do not follow the shadows of luminaires.
+        mesh = ["--sides", "both", "--patches", "200", "--no-contact-lines"]
+        for name, lux in (("day", 10000), ("dull", 5000)):
+            self.write(name + ".toml", '[[model]]\nfile = "room.obj"\n' + lights % lux)
+            self.good("solve", name + ".toml", *mesh, "-o", name + ".vtp", "--report",
+                      name + ".json", *EXACT)
+        self.good("form-factors", "day.toml", *mesh, "-o", "day.ff")
+        self.good("relight", "day.ff", "-o", "again.vtp", "--report", "again.json", *EXACT)
+        self.good("relight", "day.ff", "--sky", "overcast:5000lx", "--ground", "0", "-o", "less.vtp", "--report", "less.json", *EXACT)
+        for fresh, again in (("day", "again"), ("dull", "less")):
+            for key in ("arriving_W", "absorbed_W"):
+                for a, b in zip(self.report(fresh + ".json")["energy_balance"][key],
+                                self.report(again + ".json")["energy_balance"][key]):
+                    self.assertAlmostEqual(a, b, delta=FLOAT_STORAGE * abs(a))
+        self.assertNotEqual(self.report("day.json")["energy_balance"]["arriving_W"],
+                            self.report("dull.json")["energy_balance"]["arriving_W"])
+        self.assertEqual(self.report("again.json")["sensors"]["groups"][0]["name"], "desk")
+
     def test_colours_of_panes_and_mirrors(self):
         """Rows that were found with a grey pane and mirror are those that are found with coloured ones."""
         self.write("panes.obj", """mtllib panes.mtl

@@ -25,6 +25,8 @@ struct MaterialSetting {
   Quantity quantity = Quantity::reflectance;
   Spectrum value;                       ///< one value stands for all bands; an index has one
   std::string where = "read.settings";  ///< where it is asked for, for messages
+  std::string of = {};                  ///< of the faces of these objects, groups or files alone, a name or a pattern;
+                                        ///< empty: of all
 };
 
 /// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance=, .transmittance=,
@@ -65,7 +67,9 @@ struct ReadOptions {
   std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be
   std::vector<std::string> only = {};       ///< objects, groups or materials, nothing else takes part; empty: all
   std::vector<std::string> leave_out = {};  ///< those that do not; both names, or patterns with * and ?
-  bool keep_faces = false;  ///< coplanar neighbours of one object and material stay apart, see joined_faces()
+  double detail = 0;        ///< metres: what is smaller is left out or taken as a box, see with_less_detail()
+  bool keep_faces = false;  ///< coplanar neighbours of one object and material stay apart, see
+                            ///< with_joined_faces()
   DaylightSetting daylight = {};
   std::string format = {};  ///< an extension without its dot; if empty, that of the file
 };
@@ -80,7 +84,8 @@ std::vector<std::string> readable_formats();
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// A scene that was read before, with the settings and the upright axis of these options. \throws InputError when no
+/// A scene that was read before, with the settings, the upright axis and the daylight of these options, which takes the
+/// place of its own. \throws InputError when no
 /// material bears the name of a setting, or settings make a material that check() refuses.
 Scene with_options(Scene scene, const ReadOptions& options);
 

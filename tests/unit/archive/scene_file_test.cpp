@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
+#include "scene/photometric_web.h"
 #include "support/meshes.h"
 #include "support/scenes.h"
 #include "unit/output/temporary_folder.h"
@@ -19,6 +20,62 @@ namespace fs = std::filesystem;
 using namespace test;
 
 bool same(const Spectrum& a, const Spectrum& b) { return a.size() == b.size() && (a == b).all(); }
+
+// What a light is made of, as numbers.
+struct Numbers {
+  std::vector<double> operator()(const PointLight& light) const { return {light.intensity[0]}; }
+  std::vector<double> operator()(const SpotLight& light) const {
+    return {light.intensity[0], light.beam_half_angle, light.field_half_angle};
+  }
+  std::vector<double> operator()(const SphericalLamp& light) const { return {light.radius, light.exitance[0]}; }
+  std::vector<double> operator()(const WebLight& light) const {
+    const PhotometricWeb& web = *light.web;
+    std::vector<double> all = {light.watts_per_lumen[0], static_cast<double>(web.type), web.lamp_lumens, web.watts};
+    for (const auto* part : {&web.vertical, &web.horizontal, &web.candela, &web.tilt, &web.tilt_factor})
+      all.insert(all.end(), part->begin(), part->end());
+    all.insert(all.end(), web.opening.begin(), web.opening.end());
+    return all;
+  }
+};
+
+void expect_same_lights(const Scene& a, const Scene& b) {
+  EXPECT_EQ(a.north, b.north);
+  EXPECT_EQ(a.photometric, b.photometric);
+  ASSERT_EQ(a.luminaires.size(), b.luminaires.size());
+  for (std::size_t k = 0; k < a.luminaires.size(); ++k) {
+    const Luminaire& one = a.luminaires[k];
+    const Luminaire& other = b.luminaires[k];
+    EXPECT_EQ(std::tie(one.name, one.place, one.position, one.aim, one.zero_plane),
+              std::tie(other.name, other.place, other.position, other.aim, other.zero_plane));
+    ASSERT_EQ(one.light.index(), other.light.index());
+    EXPECT_EQ(std::visit(Numbers(), one.light), std::visit(Numbers(), other.light));
+  }
+  ASSERT_EQ(a.sun.has_value(), b.sun.has_value());
+  if (a.sun) {
+    EXPECT_EQ(a.sun->direction, b.sun->direction);
+    EXPECT_TRUE(same(a.sun->normal_irradiance, b.sun->normal_irradiance));
+  }
+  ASSERT_EQ(a.sky.has_value(), b.sky.has_value());
+  if (a.sky) {
+    EXPECT_EQ(std::tie(a.sky->kind, a.sky->sun_direction, a.sky->clearness, a.sky->brightness),
+              std::tie(b.sky->kind, b.sky->sun_direction, b.sky->clearness, b.sky->brightness));
+    EXPECT_TRUE(same(a.sky->horizontal_irradiance, b.sky->horizontal_irradiance));
+    EXPECT_TRUE(same(a.sky->zenith_radiance, b.sky->zenith_radiance));
+    EXPECT_TRUE(same(a.sky->ground_radiance, b.sky->ground_radiance));
+  }
+  ASSERT_EQ(a.sensors.size(), b.sensors.size());
+  for (std::size_t g = 0; g < a.sensors.size(); ++g) {
+    EXPECT_EQ(std::tie(a.sensors[g].name, a.sensors[g].cells, a.sensors[g].columns, a.sensors[g].lines),
+              std::tie(b.sensors[g].name, b.sensors[g].cells, b.sensors[g].columns, b.sensors[g].lines));
+    ASSERT_EQ(a.sensors[g].sensors.size(), b.sensors[g].sensors.size());
+    for (std::size_t k = 0; k < a.sensors[g].sensors.size(); ++k)
+      EXPECT_EQ(a.sensors[g].sensors[k].point, b.sensors[g].sensors[k].point);
+  }
+  ASSERT_EQ(a.cameras.size(), b.cameras.size());
+  for (std::size_t k = 0; k < a.cameras.size(); ++k)
+    EXPECT_EQ(std::tie(a.cameras[k].eye, a.cameras[k].target, a.cameras[k].name),
+              std::tie(b.cameras[k].eye, b.cameras[k].target, b.cameras[k].name));
+}
 
 void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.vertices, b.vertices);
@@ -52,6 +109,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.lamp_hints[h].reason, b.lamp_hints[h].reason);
     EXPECT_TRUE(same(a.lamp_hints[h].radiance, b.lamp_hints[h].radiance));
   }
+  expect_same_lights(a, b);
   EXPECT_EQ(std::tie(a.groups, a.file, a.files, a.sha256), std::tie(b.groups, b.file, b.files, b.sha256));
   EXPECT_EQ(std::tie(a.metres_per_unit, a.up, a.up_stated, a.notes),
             std::tie(b.metres_per_unit, b.up, b.up_stated, b.notes));
@@ -127,6 +185,88 @@ TEST(SceneFile, KeepsEveryBitOfAnOddScene) {
   expect_same(stored.scene, scene);
   expect_same(stored.sides, sides);
   EXPECT_TRUE(std::signbit(stored.scene.vertices.back().x()));
+}
+
+// One light of each kind, sun and sky, and where they are looked at.
+Scene lit_scene() {
+  Scene scene = odd_scene();
+  const Spectrum one = Spectrum::Constant(1, 1.0 / 3);
+  PhotometricWeb web{.file = "a.ies", .type = PhotometricType::b, .vertical = {0, 45, 90}, .horizontal = {0, 90}};
+  web.candela = {1, 2, 3, 4, 5, 1.0 / 7};
+  web.opening = Vector(0.1, 0.2, 0);
+  web.tilt = {0, 90};
+  web.tilt_factor = {1, 0.5};
+  const auto at = [](double x, const auto& light) {
+    return Luminaire{.name = "lamp", .place = "a.toml:3", .position = Point(x, 1.0 / 3, 2), .light = light};
+  };
+  scene.luminaires = {at(0, PointLight{one}), at(1, SpotLight{one, 10, 30}), at(2, SphericalLamp{0.1, one}),
+                      at(3, WebLight{std::make_shared<const PhotometricWeb>(web), one})};
+  scene.north = Vector::UnitX();
+  scene.photometric = true;
+  scene.sun = Sun{Vector(0.6, 0, 0.8), one};
+  scene.sky = Sky{.kind = SkyKind::perez,
+                  .zenith_radiance = one,
+                  .sun_direction = Vector(0.6, 0, 0.8),
+                  .clearness = 2.5,
+                  .brightness = 0.2,
+                  .ground_radiance = one};
+  scene.sensors = {{.name = "desk",
+                    .sensors = {{Point(0.5, 0.5, 1.0 / 3), Vector::UnitZ()}},
+                    .columns = {"0.5,0.5,.333,0,0,1"},
+                    .file = "p.txt",
+                    .lines = {7}}};
+  scene.cameras = {
+      {.eye = Point(1, 2, 3), .target = Point(0, 0, 1.0 / 3), .vertical_field_of_view = 33, .name = "view"}};
+  return scene;
+}
+
+TEST(SceneFile, KeepsLightsSensorsAndCameras) {
+  const Scene scene = lit_scene();
+  expect_same(through_a_file(scene, kept_sides(scene, Sides::front)).scene, scene);
+}
+
+TEST(SceneFile, RefusesLightsThatAreDamaged) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.json";
+  const Scene scene = lit_scene();
+  write_stored_scene(file, scene, kept_sides(scene, Sides::front));
+  const nlohmann::json good = nlohmann::json::parse(content_of(file));
+  using Pointer = nlohmann::json::json_pointer;
+  for (const auto& [place, value] :
+       std::vector<std::pair<const char*, nlohmann::json>>{{"/lights/north", {0, 0, 0}},
+                                                           {"/lights/luminaires/0/kind", "candle"},
+                                                           {"/lights/luminaires/0/intensity", {1, 2}},
+                                                           {"/lights/luminaires/1/beam_half_angle", -1},
+                                                           {"/lights/luminaires/2/radius", 0},
+                                                           {"/lights/luminaires/3/web/candela", {1, 2}},
+                                                           {"/lights/luminaires/3/web/vertical", {90, 45, 0}},
+                                                           {"/lights/sun/normal_irradiance", {-1}},
+                                                           {"/lights/sky/kind", "blue"},
+                                                           {"/lights/sky/horizontal_irradiance", {1}},
+                                                           {"/views/sensors/0/sensors", nlohmann::json::array()},
+                                                           {"/views/cameras/0/eye", {1, 2}}}) {
+    nlohmann::json damaged = good;
+    damaged.at(Pointer(place)) = value;
+    put(file, damaged.dump());
+    EXPECT_THROW(read_stored_scene(folder.path()), InputError) << place;
+  }
+}
+
+// Of earlier versions, which said that there were lights and did not keep them.
+TEST(SceneFile, OfBeforeLightsIsReadWhereThereWereNone) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.json";
+  const Scene scene = furnished_room(0.5);
+  write_stored_scene(file, scene, kept_sides(scene, Sides::front));
+  nlohmann::json older = nlohmann::json::parse(content_of(file));
+  older.erase("lights");
+  older.erase("views");
+  older["has_point_or_daylight"] = false;
+  put(file, older.dump());
+  EXPECT_NO_THROW(read_stored_scene(folder.path()));
+  older["has_point_or_daylight"] = true;
+  put(file, older.dump());
+  EXPECT_THROW(read_stored_scene(folder.path()), InputError);
 }
 
 TEST(SceneFile, OfBeforeIndicesHasTheUsualOnes) {

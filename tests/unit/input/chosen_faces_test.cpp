@@ -65,5 +65,44 @@ TEST_F(ChosenFaces, OfOneModelOfASceneFile) {
   EXPECT_EQ(names_of(scene), (std::vector<std::string>{"floor", "ceiling"}));
 }
 
+// What faces of an object get is theirs alone, though others have the same material.
+TEST_F(ChosenFaces, GetMaterialsOfTheirOwn) {
+  const Scene scene =
+      read_scene(write("of.toml",
+                       "[[model]]\nfile = \"room.obj\"\n[[material]]\nof = \"IfcTable*\"\nreflectance = 0.1\n"
+                       "[[material]]\nof = \"IfcTable*\"\nname = \"wood*\"\nradiance = 1\n"
+                       "[[material]]\nof = \"*\"\nname = \"paint\"\nreflectance = 0.7\n"));
+  ASSERT_EQ(scene.materials.size(), 3U);
+  EXPECT_EQ(scene.materials[2].name, "wood of IfcTable*");
+  EXPECT_NEAR(scene.materials[2].reflectance[0], 0.1, 1e-12);
+  EXPECT_TRUE(is_lamp(scene, 1));
+  EXPECT_FALSE(is_lamp(scene, 0));
+  EXPECT_NEAR(scene.materials[0].reflectance[0], 0.5, 1e-12);
+  EXPECT_NEAR(scene.materials[1].reflectance[0], 0.7, 1e-12);
+}
+
+TEST_F(ChosenFaces, AreThoseOfAFile) {
+  write("wall.obj", "mtllib room.mtl\nv 5 0 0\nv 6 0 0\nv 6 0 1\nusemtl wood\nf 1 2 3\n");
+  const Scene scene = read_scene(write("files.toml",
+                                       "[[model]]\nfile = \"room.obj\"\n[[model]]\nfile = \"wall.obj\"\n"
+                                       "[[material]]\nof = \"wall.obj\"\nreflectance = [0.6, 0.1, 0.1]\n"));
+  EXPECT_NEAR(scene.materials[scene.polygons[3].material].reflectance[0], 0.6, 1e-12);
+  EXPECT_NEAR(scene.materials[scene.polygons[0].material].reflectance[0], 0.5, 1e-12);
+}
+
+TEST_F(ChosenFaces, RefuseMaterialsOfNothing) {
+  const auto refused = [this](const std::string& material) {
+    try {
+      read_scene(write("bad.toml", "[[model]]\nfile = \"room.obj\"\n[[material]]\n" + material));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused("of = \"ciling\"\nreflectance = 0.5\n").find("did you mean 'ceiling'"), std::string::npos);
+  EXPECT_NE(refused("of = \"ceiling\"\nname = \"wood\"\nreflectance = 0.5\n").find("of 'ceiling'"), std::string::npos);
+  EXPECT_NE(refused("of = \"ceiling\"\nindex = 1.5\n").find("transmittance"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace patchlight::chosen_faces_test
