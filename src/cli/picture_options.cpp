@@ -23,7 +23,7 @@ std::array<int, 2> size_of_picture(const std::string& text) {
   return {edge(text.substr(0, cross)), edge(text.substr(cross + 1))};
 }
 
-Projection projection_named(const std::string& text) {
+Projection projection_asked(const std::string& text) {
   using enum Projection;
   return choice<Projection>("--projection", text,
                             {{name_of(perspective), perspective},
@@ -49,7 +49,7 @@ void add_camera_options(CLI::App& command, PictureGiven& given) {
   add(command, "--projection", "NAME",
       "with --camera: perspective, orthographic (FOV is the height that\nis shown, in model units; what is nearer than "
       "the eye's plane is\ncut away), fisheye angular or hemispherical, panorama; default\nperspective",
-      [&given](const std::string& text) { given.projection = projection_named(text); });
+      [&given](const std::string& text) { given.projection = projection_asked(text); });
   command
       .add_option_function<std::vector<std::string>>(
           "--view",

@@ -39,9 +39,8 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
       });
   add_picture_options(command, to.picture, PictureQuality::final);
   command.option_defaults()->group("The run");
-  add(command, "--threads", "N", "number of threads; default 0: one per processor", [&to](const std::string& text) {
-    to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024));
-  });
+  add(command, "--threads", "N", "number of threads; default 0: one per processor",
+      [&to](const std::string& text) { to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
   command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the files");
   return options;
 }

@@ -20,6 +20,14 @@ const char* name_of(Projection projection) {
   return "perspective";
 }
 
+std::optional<Projection> projection_named(const std::string& name) {
+  using enum Projection;
+  for (const Projection one : {perspective, orthographic, angular, hemispherical, panorama}) {
+    if (name == name_of(one)) return one;
+  }
+  return std::nullopt;
+}
+
 double usual_field_of_view(Projection projection) { return projection == Projection::perspective ? 50 : 180; }
 
 double largest_field_of_view(Projection projection) { return projection == Projection::angular ? 360 : 180; }

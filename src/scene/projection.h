@@ -2,7 +2,13 @@
 
 #include "patchlight/scene/scene.h"
 
+#include <optional>
+#include <string>
+
 namespace patchlight {
+
+/// That of name_of(); nothing for other names.
+std::optional<Projection> projection_named(const std::string& name);
 
 /// The vertical field of view of a camera of which none is stated, degrees.
 double usual_field_of_view(Projection projection);
