@@ -116,6 +116,7 @@ irradiance = 500
 kind = "clear"
 illuminance = 10000
 """)
+PART = "void plastic grey 0 0 5 .5 .5 .5 0 0\ngrey polygon p 0 0 9 0 0 0 .1 0 0 0 .1 .1\n"
 HOSTILE = [b"0", b"-1", b"1", b"1.0000001", b"1e-300", b"1e15", b"1e19", b"1e39", b"1e300", b"-1e300", b"1e999", b"nan", b"inf",
            b"2147483648", b"4294967295", b"18446744073709551616", b"-2147483649", b"", b"0x10", b"1,5", b"/", b"\\", b"#",
            b'"', b"'''", b"[", b"{", b"}", b"\x00", b"\x1b[2J", b"\xff\xfe", b"\n\n", b"../", b"/dev/zero", b"/dev/stdin",
@@ -136,7 +137,7 @@ def npy_folder(tool, folder):
 def seeds(tool, scratch, wanted):
     """For every kind the good files, the one that is damaged first, and those of the wanted commands that read them."""
     everything = {"room.obj": ROOM.encode(), "room.mtl": MATERIALS.encode(), "lamp.ies": IES.encode(), "w.epw": EPW.encode(),
-                  "spots.pts": POINTS.encode(), "scene.toml": (SCENE + SKIES[0]).encode()}
+                  "spots.pts": POINTS.encode(), "scene.toml": (SCENE + SKIES[0]).encode(), "part.rad": PART.encode()}
     solve = ["--patches", "30", "--memory", "1GB", "-q", "-o", "out.ply"]
     cases = {}
     for kind, name in (("toml", "scene.toml"), ("ies", "lamp.ies"), ("epw", "w.epw"), ("mtl", "room.mtl"),

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks and solves the real models that docs/models.md describes, and makes its pictures.
 # usage: scripts/real_models.sh MODELS OUT [NAME...]    MODELS: folder of the models; names: veach-ajar radiator duplex
-# kitchen furniture openroom duplex-daylight honeybee ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
+# kitchen furniture openroom office house duplex-daylight honeybee ies. Writes OUT/NAME.* and the table OUT/costs.md. PATCHLIGHT_TOOL is the
 # tool, build/src/patchlight if not set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,7 +10,7 @@ models=${1:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 out=${2:?usage: scripts/real_models.sh MODELS OUT [NAME...]}
 shift 2
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom duplex-daylight honeybee ies)
+[ ${#names[@]} -gt 0 ] || names=(veach-ajar radiator duplex kitchen furniture openroom office house duplex-daylight honeybee ies)
 tool=${PATCHLIGHT_TOOL:-build/src/patchlight}
 if [ ! -d "$models" ]; then
   echo "real models: $models is not there; left out"
@@ -71,10 +71,10 @@ END
 printf '| model | polygons | patches | storage | CPU s | GB | stated error |\n|---|---|---|---|---|---|---|\n' >"$out/costs.md"
 for name in "${names[@]}"; do
   echo "real models: $name"
+  unit=()
   case $name in
     veach-ajar)
-      python3 scripts/mitsuba_to_obj.py "$models/veach-ajar/scene.xml" "$out/veach-ajar.obj" 2>/dev/null
-      files=("$out/veach-ajar.obj")
+      files=("$models/veach-ajar/scene.xml")
       options=(--patches 60000 --camera 4.054,1.616,-2.3065 3.064,1.584,-2.4437 50)
       ;;
     radiator)
@@ -85,7 +85,8 @@ for name in "${names[@]}"; do
         'v 30 249 160' 'v -30 249 160' 'usemtl wall' 'f 1 4 3 2' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' \
         'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
       files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
-      options=(--unit cm --storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
+      unit=(--unit cm)
+      options=(--storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
       rm -f "$out/duplex.toml"
@@ -98,11 +99,10 @@ for name in "${names[@]}"; do
       options=(--sky overcast:10000lx --patches 6000 --points-output "$out/honeybee.csv")
       ;;
     kitchen)
-      python3 scripts/mitsuba_to_obj.py "$models/kitchen/kitchen.xml" "$out/kitchen.obj" 2>/dev/null
       # Nothing in it emits: three spheres in the middle of the room.
-      cat >"$out/kitchen.toml" <<'END'
+      cat >"$out/kitchen.toml" <<END
 [[model]]
-file = "kitchen.obj"
+file = "$models/kitchen/kitchen.xml"
 
 [[luminaire]]
 name = "bulbs"
@@ -131,13 +131,8 @@ END
       printf 'void plastic %s 0 0 5 %s %s %s 0 0\n' white_paint_70 .7 .7 .7 white_paint_50 .5 .5 .5 carpet_20 .2 .2 .2 \
         >"$out/openroom.mat"
       printf 'void glass glass_60 0 0 3 .654 .654 .654\n' >>"$out/openroom.mat"
-      python3 scripts/radiance_to_obj.py "$out/openroom.obj" "$out/openroom.mat" "$models"/frads-office/openroom/*.rad
-      cat >"$out/openroom.toml" <<'END'
-up = "z"
-
-[[model]]
-file = "openroom.obj"              # in metres
-
+      printf '[[model]]\nfile = "%s"\n\n' "$out/openroom.mat" "$models"/frads-office/openroom/*.rad >"$out/openroom.toml"
+      cat >>"$out/openroom.toml" <<'END'
 [sky]
 kind = "overcast"
 illuminance = 10000
@@ -159,6 +154,16 @@ field_of_view = 60
 END
       files=("$out/openroom.toml")
       options=(--patches 8000 --points-output "$out/openroom.csv")
+      ;;
+    office)
+      # Its files are in feet.
+      files=("$models/frads-office/Objects/materials.mat" "$models"/frads-office/Objects/*.rad)
+      unit=(--unit ft)
+      options=(--sky overcast:10000lx --patches 20000 --camera 11.5,13.5,2.4 3,1,0.9 75)
+      ;;
+    house)
+      files=("$models/gbxml-urban-house/Urban_House_MEP.xml")
+      options=(--sky overcast:10000lx --patches 15000 --camera -4.2,3.3,5.3 1.6,7.5,4.9 75)
       ;;
     duplex-daylight)
       cat >"$out/duplex-daylight.toml" <<END
@@ -209,10 +214,10 @@ END
       ;;
   esac
   # A model without a lamp is reported, and ends with exit code 2.
-  "$tool" check "${files[@]}" $([ "$name" = radiator ] && echo --unit cm) >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
+  "$tool" check "${files[@]}" "${unit[@]}" >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
   [ ${#options[@]} -gt 0 ] || continue
   # An accuracy that was not reached ends with exit code 3.
-  "$tool" solve "${files[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+  "$tool" solve "${files[@]}" "${unit[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
     --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
   cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in

@@ -76,6 +76,10 @@ bool is_earlier_form_factors(const std::filesystem::path& folder);
 /// \throws InputError, which says how to mend it, when the form factors are those of other patches.
 void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);
 
+/// Writes exitance.npy and reflectance.npy: those of the patches as the scene has them, a column per band.
+void write_materials(const std::filesystem::path& folder, const Scene& scene, const Plan& plan, const PatchMesh& mesh,
+                     const Eigen::VectorXd& exposed_area);
+
 /// Writes lost_share.npy.
 void write_shares(const std::filesystem::path& folder, const LostShare& lost);
 

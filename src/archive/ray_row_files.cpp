@@ -93,6 +93,8 @@ Json files_of_rows(bool is_specular) {
   part[file_name::hit_distance] = "harmonic mean of the lengths of each patch's rays; unit m";
   part[file_name::directed] = "per patch 1 when it was bright, so that rays were sent towards it on purpose";
   part[file_name::area] = "exposed area A_i of each patch; unit m^2";
+  part[file_name::exitance] = "exitance of each patch by its material, a column per band; unit W/m^2";
+  part[file_name::reflectance] = "diffuse reflectance of each patch, a column per band; unit 1";
   part[file_name::lost_share] =
       "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
       "area, and that over which other polygons lie; unit 1";
@@ -249,6 +251,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     write_as<float>(in / file_name::hit_distance, rows.distance);
     write_npy(in / file_name::directed, std::span<const std::uint8_t>(rows.directed));
     write_npy(in / file_name::area, rows.area);
+    write_materials(in, scene, found.plan, found.mesh, rows.area);
     write_shares(in, rows.lost);
     tell(0.9);
     write_mesh(in / file_name::mesh, scene, {found.mesh, found.area, found.row_sum, {}});

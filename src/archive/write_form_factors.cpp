@@ -11,6 +11,8 @@
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_mesh.h"
+#include "pipeline/problem_of.h"
+#include "plan/planned_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -113,6 +115,8 @@ Json files_part(const FormFactorResult& result) {
         "areas";
   }
   part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
+  part[file_name::exitance] = "exitance of each patch by its material, a column per band; unit W/m^2";
+  part[file_name::reflectance] = "diffuse reflectance of each patch, a column per band; unit 1";
   part[file_name::lost_share] =
       "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
       "area, and that over which other polygons lie; unit 1";
@@ -183,12 +187,14 @@ bool is_of_half(const std::string& name) {
 
 // An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_form_factors(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 20> names = {file_name::dense,
+  static constexpr std::array<std::string_view, 22> names = {file_name::dense,
                                                              file_name::sparse,
                                                              file_name::dense_error,
                                                              file_name::sparse_error,
                                                              file_name::entry_errors,
                                                              file_name::area,
+                                                             file_name::exitance,
+                                                             file_name::reflectance,
                                                              file_name::lost_share,
                                                              file_name::raw_row_sum,
                                                              file_name::mesh,
@@ -229,6 +235,7 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     }
     if (keeps_entry_errors(exchange)) write_npy(in / file_name::entry_errors, exchange.entry_errors.codes());
     write_npy(in / file_name::area, exchange.area);
+    write_materials(in, result.scene, result.form_factors.plan, result.form_factors.mesh, exchange.area);
     write_shares(in, exchange.lost);
     write_npy(in / file_name::raw_row_sum, exchange.raw_row_sum);
     write_mesh(in / file_name::mesh, result.scene,
@@ -240,6 +247,14 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
     write_stored_scene(in / file_name::scene, result.scene, result.form_factors.plan.sides);
     write_bytes(in / file_name::info, info_json(result));
   });
+}
+
+void write_materials(const std::filesystem::path& folder, const Scene& scene, const Plan& plan, const PatchMesh& mesh,
+                     const Eigen::VectorXd& exposed_area) {
+  const RadiosityProblem problem =
+      problem_of(scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan));
+  write_npy(folder / file_name::exitance, problem.exitance.matrix());
+  write_npy(folder / file_name::reflectance, problem.scattering.reflectance.matrix());
 }
 
 void write_shares(const std::filesystem::path& folder, const LostShare& lost) {

@@ -86,7 +86,7 @@ void add_up_option(CLI::App& command, std::optional<Vector>& up) {
   command.option_defaults()->group("The model");
   add(command, "--up", "y|z",
       "the model's upright axis: where down is for lamps, sky and\npictures; default: as the format says (y: glTF; z: "
-      "IFC), else that\nacross which most area lies, or against the lamps' light",
+      "IFC, gbXML,\nRadiance), else that across which most area lies, or against the\nlamps' light",
       [&up](const std::string& text) {
         up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
       });

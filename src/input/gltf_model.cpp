@@ -3,6 +3,8 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
+#include "input/gltf_compression.h"
+#include "input/picture_colours.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -22,30 +24,18 @@ constexpr std::string_view glb_signature = "glTF";
 
 // Extensions that a file may require: what they change is simulated, or named in the notes.
 bool is_known(const std::string& extension) {
-  static constexpr std::array<std::string_view, 6> known = {"KHR_mesh_quantization", "KHR_texture_transform",
-                                                            "KHR_lights_punctual",   "KHR_texture_basisu",
-                                                            "EXT_texture_webp",      "MSFT_texture_dds"};
+  static constexpr std::array<std::string_view, 8> known = {
+      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",        "KHR_texture_basisu",
+      "EXT_texture_webp",      "MSFT_texture_dds",      "KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   return extension.starts_with("KHR_materials_") || std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 void require_known_extensions(const tinygltf::Model& model, const std::string& file) {
   for (const std::string& extension : model.extensionsRequired) {
     if (is_known(extension)) continue;
-    const bool compressed = extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression";
-    throw InputError(file, "requires the extension " + extension +
-                               ", which is not supported; export the model without " +
-                               (compressed ? "compression" : "it"));
+    throw InputError(file,
+                     "requires the extension " + extension + ", which is not supported; export the model without it");
   }
-}
-
-// The 256 values of sRGB to linear, IEC 61966-2-1.
-std::array<double, 256> linear_values() {
-  std::array<double, 256> values{};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double srgb = static_cast<double>(k) / 255.0;
-    values[k] = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-  }
-  return values;
 }
 
 // The mean colours of images by index, and by the digest of their bytes: nothing for those that could not be decoded.
@@ -54,77 +44,15 @@ struct Pictures {
   std::map<std::string, std::optional<Spectrum>> by_content;
 };
 
-Spectrum mean_color(const tinygltf::Image& image) {
-  const std::size_t bytes_per_value = image.bits == 16 ? 2 : 1;
-  const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  const auto channels = static_cast<std::size_t>(image.component);
-  const std::array<double, 256> linear = linear_values();
-  Spectrum sum = rgb(0, 0, 0);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Of 16 bits the upper eight are enough for a mean.
-      const std::size_t value = (pixel * channels + std::min(k, channels - 1)) * bytes_per_value + bytes_per_value - 1;
-      sum[static_cast<Eigen::Index>(k)] += linear[image.image[value]];
-    }
-  }
-  return sum / static_cast<double>(pixels);
-}
-
-// A number of two or four bytes, most significant first.
-std::uint64_t big_endian(std::string_view bytes) {
-  std::uint64_t number = 0;
-  for (const char byte : bytes) number = number << 8U | static_cast<unsigned char>(byte);
-  return number;
-}
-
-// The pixels that a PNG says it has; 0 when it is cut off. PNG specification, section 11.2.2: after the signature, the
-// length and the name of IHDR come width and height.
-std::uint64_t pixels_of_png(std::string_view bytes) {
-  if (bytes.size() < 24) return 0;
-  return big_endian(bytes.substr(16, 4)) * big_endian(bytes.substr(20, 4));
-}
-
-// The same of a JPEG. ITU T.81, annex B: segments FF, marker, length; a frame header SOF has precision, height, width.
-std::uint64_t pixels_of_jpeg(std::string_view bytes) {
-  std::size_t at = 2;
-  while (at + 9 <= bytes.size() && bytes[at] == '\xFF') {
-    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
-    const bool is_table = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
-    if (marker >= 0xC0 && marker <= 0xCF && !is_table) {
-      return big_endian(bytes.substr(at + 5, 2)) * big_endian(bytes.substr(at + 7, 2));
-    }
-    at += marker == 0xFF ? 1 : 2 + big_endian(bytes.substr(at + 2, 2));
-  }
-  return 0;
-}
-
-// A few hundred bytes can stand for very many pixels, each of which takes eight bytes.
-constexpr std::uint64_t most_pixels = 8192 * 8192;
-
-// Decodes PNG and JPEG, the formats of glTF 2.0, keeps the mean colour and drops the pixels; the same bytes once. A
-// picture that cannot be decoded is no reason to stop.
-bool take_image(tinygltf::Image* image, int index, std::string*, std::string*, int width, int height,
-                const unsigned char* bytes, int size, void* into) {
-  const std::string_view content(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
-  const bool is_png = content.starts_with("\x89PNG");
-  if (!is_png && !content.starts_with("\xFF\xD8\xFF")) return true;
-  const std::uint64_t pixels = is_png ? pixels_of_png(content) : pixels_of_jpeg(content);
-  if (pixels == 0 || pixels > most_pixels) return true;
+// Keeps the mean colour of PNG and JPEG, the formats of glTF 2.0, and drops the pixels; the same bytes once. A picture
+// that cannot be decoded is no reason to stop.
+bool take_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
+                void* into) {
+  const std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
   auto& pictures = *static_cast<Pictures*>(into);
-  const std::string text(content);
-  const std::string digest = sha256({&text, 1});
-  const auto known = pictures.by_content.find(digest);
-  if (known != pictures.by_content.end()) {
-    if (known->second) pictures.mean_color.emplace(index, *known->second);
-    return true;
-  }
-  std::string error;
-  std::string warning;
-  tinygltf::Image decoded = *image;
-  const bool good = tinygltf::LoadImageData(&decoded, index, &error, &warning, width, height, bytes, size, nullptr) &&
-                    decoded.width > 0 && decoded.height > 0 && decoded.component > 0 && !decoded.image.empty();
-  pictures.by_content[digest] = good ? std::optional(mean_color(decoded)) : std::nullopt;
-  if (good) pictures.mean_color.emplace(index, *pictures.by_content[digest]);
+  const auto [known, is_new] = pictures.by_content.try_emplace(sha256({&text, 1}));
+  if (is_new) known->second = mean_colour(text);
+  if (known->second) pictures.mean_color.emplace(index, *known->second);
   return true;
 }
 
@@ -206,7 +134,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   GltfModel result;
   result.files.confine = confine;
   result.files.bytes.push_back(read_text(file, file.string(), "the model file"));
-  const std::string bytes = result.files.bytes[0];
+  const std::string bytes = readable_gltf(result.files.bytes[0]);
   if (bytes.size() > std::numeric_limits<unsigned int>::max()) throw InputError(file.string(), "is larger than 4 GB");
   const auto size = static_cast<unsigned int>(bytes.size());
 
@@ -227,6 +155,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   if (!good) {
     throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it anew");
   }
+  result.model = decompressed(std::move(result.model), file.string());
   return result;
 }
 

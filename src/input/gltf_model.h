@@ -25,8 +25,8 @@ struct GltfModel {
 };
 
 /// Reads a .gltf or .glb file and its buffers and pictures. \throws InputError naming the file: not glTF 2.0, a buffer
-/// is missing, or the file requires an extension that is not known, such as a compression; or
-/// a file does not lie in the folder `confine`, if there is one.
+/// is missing or compressed and damaged, or the file requires an extension that is not known; or a file does not lie in
+/// the folder `confine`, if there is one.
 GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesystem::path& confine);
 
 /// The values of an accessor, `components` per element, normalised integers converted as glTF 2.0 section 3.11 says.

@@ -1,12 +1,11 @@
 #include "input/honeybee_modifiers.h"
 
 #include "base/lower_case.h"
+#include "input/radiance_material.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -31,13 +30,6 @@ std::string text_in(const HoneybeeJson& item, const std::string& key) {
   return found != item.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// T = t (1 - r)^2 / (1 - (r t)^2): what a pane lets through square to it, of transmissivity t and with r = ((n - 1) /
-// (n + 1))^2 at each surface.
-Spectrum transmittance_for(const Spectrum& transmissivity, double index) {
-  const double r = std::pow((index - 1) / (index + 1), 2);
-  return transmissivity * std::pow(1 - r, 2) / (1 - (r * transmissivity).square());
-}
-
 // Transmissivity 0.88 of an interior window and 0.64 of others.
 const std::map<std::string, std::pair<double, double>>& generic_values() {
   static const std::map<std::string, std::pair<double, double>> values = {
@@ -60,51 +52,23 @@ Material generic_material(const std::string& kind) {
   return material;
 }
 
-Material glass(Material material, const HoneybeeJson& modifier) {
-  material.index = number_in(modifier, "refraction_index", 1.52);
-  material.reflectance = rgb(0, 0, 0);
-  material.transmittance = transmittance_for(bands_of_key(modifier, "transmissivity", 0), material.index);
-  return material;
-}
-
-// Radiance's trans: of what is not reflected specularly the share transmitted_diff (1 - transmitted_spec) is scattered
-// out of the other side.
-Material sheet(Material material, const HoneybeeJson& modifier) {
-  const double transmitted = number_in(modifier, "transmitted_diff", 0);
-  const double straight = number_in(modifier, "transmitted_spec", 0);
-  const Spectrum colour = bands_of_key(modifier, "reflectance", 0) * (1 - number_in(modifier, "specularity", 0));
-  material.reflectance = colour * (1 - transmitted);
-  if (straight > 0.5) {
-    material.transmittance = colour * transmitted * straight;
-  } else {
-    material.diffuse_transmittance = colour * transmitted * (1 - straight);
-  }
-  return material;
-}
-
 // As Radiance has them; nothing for kinds that are not known.
 std::optional<Material> material_of(const HoneybeeJson& modifier) {
   const std::string type = in_lower_case(text_in(modifier, "type"));
-  Material material{text_in(modifier, "identifier"), rgb(0, 0, 0), rgb(0, 0, 0)};
+  const std::string name = text_in(modifier, "identifier");
   const Spectrum reflectance = bands_of_key(modifier, "reflectance", 0);
-  if (type == "plastic") {
-    const double specularity = number_in(modifier, "specularity", 0);
-    material.reflectance = reflectance * (1 - specularity) + specularity;
-    return material;
+  const double roughness = number_in(modifier, "roughness", 0);
+  if (type == "plastic") return plastic(name, reflectance, number_in(modifier, "specularity", 0));
+  if (type == "metal") return metal(name, reflectance, number_in(modifier, "specularity", 0.9), roughness);
+  if (type == "mirror") return metal(name, reflectance, 1, roughness);
+  if (type == "glass")
+    return glass(name, bands_of_key(modifier, "transmissivity", 0),
+                 number_in(modifier, "refraction_index", usual_index));
+  if (type == "trans") {
+    return translucent(name, reflectance, number_in(modifier, "specularity", 0),
+                       number_in(modifier, "transmitted_diff", 0), number_in(modifier, "transmitted_spec", 0));
   }
-  if (type == "metal" || type == "mirror") {
-    const double specularity = type == "mirror" ? 1 : number_in(modifier, "specularity", 0.9);
-    const bool is_smooth = number_in(modifier, "roughness", 0) == 0;
-    material.reflectance = reflectance * (is_smooth ? 1 - specularity : 1);
-    if (is_smooth && specularity > 0) material.specular_reflectance = reflectance * specularity;
-    return material;
-  }
-  if (type == "glass") return glass(std::move(material), modifier);
-  if (type == "trans") return sheet(std::move(material), modifier);
-  if (type == "light" || type == "glow") {
-    material.exitance = std::numbers::pi * bands_of_key(modifier, "emittance", 0);  // E = pi L
-    return material;
-  }
+  if (type == "light" || type == "glow") return emitter(name, bands_of_key(modifier, "emittance", 0));
   return std::nullopt;
 }
 

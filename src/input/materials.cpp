@@ -32,7 +32,10 @@ Scene scene_without_materials(const std::string& file, double metres_per_unit) {
 Scene with_used_materials(Scene scene) {
   constexpr MaterialIndex unused = ~MaterialIndex{0};
   std::vector<MaterialIndex> number(scene.materials.size(), unused);
-  for (const Polygon& polygon : scene.polygons) number[polygon.material] = 0;
+  for (const Polygon& polygon : scene.polygons) {
+    number[polygon.material] = 0;
+    if (polygon.back_material) number[*polygon.back_material] = 0;
+  }
   std::vector<Material> materials;
   std::set<std::string> taken;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -43,7 +46,10 @@ Scene with_used_materials(Scene scene) {
     taken.insert(material.name);
     materials.push_back(std::move(material));
   }
-  for (Polygon& polygon : scene.polygons) polygon.material = number[polygon.material];
+  for (Polygon& polygon : scene.polygons) {
+    polygon.material = number[polygon.material];
+    if (polygon.back_material) polygon.back_material = number[*polygon.back_material];
+  }
   scene.materials = std::move(materials);
   return scene;
 }

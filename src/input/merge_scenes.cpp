@@ -67,6 +67,7 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   for (Polygon& polygon : added.polygons) {
     for (std::uint32_t& corner : polygon.corners) corner += vertices;
     polygon.material = palette.index[polygon.material];
+    if (polygon.back_material) polygon.back_material = palette.index[*polygon.back_material];
     polygon.group += groups;
     polygon.file = file;
     scene.polygons.push_back(std::move(polygon));
@@ -83,6 +84,11 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   scene.sensors.insert(scene.sensors.end(), added.sensors.begin(), added.sensors.end());
   scene.cameras.insert(scene.cameras.end(), added.cameras.begin(), added.cameras.end());
   scene.rooms.insert(scene.rooms.end(), added.rooms.begin(), added.rooms.end());
+  scene.luminaires.insert(scene.luminaires.end(), added.luminaires.begin(), added.luminaires.end());
+  if ((scene.sun && added.sun) || (scene.sky && added.sky))
+    scene.notes.push_back(added.file + ": its sun or sky is left out, as an earlier file has one");
+  if (!scene.sun) scene.sun = added.sun;
+  if (!scene.sky) scene.sky = added.sky;
   scene.files.push_back(added.file);
   scene.inputs.insert(scene.inputs.end(), added.inputs.begin(), added.inputs.end());
   return scene;

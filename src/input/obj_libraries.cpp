@@ -87,6 +87,12 @@ std::vector<LibraryFile> library_files(Folder& beside, const ObjName& statement,
   return all_there || whole.place.empty() ? files : std::vector{whole};
 }
 
+// A texture stands beside the material file; its path may have been written under Windows.
+std::string place_of(std::string texture, const std::filesystem::path& library) {
+  std::replace(texture.begin(), texture.end(), '\\', '/');
+  return texture.empty() ? texture : (library.parent_path() / texture).string();
+}
+
 // The file and the textures that its materials name, which stand beside it.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& library,
                                             const std::vector<MtlMaterial>& materials) {
@@ -130,9 +136,10 @@ Libraries read_libraries(const std::filesystem::path& obj, const std::vector<Obj
       if (problem) libraries.problems.push_back(*problem);
       if (file.place.empty() || !places.insert(file.place).second) continue;
       libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
-      const std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
+      std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
       const std::vector<std::filesystem::path> named = files_of(file.place, materials);
       libraries.files.insert(libraries.files.end(), named.begin(), named.end());
+      for (MtlMaterial& material : materials) material.diffuse_texture = place_of(material.diffuse_texture, file.place);
       libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
     }
   }

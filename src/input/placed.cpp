@@ -19,6 +19,13 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   for (NamedRoom& room : scene.rooms)
     for (std::vector<Point>& face : room.faces)
       for (Point& corner : face) corner = placement * corner;
+  const auto turn = [&](Vector& direction) { direction = (placement.linear() * direction).normalized(); };
+  for (Luminaire& luminaire : scene.luminaires) {
+    luminaire.position = placement * luminaire.position;
+    turn(luminaire.aim);
+    turn(luminaire.zero_plane);
+  }
+  if (scene.sun) turn(scene.sun->direction);
   if (placement.linear().determinant() >= 0) return scene;
   for (Polygon& polygon : scene.polygons) std::reverse(polygon.corners.begin(), polygon.corners.end());
   return scene;

@@ -3,8 +3,8 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
+#include "input/cut_openings.h"
 #include "input/honeybee_modifiers.h"
-#include "input/joined_rings.h"
 #include "input/materials.h"
 #include "input/text.h"
 
@@ -49,23 +49,12 @@ std::vector<Point> hb_points(const HbJson& list, double metres) {
 
 // The outline with its holes, joined by seams. \throws nlohmann::json::exception, InputError.
 std::vector<Point> outline_with_holes(const std::vector<std::vector<Point>>& rings, const std::string& where) {
-  if (rings.size() == 1) return rings[0];
-  const Vector normal = area_vector(rings[0]).normalized();
-  const Vector x = normal.unitOrthogonal();
-  const Vector y = normal.cross(x);
-  std::vector<std::vector<Eigen::Vector2d>> plane;
-  for (const std::vector<Point>& ring : rings) {
-    auto& flat = plane.emplace_back();
-    for (const Point& point : ring) flat.emplace_back(x.dot(point), y.dot(point));
-  }
-  const auto walk = joined_rings(plane);
-  if (!walk)
+  std::vector<Point> outline = joined_outline(rings);
+  if (outline.empty() && !rings[0].empty())
     throw InputError(where,
                      "its holes and openings cannot be joined to its outline; expected them within it, apart from each "
                      "other, and at "
                      "most 2,000 corners");
-  std::vector<Point> outline;
-  for (const auto& [ring, corner] : *walk) outline.push_back(rings[ring][corner]);
   return outline;
 }
 

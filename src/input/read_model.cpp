@@ -12,7 +12,9 @@
 #include "input/read_obj.h"
 #include "input/read_off.h"
 #include "input/read_ply.h"
+#include "input/read_radiance.h"
 #include "input/read_stl.h"
+#include "input/read_xml.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 
@@ -40,6 +42,7 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
   if (format == "ifc") return read_ifc(file, metres_per_unit);
   if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit, confine);
   if (format == "hbjson") return read_hbjson(file, metres_per_unit);
+  if (format == "xml") return read_xml(file, metres_per_unit, confine);
   throw InputError(file.string(),
                    "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }
@@ -66,7 +69,9 @@ std::string format_of(const std::filesystem::path& file) {
   if (file == "-") return "obj";
   std::string text = file.extension().string();
   if (!text.empty()) text.erase(0, 1);
-  return in_lower_case(std::move(text));
+  text = in_lower_case(std::move(text));
+  if (text == "mat") return "rad";
+  return text == "gbxml" ? "xml" : text;
 }
 
 void require_file(const std::filesystem::path& file, const std::string& where, bool near_names) {
@@ -86,12 +91,18 @@ void require_file(const std::filesystem::path& file, const std::string& where, b
   }
 }
 
-Scene read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
-                 const std::filesystem::path& confine) {
+FileModel read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
+                     const std::filesystem::path& confine, RadianceModifiers known) {
   require_within(confine, file, file.string());
-  Scene scene = without_doubtful_panes(read_format(file, format, metres_per_unit, confine));
-  if (file != "-") scene.inputs.push_back(file);
-  return scene;
+  FileModel model;
+  if (format == "rad") {
+    RadianceModel read = read_radiance(file, metres_per_unit, confine, std::move(known));
+    model = {std::move(read.scene), std::move(read.modifiers)};
+  } else {
+    model = {without_doubtful_panes(read_format(file, format, metres_per_unit, confine)), std::move(known)};
+  }
+  if (file != "-") model.scene.inputs.push_back(file);
+  return model;
 }
 
 }  // namespace patchlight

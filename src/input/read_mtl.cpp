@@ -116,6 +116,7 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.ambient = rgb(read.ambient[0], read.ambient[1], read.ambient[2]);
   material.is_specular = any(read.specular);
   material.textures = textures_of(read);
+  material.diffuse_texture = read.diffuse_texname;
   material.pane = mtl_pane(stated.transparency);
   if (!material.pane) material.mirror = mirror_from(read, stated.reflection, material.reflectance);
   material.is_contradictory = is_contradictory(stated.transparency);
@@ -163,7 +164,9 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
-  note("textures are ignored, Kd is used instead", [](const MtlMaterial& m) { return !m.textures.empty(); });
+  note("map_Kd counts by the mean colour of its picture", [](const MtlMaterial& m) { return m.has_mean; });
+  note("textures are ignored, Kd is used instead",
+       [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1 : 0); });
   note("d and Tr contradict each other, the surface is opaque",
        [](const MtlMaterial& m) { return m.is_contradictory; });
   note("map_d (transparency by a picture) is ignored", [](const MtlMaterial& m) { return m.has_cut_outs; });

@@ -22,6 +22,8 @@ struct MtlMaterial {
   bool has_reflectance = false;       ///< Kd is given
   bool is_specular = false;           ///< Ks is not 0
   std::vector<std::string> textures;  ///< the files of map_, bump, disp, refl and norm
+  std::string diffuse_texture;        ///< the file of map_Kd, by read_libraries() its place
+  bool has_mean = false;              ///< the mean colour of map_Kd is in the reflectance
   std::optional<MtlPane> pane;        ///< what d, Tr, Tf, Ni and illum make of it
   std::optional<MtlMirror> mirror;    ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
   bool is_contradictory = false;      ///< d and Tr contradict each other

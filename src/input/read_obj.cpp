@@ -5,6 +5,7 @@
 #include "files/sha256.h"
 #include "input/at_line.h"
 #include "input/obj_libraries.h"
+#include "input/picture_colours.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
 #include "input/stated_mirrors.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <tiny_obj_loader.h>
 #include <utility>
@@ -83,6 +85,27 @@ ObjPalette used_materials(std::span<const MtlMaterial> defined, std::span<const 
   }
   for (const std::size_t material : of_face) palette.of_face.push_back(number[material]);
   return palette;
+}
+
+// The palette with the mean colours of the pictures that map_Kd names, times Kd where it is not 0, as exporters write
+// it beside a picture.
+ObjPalette with_pictures(ObjPalette palette, const PictureColours& pictures) {
+  for (MtlMaterial& material : palette.materials) {
+    const auto found = pictures.by_file.find(material.diffuse_texture);
+    if (found == pictures.by_file.end()) continue;
+    const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
+    material.reflectance = has_factor ? Spectrum(material.reflectance * found->second) : found->second;
+    material.has_mean = true;
+  }
+  return palette;
+}
+
+PictureColours pictures_of(const ObjPalette& palette, const std::filesystem::path& confine, const std::string& file) {
+  std::set<std::filesystem::path> names;
+  for (const MtlMaterial& material : palette.materials) {
+    if (!material.diffuse_texture.empty()) names.insert(material.diffuse_texture);
+  }
+  return picture_colours({names.begin(), names.end()}, confine, file);
 }
 
 std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::string& file) {
@@ -222,7 +245,9 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   std::vector<MtlMaterial> defined = libraries.materials;
   const std::vector<MtlMaterial> undefined = undefined_materials(scan, defined);
   defined.insert(defined.end(), undefined.begin(), undefined.end());
-  const ObjPalette palette = used_materials(defined, face_materials(scan, defined));
+  ObjPalette palette = used_materials(defined, face_materials(scan, defined));
+  const PictureColours pictures = pictures_of(palette, confine, file.string());
+  palette = with_pictures(std::move(palette), pictures);
 
   // 3. The scene, in metres.
   Scene scene;
@@ -242,6 +267,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
 
   // 4. The checksum of everything read.
   bytes.insert(bytes.end(), libraries.texts.begin(), libraries.texts.end());
+  bytes.insert(bytes.end(), pictures.digests.begin(), pictures.digests.end());
   scene.sha256 = sha256(bytes);
   return scene;
 }

@@ -52,14 +52,15 @@ SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& optio
                    "a scene file states its units itself, with the keys unit; leave it out for " + file.string());
 }
 
-Scene read_entry(const ModelEntry& model, const std::filesystem::path& confine) {
+FileModel read_entry(const ModelEntry& model, const std::filesystem::path& confine, RadianceModifiers known) {
   require_within(confine, model.file, model.where);
   require_file(model.file, model.where);
   const std::string format = format_of(model.file);
   if (format == "toml") throw InputError(model.where, "a scene file cannot name another one; expected a model file");
-  Scene scene = read_model(model.file, format, model.metres_per_unit, confine);
-  scene = with_chosen_faces(std::move(scene), model.choice, model.where + ": model");
-  return model.placement ? placed(std::move(scene), *model.placement) : scene;
+  FileModel read = read_model(model.file, format, model.metres_per_unit, confine, std::move(known));
+  read.scene = with_chosen_faces(std::move(read.scene), model.choice, model.where + ": model");
+  if (model.placement) read.scene = placed(std::move(read.scene), *model.placement);
+  return read;
 }
 
 // What a scene file says besides its models, which make up the scene.
@@ -114,7 +115,7 @@ Scene with_sensors(Scene scene, const SceneFile& file) {
 }  // namespace
 
 std::vector<std::string> readable_formats() {
-  return {"obj", "ply", "stl", "off", "dae", "ifc", "gltf", "glb", "hbjson", "toml"};
+  return {"obj", "ply", "stl", "off", "dae", "ifc", "gltf", "glb", "hbjson", "rad", "xml", "toml"};
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
@@ -125,15 +126,20 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   assert(options.metres_per_unit > 0 && !files.empty());
   std::vector<Scene> models;
   std::vector<SceneFile> scene_files;
+  RadianceModifiers modifiers;  // of the files so far
+  const auto add = [&](FileModel model) {
+    models.push_back(std::move(model.scene));
+    modifiers = std::move(model.modifiers);
+  };
   for (const std::filesystem::path& file : files) {
     // Who may read one folder only is told of no other.
     require_file(file, file.string(), options.confine.empty());
     const std::string format = options.format.empty() ? format_of(file) : options.format;
     if (format == "toml") {
       scene_files.push_back(scene_file(file, options));
-      for (const ModelEntry& model : scene_files.back().models) models.push_back(read_entry(model, options.confine));
+      for (const ModelEntry& model : scene_files.back().models) add(read_entry(model, options.confine, modifiers));
     } else {
-      models.push_back(read_model(file, format, options.metres_per_unit, options.confine));
+      add(read_model(file, format, options.metres_per_unit, options.confine, modifiers));
     }
   }
   Scene scene = merge_scenes(std::move(models));

@@ -62,7 +62,7 @@ Vector direction_of(const SunEntry& sun, const Scene& scene) {
 Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Index bands) {
   if (lights.weather) return daylight_of(*lights.weather, scene.up, scene.north, bands);
   Daylight daylight;
-  const Vector direction = lights.sun ? direction_of(*lights.sun, scene) : scene.up;
+  const Vector direction = lights.sun ? direction_of(*lights.sun, scene) : scene.sun ? scene.sun->direction : scene.up;
   if (lights.sky && lights.sky->measured && lights.sky->measured->direct_normal > 0 && direction.dot(scene.up) < 0) {
     const double below = std::asin(std::min(1.0, -direction.dot(scene.up))) * 180 / std::numbers::pi;
     throw InputError(lights.where, "sky.direct_normal: found " + rounded(lights.sky->measured->direct_normal) +
@@ -100,15 +100,16 @@ Scene with_lights(Scene scene, const LightEntries& lights) {
   scene.north = north_of(scene, lights);
   for (const LuminaireEntry& entry : lights.luminaires) scene.luminaires.push_back(luminaire_of(entry, scene, bands));
   if (!lights.sun && !lights.sky && !lights.weather) return scene;
-  if (scene.sun || scene.sky)
-    throw InputError(lights.where, "a scene file read before has sun or sky; expected them once");
   Daylight daylight = daylight_of(lights, scene, bands);
+  if ((scene.sun && daylight.sun) || (scene.sky && daylight.sky))
+    throw InputError(lights.where, "a file read before has sun or sky; expected each once");
+  if (daylight.sun) scene.sun = daylight.sun;
   if (daylight.sky) {
     // L = rho E / pi
-    daylight.sky->ground_radiance = lights.ground_reflectance / std::numbers::pi * on_ground(daylight, scene.up, bands);
+    const Spectrum irradiance = on_ground({scene.sun, daylight.sky}, scene.up, bands);
+    daylight.sky->ground_radiance = lights.ground_reflectance / std::numbers::pi * irradiance;
   }
-  scene.sun = daylight.sun;
-  scene.sky = daylight.sky;
+  if (daylight.sky) scene.sky = daylight.sky;
   return scene;
 }
 

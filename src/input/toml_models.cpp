@@ -4,35 +4,13 @@
 
 #include "input/material_settings.h"
 #include "input/text.h"
-
-#include <array>
-#include <cmath>
-#include <numbers>
+#include "input/turned_about.h"
 
 namespace patchlight {
 namespace {
 
 using Quantity = MaterialSetting::Quantity;
 using Matrix = Eigen::Matrix3d;
-
-// Cosine and sine of an angle in degrees, exact for quarter turns.
-std::array<double, 2> cosine_and_sine(double degrees) {
-  const double turn = std::remainder(degrees, 360);
-  if (turn == 0) return {1, 0};
-  if (turn == 90) return {0, 1};
-  if (turn == -90) return {0, -1};
-  if (std::abs(turn) == 180) return {-1, 0};
-  const double angle = turn * std::numbers::pi / 180;
-  return {std::cos(angle), std::sin(angle)};
-}
-
-// R = c I + s [k]_x + (1 - c) k k^T: Rodrigues' formula.
-Matrix rotation(const Vector& axis, double degrees) {
-  const auto [c, s] = cosine_and_sine(degrees);
-  Matrix cross;
-  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-  return c * Matrix::Identity() + s * cross + (1 - c) * axis * axis.transpose();
-}
 
 Vector axis_of(const TomlValue& value) {
   if (value.kind == TomlValue::Kind::list) return direction(value);
@@ -42,7 +20,7 @@ Vector axis_of(const TomlValue& value) {
 Matrix rotation_of(const TomlValue& table) {
   allow_keys(table, {"axis", "degrees"});
   const Vector axis = axis_of(required(table, "axis", "an axis 'x', 'y', 'z' or [x, y, z]"));
-  return rotation(axis, number(required(table, "degrees", "an angle, anticlockwise seen from the axis' tip")));
+  return turned_about(axis, number(required(table, "degrees", "an angle, anticlockwise seen from the axis' tip")));
 }
 
 // One rotation, or several in the order in which they are done.
@@ -63,7 +41,7 @@ Matrix scale_of(const TomlValue& value) {
 // Turns what is upright in the model file to what is in the scene: a quarter turn around x, or none.
 Matrix upturned(const Vector& from, const Vector& to) {
   if (from == to) return Matrix::Identity();
-  return rotation(Vector::UnitX(), from == Vector::UnitY() ? 90 : -90);
+  return turned_about(Vector::UnitX(), from == Vector::UnitY() ? 90 : -90);
 }
 
 Eigen::Affine3d matrix_of(const TomlValue& value, double metres_per_unit) {

@@ -81,8 +81,11 @@ Decision colour(const EffectFacts& facts) {
 std::string first_names(const std::vector<DarkSolid>& solids) {
   constexpr std::size_t few = 3;
   std::string list;
-  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k)
-    list += (k > 0 ? ", " : "") + solids[k].name.substr(0, solids[k].name.rfind(" ("));
+  const bool with_place = solids.size() <= few;  // "'attic' (house.obj:12)"
+  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k) {
+    const std::string& name = solids[k].name;
+    list += (k > 0 ? ", " : "") + (with_place ? name : name.substr(0, name.rfind(" (")));
+  }
   return solids.size() > few ? list + " and " + std::to_string(solids.size() - few) + " more" : list;
 }
 

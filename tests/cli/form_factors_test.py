@@ -106,6 +106,25 @@ class FormFactorsTest(ToolTest):
         for kind in ("rays_all_free", "rays_all_blocked"):
             self.assertTrue(0 <= info["sampling_error"][kind]["bound"] <= 1)
 
+    def test_ten_lines_of_jacobi_solve_as_relight_does(self):
+        self.find("-o", "room.ff", "--patches", "150")
+        done = self.run_tool("relight", "room.ff", "--tolerance", "1e-10", "--report", "room.json", "-o", "room.vtp")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        (size, _), F = load(self.folder / "room.ff/F.npy")
+        (_, bands), E = load(self.folder / "room.ff/exitance.npy")
+        _, rho = load(self.folder / "room.ff/reflectance.npy")
+        _, area = load(self.folder / "room.ff/area.npy")
+        absorbed = json.loads((self.folder / "room.json").read_text())["energy_balance"]["absorbed_W"]
+        for band in range(bands):
+            e, r = E[band::bands], rho[band::bands]
+            B = list(e)
+            for _ in range(60):  # 0.7^60 = 5e-10 of the light is left
+                H = [sum(f * b for f, b in zip(F[i * size:(i + 1) * size], B)) for i in range(size)]
+                B = [e[i] + r[i] * H[i] for i in range(size)]
+            own = sum(area[i] * (1 - r[i]) * H[i] for i in range(size))
+            # Stored form factors are floats.
+            self.assertAlmostEqual(own, absorbed[band], delta=2e-6 * absorbed[band])
+
     def test_short_cuts_can_be_left_out(self):
         self.find("-o", "all.ff", "--patches", "300")
         counts = json.loads((self.folder / "all.ff/info.json").read_text())["counts"]

@@ -32,6 +32,7 @@ def main(build, version, cmake, compiler):
                 f"-DCMAKE_CXX_COMPILER={compiler}")
             run(cmake, "--build", folder / name)
         run(folder / "consumer" / "consumer", MODEL, folder / "cube.ply")
+        run(folder / "consumer" / "own_solver", MODEL)
         assert (folder / "cube.ply").read_bytes().startswith(b"ply\n")
 
         # Of what the whole library is linked with, the core has what meshes and rays need.

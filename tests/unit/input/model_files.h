@@ -29,6 +29,17 @@ inline bool any_contains(const std::vector<std::string>& texts, const std::strin
                      [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
+/// A PNG of two pixels, black and red, green, blue = 255, 0, 128 in sRGB.
+inline std::string two_pixels() {
+  const std::string hexadecimal =
+      "89504e470d0a1a0a0000000d49484452000000020000000108020000007b40e8dd0000000f4944415478da63606060f8cfd000000384018"
+      "0be6d0c380000000049454e44ae426082";
+  std::string bytes;
+  for (std::size_t k = 0; k < hexadecimal.size(); k += 2)
+    bytes += static_cast<char>(std::stoi(hexadecimal.substr(k, 2), nullptr, 16));
+  return bytes;
+}
+
 /// A test with a folder of its own for small model files; it is removed afterwards.
 class ModelFiles : public ::testing::Test {
  protected:

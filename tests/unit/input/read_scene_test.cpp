@@ -160,6 +160,28 @@ TEST_F(ReadScene, FacesWithoutMaterialGetADefaultAndANote) {
   EXPECT_TRUE(any_contains(scene.notes, "faces without a material"));
 }
 
+// The mean of the picture in linear light, times Kd unless that is 0 or not stated; files that are no pictures do not
+// count.
+TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
+  std::filesystem::create_directories(folder_ / "maps");
+  write("maps/paint.png", two_pixels());
+  write("bad.png", two_pixels().substr(0, 40));
+  write("m.mtl",
+        "newmtl half\nKd .5 .5 .5\nmap_Kd maps\\paint.png\nnewmtl zero\nKd 0 0 0\nmap_Kd maps/paint.png\nnewmtl "
+        "bare\nmap_Kd maps/paint.png\nnewmtl bad\nKd .4 .4 .4\nmap_Kd bad.png\n");
+  std::string text = "mtllib m.mtl\n" + square;
+  for (const char* const name : {"half", "zero", "bare", "bad"}) text += std::string("usemtl ") + name + "\nf 1 2 3\n";
+  const Scene scene = read_scene(write("m.obj", text));
+  const double blue = std::pow((128 / 255. + .055) / 1.055, 2.4) / 2;
+  ASSERT_EQ(scene.materials.size(), 4U);
+  EXPECT_LT((scene.materials[0].reflectance - rgb(.25, 0, blue / 2)).abs().maxCoeff(), 1e-12);
+  EXPECT_LT((scene.materials[1].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
+  EXPECT_LT((scene.materials[2].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
+  EXPECT_EQ(scene.materials[3].reflectance[0], .4);
+  EXPECT_TRUE(any_contains(scene.notes, "mean colour of its picture: half, zero, bare"));
+  EXPECT_TRUE(any_contains(scene.notes, "Kd is used instead: bad"));
+}
+
 TEST_F(ReadScene, NamesWhatItIgnores) {
   write("m.mtl",
         "newmtl plain\nKd .5 .5 .5\nKs 0 0 0\nd 1\nillum 2\n"

@@ -1,0 +1,88 @@
+#include "input/mitsuba_emitters.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/mitsuba_spectrum.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace patchlight {
+namespace {
+
+Spectrum strength(const MitsubaFile& file, const pugi::xml_node& emitter, const std::string& name) {
+  const std::optional<MitsubaColour> found = mitsuba_colour(file, file.property(emitter, name));
+  return (found ? found->value : rgb(1, 1, 1)) * file.number(emitter, "scale", 1);
+}
+
+Vector turned(const Eigen::Matrix4d& matrix, const Vector& direction) {
+  return (matrix.topLeftCorner<3, 3>() * direction).stableNormalized();
+}
+
+Point placed_at(const Eigen::Matrix4d& matrix, const Point& point) { return (matrix * point.homogeneous()).head<3>(); }
+
+Scene with_point(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
+  Luminaire luminaire;
+  const std::string id = file.text(emitter, "id");
+  luminaire.name = id.empty() ? "point light" : id;
+  luminaire.place = file.place(emitter);
+  luminaire.position =
+      scene.metres_per_unit * placed_at(file.to_world(emitter), file.vector(emitter, "position", Vector::Zero()));
+  luminaire.light = PointLight{strength(file, emitter, "intensity") * std::pow(scene.metres_per_unit, 2)};
+  scene.luminaires.push_back(std::move(luminaire));
+  return scene;
+}
+
+Scene with_directional(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
+  const Vector stated = file.vector(emitter, "direction", Vector::UnitZ());
+  const Vector way = turned(file.to_world(emitter), stated);
+  if (!(way.norm() > 0.5)) throw InputError(file.place(emitter), "the directional emitter has no direction");
+  scene.sun = Sun{-way, strength(file, emitter, "irradiance")};
+  return scene;
+}
+
+}  // namespace
+
+Scene with_mitsuba_emitter(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
+  const std::string kind = file.text(emitter, "type");
+  if (kind == "point") return with_point(std::move(scene), file, emitter);
+  if (kind == "directional" && !scene.sun) return with_directional(std::move(scene), file, emitter);
+  if (kind == "constant" && !scene.sky) {
+    const Spectrum radiance = strength(file, emitter, "radiance");
+    scene.sky = Sky{.zenith_radiance = radiance, .ground_radiance = radiance};
+    return scene;
+  }
+  const bool is_sky = kind == "envmap" || kind == "sky" || kind == "sunsky" || kind == "sun" || kind == "constant";
+  scene.notes.push_back(
+      "the emitter " + kind + " (" + file.place(emitter) + ") is left out" +
+      (is_sky ? ": --sky, as in --sky overcast:10000lx, gives the scene a sky and ground, --sun a sun" : ""));
+  return scene;
+}
+
+Scene with_mitsuba_sensor(Scene scene, const MitsubaFile& file, const pugi::xml_node& sensor) {
+  if (file.text(sensor, "type") != "perspective" && file.text(sensor, "type") != "thinlens") return scene;
+  const Eigen::Matrix4d matrix = file.to_world(sensor);
+  const Point eye = scene.metres_per_unit * placed_at(matrix, Point::Zero());
+  const Vector way = turned(matrix, Vector::UnitZ());
+  const pugi::xml_node film = file.nested(sensor, "film");
+  const double aspect = file.number(film, "height", 576) / file.number(film, "width", 768);
+  const double stated = std::tan(file.number(sensor, "fov", 50) * std::numbers::pi / 360);
+  // The angle is that across, unless it is said to be another one.
+  const std::string axis = file.word(sensor, "fovaxis", "x");
+  const bool is_vertical = axis == "y" || (axis == "smaller" && aspect < 1) || (axis == "larger" && aspect > 1);
+  const double angle = 360 / std::numbers::pi * std::atan(is_vertical ? stated : stated * aspect);
+  if (!(way.norm() > 0.5) || !(angle > 0 && angle < 180)) return scene;
+  const std::string id = file.text(sensor, "id");
+  scene.cameras.push_back({eye, eye + way, angle, id.empty() ? "sensor" : id});
+  return scene;
+}
+
+Spectrum emitted_radiance(const MitsubaFile& file, const pugi::xml_node& shape) {
+  pugi::xml_node emitter = file.nested(shape, "emitter");
+  if (!emitter) emitter = file.nested(shape, "luminaire");
+  if (!emitter || file.text(emitter, "type") != "area") return rgb(0, 0, 0);
+  return strength(file, emitter, "radiance");
+}
+
+}  // namespace patchlight

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/light/spectrum.h"
+
+#include "input/picture_colours.h"
+#include "input/xml_file.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// A Mitsuba scene with the files that it includes, and what its values stand for. Names of properties count without
+/// capitals and underscores, so that "toWorld" of Mitsuba 0.5 and "to_world" of Mitsuba 3 are one: "toworld".
+class MitsubaFile {
+ public:
+  /// Included files are looked for beside the one that names them, and must lie in the folder `confine` if there is
+  /// one. \throws InputError naming file and line.
+  MitsubaFile(const std::filesystem::path& file, const std::filesystem::path& confine);
+
+  /// The children of <scene>, those of included files in the place of <include>.
+  const std::vector<pugi::xml_node>& elements() const { return elements_; }
+
+  /// The files, the scene itself first.
+  const std::vector<std::unique_ptr<XmlFile>>& files() const { return files_; }
+
+  /// "scene.xml:12", and the line in the scene itself: for what an included file holds, that of its <include>.
+  std::string place(const pugi::xml_node& node) const;
+  std::uint32_t line(const pugi::xml_node& node) const;
+
+  /// What an attribute says, "$name" replaced by what <default> says of it; empty if there is none.
+  std::string text(const pugi::xml_node& node, const char* attribute) const;
+
+  /// The property of this name; an empty node if there is none.
+  pugi::xml_node property(const pugi::xml_node& node, const std::string& name) const;
+
+  /// What it says; `otherwise` if there is none.
+  std::string word(const pugi::xml_node& node, const std::string& name, const std::string& otherwise) const;
+  double number(const pugi::xml_node& node, const std::string& name, double otherwise) const;
+  bool flag(const pugi::xml_node& node, const std::string& name) const;
+  Vector vector(const pugi::xml_node& node, const std::string& name, const Vector& otherwise) const;
+
+  /// The transformation "toworld"; none if it is not there.
+  Eigen::Matrix4d to_world(const pugi::xml_node& node) const;
+
+  /// The first nested element of a kind ("bsdf"), or the one that a <ref> there names; empty if there is none.
+  pugi::xml_node nested(const pugi::xml_node& node, const std::string& kind) const;
+
+  /// The mean colour of the picture that a texture of the type bitmap names; nothing where it cannot be read.
+  std::optional<Spectrum> picture(const pugi::xml_node& texture) const;
+  const PictureColours& pictures() const { return pictures_; }
+
+  /// The numbers of an attribute, separated by blanks and commas. \throws InputError where one is none.
+  std::vector<double> numbers(const pugi::xml_node& node, const char* attribute) const;
+
+ private:
+  void add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,
+           std::uint32_t line);
+  const XmlFile& file_of(const pugi::xml_node& node) const;
+  Vector axes(const pugi::xml_node& node, double otherwise) const;
+  Eigen::Matrix4d step(const pugi::xml_node& node) const;
+  std::filesystem::path picture_file(const pugi::xml_node& texture) const;
+  double only_number(const pugi::xml_node& node, const char* attribute) const;
+
+  std::vector<std::unique_ptr<XmlFile>> files_;
+  std::vector<std::uint32_t> lines_;  // per file: of its <include> in the first, 0 for that
+  std::vector<std::filesystem::path> open_;
+  std::vector<pugi::xml_node> elements_;
+  std::map<std::string, std::string> defaults_;
+  std::map<std::string, pugi::xml_node> by_id_;
+  PictureColours pictures_;
+};
+
+}  // namespace patchlight

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "patchlight/light/material.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// Radiance's plastic as a matt surface: its gloss, which has no colour, is reflected diffusely as well.
+Material plastic(std::string name, const Spectrum& reflectance, double specularity);
+
+/// Radiance's metal: a mirror as far as it is glossy where it has no roughness, else matt.
+Material metal(std::string name, const Spectrum& reflectance, double specularity, double roughness);
+
+/// Radiance's glass: a pane. Its transmittance T square to it follows from its transmissivity t, with
+/// r = ((n - 1) / (n + 1))^2 at each of its surfaces: T = t (1 - r)^2 / (1 - r^2 t^2).
+Material glass(std::string name, const Spectrum& transmissivity, double index);
+
+/// Radiance's trans: of what is not reflected as gloss the share `transmitted` goes through, of that the share
+/// `straight` without being scattered. A translucent sheet, or a pane where more than half of it goes straight; what
+/// goes the other way is lost.
+Material translucent(std::string name, const Spectrum& colour, double specularity, double transmitted, double straight);
+
+/// A surface that emits this radiance, W/(m^2 sr), and reflects nothing.
+Material emitter(std::string name, const Spectrum& radiance);
+
+/// A material of a Radiance scene file.
+struct RadianceMaterial {
+  Material material;
+  std::string simplified;  ///< what is not carried, for a note: "gloss becomes matt"; empty if all is
+};
+
+/// The material that a kind of Radiance's with its real arguments stands for; nothing for kinds that have no
+/// counterpart here.
+std::optional<RadianceMaterial> radiance_material(const std::string& kind, const std::string& name,
+                                                  const std::vector<double>& numbers);
+
+/// How many real arguments a kind of material has at least; 0 for one that is not known.
+std::size_t least_arguments(const std::string& kind);
+
+}  // namespace patchlight

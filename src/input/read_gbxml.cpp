@@ -1,0 +1,201 @@
+#include "input/read_gbxml.h"
+
+#include "patchlight/base/error.h"
+
+#include "base/rounded.h"
+#include "files/sha256.h"
+#include "input/cut_openings.h"
+#include "input/gbxml_materials.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+double metres_of(const std::string& unit, const std::string& where) {
+  static const std::map<std::string, double> metres = {
+      {"Kilometers", 1000}, {"Meters", 1},     {"Centimeters", 0.01}, {"Millimeters", 0.001},
+      {"Miles", 1609.344},  {"Yards", 0.9144}, {"Feet", 0.3048},      {"Inches", 0.0254}};
+  const auto found = metres.find(unit);
+  if (found != metres.end()) return found->second;
+  throw InputError(where, "lengthUnit: found '" + unit +
+                              "'; expected Kilometers, Meters, Centimeters, Millimeters, Miles, Yards, Feet or Inches");
+}
+
+class GbxmlReader {
+ public:
+  GbxmlReader(const XmlFile& xml, double metres) : xml_(xml), metres_(metres), materials_(xml) {
+    scene_.file = xml.file;
+    scene_.metres_per_unit = metres;
+    scene_.up = Vector::UnitZ();
+    scene_.up_stated = true;
+  }
+
+  Scene scene() && {
+    for (const pugi::xml_node& campus : xml_.document.document_element().children("Campus")) {
+      turned_ = finite_number(trimmed(campus.child("Location").child_value("CADModelAzimuth"))).value_or(0);
+      for (const pugi::xml_node& surface : campus.children("Surface")) add_surface(surface);
+      for (const pugi::xml_node& building : campus.children("Building")) add_rooms(building);
+    }
+    scene_.notes.push_back(usual_reflectances());
+    if (turned_ != 0)
+      scene_.notes.push_back("CADModelAzimuth " + rounded(turned_) +
+                             " is left out: north is y unless a scene file says otherwise");
+    for (std::string& note :
+         note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
+      scene_.notes.push_back(std::move(note));
+    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    return std::move(scene_);
+  }
+
+ private:
+  Point point_of(const pugi::xml_node& node) const {
+    Point point = Point::Zero();
+    Eigen::Index k = 0;
+    for (const pugi::xml_node& coordinate : node.children("Coordinate")) {
+      const std::optional<double> value = finite_number(trimmed(coordinate.child_value()));
+      if (!value || k == 3)
+        throw InputError(place_of(xml_, coordinate), "found the coordinate '" + std::string(coordinate.child_value()) +
+                                                         "'; expected three numbers for a CartesianPoint");
+      point[k++] = metres_ * *value;
+    }
+    if (k < 3) throw InputError(place_of(xml_, node), "a CartesianPoint has fewer than three coordinates");
+    return point;
+  }
+
+  std::vector<Point> loop_of(const pugi::xml_node& loop) const {
+    std::vector<Point> points;
+    for (const pugi::xml_node& point : loop.children("CartesianPoint")) points.push_back(point_of(point));
+    return points;
+  }
+
+  std::vector<Point> outline_of(const pugi::xml_node& node) const {
+    return loop_of(node.child("PlanarGeometry").child("PolyLoop"));
+  }
+
+  static std::string name_of(const pugi::xml_node& node) {
+    const std::string_view name = trimmed(node.child_value("Name"));
+    return name.empty() ? node.attribute("id").value() : std::string(name);
+  }
+
+  void add_surface(const pugi::xml_node& surface) {
+    const std::string kind = surface.attribute("surfaceType").value();
+    const std::string name = name_of(surface);
+    const std::vector<Point> outline = outline_of(surface);
+    for (const pugi::xml_node& space : surface.children("AdjacentSpaceId"))
+      faces_of_space_[space.attribute("spaceIdRef").value()].push_back(outline);
+    std::vector<std::vector<Point>> openings;
+    for (const pugi::xml_node& opening : surface.children("Opening")) {
+      openings.push_back(outline_of(opening));
+      add_opening(opening, openings.back());
+      if (openings.back().size() < 3) openings.pop_back();
+    }
+    if (kind == "Air") return left_out_.add("surfaces of air are open, left out", name);
+    if (outline.size() < 3) return left_out_.add("surfaces without a PolyLoop of three corners, left out", name);
+    const CutOutline cut = without_openings(outline, openings, tolerance());
+    if (cut.uncut > 0) left_out_.add("surfaces whose openings are not within them, which are not cut", name);
+    const GbxmlSides sides = materials_.surface(kind.empty() ? "Surface" : kind, area_vector(outline));
+    if (!cut.corners.empty()) add_polygon(surface, name, cut.corners, sides);
+  }
+
+  // An opening that is air is a hole.
+  void add_opening(const pugi::xml_node& opening, const std::vector<Point>& outline) {
+    const std::string name = name_of(opening);
+    if (std::string_view(opening.attribute("openingType").value()) == "Air") return;
+    if (outline.size() < 3) return left_out_.add("openings without a PolyLoop of three corners, left out", name);
+    add_polygon(opening, name, outline, {materials_.opening(opening), std::nullopt});
+  }
+
+  // What drawings are exact to, 1 mm.
+  static double tolerance() { return 1e-3; }
+
+  void add_polygon(const pugi::xml_node& node, const std::string& name, const std::vector<Point>& corners,
+                   const GbxmlSides& sides) {
+    Polygon polygon;
+    for (const Point& corner : corners) {
+      polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
+      scene_.vertices.push_back(corner);
+    }
+    polygon.material = index_of(sides.front);
+    if (sides.back) polygon.back_material = index_of(*sides.back);
+    polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
+    polygon.line = line_of(xml_, node);
+    scene_.groups.push_back(name);
+    scene_.polygons.push_back(std::move(polygon));
+  }
+
+  MaterialIndex index_of(const Material& material) {
+    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                    [&](const Material& one) { return one.name == material.name; });
+    const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
+    if (found == scene_.materials.end()) scene_.materials.push_back(material);
+    return index;
+  }
+
+  // The faces of a space: its shell, else what is around it.
+  std::vector<std::vector<Point>> faces_of(const pugi::xml_node& space) const {
+    std::vector<std::vector<Point>> faces;
+    for (const pugi::xml_node& loop : space.child("ShellGeometry").child("ClosedShell").children("PolyLoop")) {
+      faces.push_back(loop_of(loop));
+      if (faces.back().size() < 3) faces.pop_back();
+    }
+    const auto around = faces_of_space_.find(space.attribute("id").value());
+    if (!faces.empty() || around == faces_of_space_.end()) return faces;
+    for (const std::vector<Point>& face : around->second) {
+      if (face.size() >= 3) faces.push_back(face);
+    }
+    return faces;
+  }
+
+  void add_rooms(const pugi::xml_node& building) {
+    std::map<std::string, std::string> storeys;
+    for (const pugi::xml_node& storey : building.children("BuildingStorey"))
+      storeys.emplace(storey.attribute("id").value(), name_of(storey));
+    for (const pugi::xml_node& space : building.children("Space")) {
+      const auto storey = storeys.find(space.attribute("buildingStoreyIdRef").value());
+      std::vector<std::vector<Point>> faces = faces_of(space);
+      if (faces.empty()) {
+        left_out_.add("spaces without faces, left out", name_of(space));
+        continue;
+      }
+      scene_.rooms.push_back(
+          {free_name(name_of(space)), storey == storeys.end() ? "" : storey->second, std::move(faces)});
+    }
+  }
+
+  // Names of rooms tell them apart.
+  std::string free_name(const std::string& name) {
+    std::string free = name;
+    for (int copy = 2; !room_names_.insert(free).second; ++copy) free = name + " (" + std::to_string(copy) + ")";
+    return free;
+  }
+
+  const XmlFile& xml_;
+  double metres_;
+  GbxmlMaterials materials_;
+  Scene scene_;
+  LeftOut left_out_;
+  std::map<std::string, std::vector<std::vector<Point>>> faces_of_space_;
+  std::set<std::string> room_names_;
+  double turned_ = 0;  // what is up in plan to true north, degrees
+};
+
+}  // namespace
+
+Scene read_gbxml(const XmlFile& xml, double factor) {
+  const pugi::xml_node root = xml.document.document_element();
+  const std::string unit = root.attribute("lengthUnit").value();
+  const double metres = factor * metres_of(unit.empty() ? "Meters" : unit, place_of(xml, root));
+  Scene scene = with_used_materials(GbxmlReader(xml, metres).scene());
+  scene.sha256 = sha256({&xml.bytes, 1});
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,273 @@
+#include "input/read_radiance.h"
+
+#include "patchlight/base/error.h"
+
+#include "files/sha256.h"
+#include "input/at_line.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/radiance_material.h"
+#include "input/radiance_sources.h"
+#include "input/radiance_surfaces.h"
+#include "input/radiance_text.h"
+#include "input/radiance_xform.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// How what is read below an !xform stands in the scene.
+struct Frame {
+  Eigen::Affine3d placement = Eigen::Affine3d::Identity();
+  std::string modifier;  // instead of those of surfaces; empty: their own
+  std::string prefix;
+  bool turns_fronts = false;
+  std::uint32_t line = 0;  // in the file at the top; 0 there
+};
+
+// The outer frame counts where both name a modifier: it is done last.
+Frame inside(const Frame& outer, const RadianceXform& xform, const Eigen::Affine3d& copy, std::uint32_t line) {
+  return {outer.placement * copy, outer.modifier.empty() ? xform.modifier : outer.modifier,
+          xform.name.empty() ? outer.prefix : outer.prefix + xform.name + ".", outer.turns_fronts != xform.turns_fronts,
+          outer.line == 0 ? line : outer.line};
+}
+
+class RadianceReader {
+ public:
+  RadianceReader(double metres_per_unit, fs::path confine, RadianceModifiers known)
+      : confine_(std::move(confine)), modifiers_(std::move(known)) {
+    scene_.metres_per_unit = metres_per_unit;
+    top_.placement.linear() *= metres_per_unit;
+  }
+
+  RadianceModel model(const fs::path& file) && {
+    scene_.file = file.string();
+    scene_.up = Vector::UnitZ();
+    scene_.up_stated = true;
+    read(file, top_, file.string());
+    scene_.sha256 = sha256(digests_);
+    scene_ = with_far_sources(std::move(scene_), sources_);
+    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    return {with_used_materials(std::move(scene_)), std::move(modifiers_)};
+  }
+
+ private:
+  static constexpr std::size_t deepest = 64;
+  static constexpr std::size_t most_files = 200'000;
+  static constexpr std::size_t most_polygons = 10'000'000;
+
+  // What several files below !xform name is read once.
+  const std::string& text_of(const fs::path& file, const std::string& where) {
+    const auto [found, is_new] = texts_.try_emplace(file.lexically_normal().string());
+    if (is_new) {
+      found->second = read_text(file, where, file.string());
+      if (!digests_.empty()) scene_.inputs.push_back(file);
+      digests_.push_back(sha256({&found->second, 1}));
+    }
+    return found->second;
+  }
+
+  // Beside the file that names it, or in the current folder.
+  fs::path found_file(const std::string& name, const fs::path& named_by, const std::string& where) const {
+    const fs::path beside = named_by.parent_path() / name;
+    for (const fs::path& candidate : {beside, fs::path(name)}) {
+      require_within(confine_, candidate, where);
+      std::error_code error;
+      if (fs::is_regular_file(candidate, error)) return candidate;
+    }
+    throw InputError(where, "names the file " + name +
+                                ", which is neither beside it nor in the current folder; put it there, or take it out");
+  }
+
+  void read(const fs::path& file, const Frame& frame, const std::string& where) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(file, error);
+    if (std::find(open_.begin(), open_.end(), place) != open_.end())
+      throw InputError(where, "names " + file.string() + ", which names this file again; a file cannot hold itself");
+    if (open_.size() == deepest) throw InputError(where, "files name each other more than 64 deep");
+    if (++files_ > most_files) throw InputError(where, "more than 200,000 files are named, counting copies");
+    open_.push_back(place);
+    RadianceText text(text_of(file, where), file.string());
+    while (text.has_more()) {
+      const RadiancePrimitive primitive = text.next();
+      const std::string here = at_line(file, primitive.line);
+      if (primitive.kind == "!") {
+        run(primitive, file, frame);
+      } else if (primitive.kind == "instance" || primitive.kind == "mesh") {
+        add_instance(primitive, file, frame);
+      } else if (primitive.kind == "source") {
+        add_source(primitive, frame, here);
+      } else if (is_radiance_surface(primitive.kind)) {
+        add_surface(primitive, frame, here);
+      } else {
+        modifiers_.define(primitive, here);
+      }
+    }
+    open_.pop_back();
+  }
+
+  std::vector<std::vector<std::string>> lines_of(const std::string& name, const fs::path& named_by,
+                                                 const std::string& where) {
+    std::vector<std::vector<std::string>> lines;
+    for (const TextLine& line : logical_lines(text_of(found_file(name, named_by, where), where))) {
+      std::vector<std::string> all;
+      for (const std::string_view word : words_before_comment(line.text)) all.emplace_back(word);
+      lines.push_back(std::move(all));
+    }
+    return lines;
+  }
+
+  // A line that starts a program: xform is done here, no other is run.
+  void run(const RadiancePrimitive& command, const fs::path& file, const Frame& frame) {
+    const std::string where = at_line(file, command.line);
+    std::vector<std::string> words = command_words(command.words[0]);
+    if (words.empty() || words[0] != "xform") {
+      const bool is_sky = !words.empty() && (words[0] == "gensky" || words[0] == "gendaylit");
+      if (is_sky)
+        return left_out_.add(
+            "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
+            where + " !" + words[0]);
+      constexpr std::size_t most = 60;
+      left_out_.add(
+          "programs other than !xform are not run, what they would print is left out; run them and put it in "
+          "their place",
+          where + " !" + std::string(trimmed(command.words[0])).substr(0, most));
+      return;
+    }
+    words.erase(words.begin());
+    const RadianceXform xform = xform_of(words, file, where);
+    if (xform.files.empty()) throw InputError(where, "xform without a file; expected the name of one");
+    for (const Eigen::Affine3d& copy : xform.copies) {
+      const Frame below = inside(frame, xform, copy, command.line);
+      for (const std::string& name : xform.files) read(found_file(name, file, where), below, where);
+    }
+  }
+
+  RadianceXform xform_of(std::span<const std::string> words, const fs::path& file, const std::string& where) {
+    return radiance_xform(words, where, [&](const std::string& name) { return lines_of(name, file, where); });
+  }
+
+  // Octrees and meshes are in forms of their own; a scene file may stand for one.
+  void add_instance(const RadiancePrimitive& primitive, const fs::path& file, const Frame& frame) {
+    const std::string where = at_line(file, primitive.line);
+    if (primitive.words.empty()) throw InputError(where, primitive.kind + " " + primitive.name + " names no file");
+    if (fs::path(primitive.words[0]).extension() != ".rad") {
+      left_out_.add("left out, of the kind " + primitive.kind + ", whose octrees and meshes cannot be read",
+                    frame.prefix + primitive.name);
+      return;
+    }
+    RadianceXform xform = xform_of(std::span(primitive.words).subspan(1), file, where);
+    xform.name = primitive.name;
+    if (primitive.modifier != "void") xform.modifier = primitive.modifier;
+    for (const Eigen::Affine3d& copy : xform.copies)
+      read(found_file(primitive.words[0], file, where), inside(frame, xform, copy, primitive.line), where);
+  }
+
+  // The modifier that a surface has; nothing for void. \throws InputError when it is not defined.
+  std::optional<std::size_t> modifier_of(const RadiancePrimitive& primitive, const Frame& frame,
+                                         const std::string& where) const {
+    const std::string& name = frame.modifier.empty() ? primitive.modifier : frame.modifier;
+    if (name == "void") return std::nullopt;
+    if (const auto found = modifiers_.place_of(name)) return found;
+    throw InputError(where, "the material " + name + " of " + primitive.kind + " " + primitive.name +
+                                " is not defined; name the file that defines it before this one, as in "
+                                "'materials.mat room.rad'");
+  }
+
+  // Nothing for what lets light pass as if it were not there.
+  std::optional<MaterialIndex> material_of(std::size_t place) {
+    const auto [known, is_new] = index_.emplace(place, std::nullopt);
+    if (!is_new) return known->second;
+    const RadianceModifier& modifier = modifiers_.at(modifiers_.material_below(place));
+    if (modifier.kind == "mist" || modifier.kind == "antimatter") {
+      left_out_.add("materials whose surfaces are left out, as they are mist or antimatter", modifier.name);
+      return std::nullopt;
+    }
+    if (modifiers_.has_pattern(place)) left_out_.add("patterns and textures of materials, left out", modifier.name);
+    std::optional<RadianceMaterial> material = radiance_material(modifier.kind, modifier.name, modifier.numbers);
+    if (!material) {
+      material = RadianceMaterial{{modifier.name, rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {}};
+      left_out_.add("materials of a kind that cannot be carried are taken for matt of reflectance 0.5",
+                    modifier.name + " (" + modifier.kind + ")");
+    }
+    if (!material->simplified.empty())
+      left_out_.add("materials of the kind " + modifier.kind + ": " + material->simplified, modifier.name);
+    known->second = static_cast<MaterialIndex>(scene_.materials.size());
+    scene_.materials.push_back(std::move(material->material));
+    return known->second;
+  }
+
+  void add_surface(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where) {
+    const FacetedShape shape = radiance_surface(primitive, where);
+    const std::optional<std::size_t> modifier = modifier_of(primitive, frame, where);
+    const std::optional<MaterialIndex> material = modifier ? material_of(*modifier) : std::nullopt;
+    if (!modifier) left_out_.add("surfaces without a material (void), left out", frame.prefix + primitive.name);
+    if (!material) return;
+    if (scene_.polygons.size() + shape.faces.size() > most_polygons)
+      throw InputError(where, "there are more than 10,000,000 faces, counting copies; expected smaller arrays");
+    if (is_round(primitive.kind)) {
+      left_out_.add("round surfaces have " + std::to_string(round_sides) +
+                        " sides, moved outward so that areas are kept; of the kind " + primitive.kind,
+                    frame.prefix + primitive.name);
+    }
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    for (const Point& point : shape.points) scene_.vertices.push_back(frame.placement * point);
+    const bool is_mirrored = frame.placement.linear().determinant() < 0;
+    for (std::vector<std::uint32_t> corners : shape.faces) {
+      for (std::uint32_t& corner : corners) corner += first;
+      // A mirrored copy keeps its front.
+      if (is_mirrored != frame.turns_fronts) std::reverse(corners.begin(), corners.end());
+      scene_.polygons.push_back({.corners = std::move(corners),
+                                 .material = *material,
+                                 .group = group(frame.prefix + primitive.name),
+                                 .line = frame.line == 0 ? primitive.line : frame.line});
+    }
+  }
+
+  std::uint32_t group(const std::string& name) {
+    const auto [found, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
+    if (is_new) scene_.groups.push_back(name);
+    return found->second;
+  }
+
+  void add_source(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where) {
+    const std::optional<std::size_t> modifier = modifier_of(primitive, frame, where);
+    if (!modifier) return;
+    const RadianceModifier& light = modifiers_.at(modifiers_.material_below(*modifier));
+    FarSource source = far_source(primitive, frame.placement.linear(), where);
+    if (light.kind != "light" && light.kind != "glow" && light.kind != "illum") return;
+    source.radiance = rgb(light.numbers[0], light.numbers[1], light.numbers[2]);
+    source.has_pattern = modifiers_.has_pattern(*modifier);
+    sources_.push_back(std::move(source));
+  }
+
+  fs::path confine_;
+  RadianceModifiers modifiers_;
+  Scene scene_;
+  Frame top_;
+  std::vector<fs::path> open_;                // the files that are being read, each named by the one before
+  std::map<std::string, std::string> texts_;  // of files
+  std::vector<std::string> digests_;          // of the same, in the order in which they were read
+  std::map<std::size_t, std::optional<MaterialIndex>> index_;  // of modifiers that surfaces have
+  std::map<std::string, std::uint32_t> groups_;
+  std::vector<FarSource> sources_;
+  LeftOut left_out_;
+  std::size_t files_ = 0;
+};
+
+}  // namespace
+
+RadianceModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
+                            RadianceModifiers known) {
+  return RadianceReader(metres_per_unit, confine, std::move(known)).model(file);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,127 @@
+#include "input/round_shapes.h"
+
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace patchlight {
+namespace {
+
+constexpr double step = 2 * std::numbers::pi / round_sides;
+
+// The k-th corner of a unit circle around the z axis; those of one circle in steps of `turns` / round_sides.
+Vector on_circle(std::uint32_t k) { return {std::cos(step * k), std::sin(step * k), 0}; }
+
+// x and y so that x, y and the axis are right-handed.
+Eigen::Matrix3d frame_of(const Vector& axis) {
+  Eigen::Matrix3d frame;
+  frame.col(2) = axis.normalized();
+  frame.col(0) = frame.col(2).unitOrthogonal();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+// The faces between two circles of corners of which one follows the other, or that have shrunk to a point.
+void add_belt(FacetedShape& shape, std::uint32_t low, bool low_is_point, std::uint32_t high, bool high_is_point) {
+  for (std::uint32_t k = 0; k < round_sides; ++k) {
+    const std::uint32_t next = (k + 1) % round_sides;
+    std::vector<std::uint32_t> face = {low_is_point ? low : low + k};
+    if (!low_is_point) face.push_back(low + next);
+    face.push_back(high_is_point ? high : high + next);
+    if (!high_is_point) face.push_back(high + k);
+    shape.faces.push_back(std::move(face));
+  }
+}
+
+double facets_area(const FacetedShape& shape) {
+  double area = 0;
+  for (const std::vector<std::uint32_t>& face : shape.faces) {
+    std::vector<Point> corners;
+    for (const std::uint32_t corner : face) corners.push_back(shape.points[corner]);
+    area += area_vector(corners).norm();
+  }
+  return area;
+}
+
+// A sphere around the origin with its corners at distance 1.
+FacetedShape unit_sphere() {
+  constexpr std::uint32_t belts = round_sides / 2;
+  FacetedShape shape;
+  shape.points.emplace_back(0, 0, -1);
+  for (std::uint32_t belt = 1; belt < belts; ++belt) {
+    const double polar = std::numbers::pi * belt / belts;
+    for (std::uint32_t k = 0; k < round_sides; ++k)
+      shape.points.push_back(std::sin(polar) * on_circle(k) - std::cos(polar) * Vector::UnitZ());
+  }
+  const auto top = static_cast<std::uint32_t>(shape.points.size());
+  shape.points.emplace_back(0, 0, 1);
+  for (std::uint32_t belt = 0; belt < belts; ++belt) {
+    const std::uint32_t low = belt == 0 ? 0 : 1 + (belt - 1) * round_sides;
+    const std::uint32_t high = belt + 1 == belts ? top : 1 + belt * round_sides;
+    add_belt(shape, low, belt == 0, high, belt + 1 == belts);
+  }
+  return shape;
+}
+
+// By what the radii of a truncated cone of n sides have to be larger for its area: with the slant height of a side,
+// sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that, which is
+// to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
+double cone_factor(double height, double difference) {
+  const double sides = round_sides * std::sin(step / 2) / std::numbers::pi;
+  const double inclined = std::pow(difference * std::cos(step / 2), 2);
+  const double h2 = height * height;
+  const double target = (h2 + difference * difference) / (sides * sides);
+  // inclined u^2 + h^2 u = target, in the form that loses no digits for small inclinations
+  return std::sqrt(2 * target / (h2 + std::sqrt(h2 * h2 + 4 * inclined * target)));
+}
+
+// By what the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2 = pi.
+double disk_factor() { return std::sqrt(2 * std::numbers::pi / (round_sides * std::sin(step))); }
+
+// Adds a circle of corners, or one point for a radius of 0, and returns the place of its first.
+std::uint32_t add_circle(FacetedShape& shape, const Point& centre, const Eigen::Matrix3d& frame, double radius) {
+  const auto first = static_cast<std::uint32_t>(shape.points.size());
+  const std::uint32_t corners = radius == 0 ? 1 : round_sides;
+  for (std::uint32_t k = 0; k < corners; ++k) shape.points.push_back(centre + radius * (frame * on_circle(k)));
+  return first;
+}
+
+}  // namespace
+
+FacetedShape faceted_sphere(const Point& centre, double radius) {
+  static const FacetedShape unit = unit_sphere();
+  static const double factor = std::sqrt(4 * std::numbers::pi / facets_area(unit));
+  FacetedShape shape = unit;
+  for (Point& point : shape.points) point = centre + factor * radius * point;
+  return shape;
+}
+
+FacetedShape faceted_cone(const Point& a, const Point& b, double radius_a, double radius_b) {
+  const Vector axis = b - a;
+  FacetedShape shape;
+  if (!(axis.norm() > 0) || !(radius_a > 0 || radius_b > 0)) return shape;
+  const double factor = cone_factor(axis.norm(), radius_a - radius_b);
+  const Eigen::Matrix3d frame = frame_of(axis);
+  const std::uint32_t low = add_circle(shape, a, frame, factor * radius_a);
+  const std::uint32_t high = add_circle(shape, b, frame, factor * radius_b);
+  add_belt(shape, low, radius_a == 0, high, radius_b == 0);
+  return shape;
+}
+
+FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inner, double outer) {
+  FacetedShape shape;
+  if (!(normal.norm() > 0) || !(outer > inner)) return shape;
+  const Eigen::Matrix3d frame = frame_of(normal);
+  const std::uint32_t far = add_circle(shape, centre, frame, disk_factor() * outer);
+  if (inner > 0) {
+    const std::uint32_t near = add_circle(shape, centre, frame, disk_factor() * inner);
+    add_belt(shape, far, false, near, false);
+    return shape;
+  }
+  std::vector<std::uint32_t> disk;
+  for (std::uint32_t k = 0; k < round_sides; ++k) disk.push_back(far + k);
+  shape.faces.push_back(std::move(disk));
+  return shape;
+}
+
+}  // namespace patchlight

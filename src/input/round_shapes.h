@@ -1,0 +1,31 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// Planar faces that stand for a round surface. From the front their corners run counter-clockwise.
+struct FacetedShape {
+  std::vector<Point> points;
+  std::vector<std::vector<std::uint32_t>> faces;  ///< places of their corners in `points`
+};
+
+/// How many sides a round surface has around its axis.
+inline constexpr std::uint32_t round_sides = 24;
+
+/// A sphere of 24 x 12 facets, fronts outward. Its corners lie outside by so much that the area is 4 pi r^2.
+FacetedShape faceted_sphere(const Point& centre, double radius);
+
+/// The side of a truncated cone between two circles around the line from `a` to `b`, fronts outward; a cylinder with
+/// equal radii. One of them may be 0. Its radii are larger by so much that the area is
+/// pi (r_a + r_b) sqrt(h^2 + (r_a - r_b)^2). Empty for circles in one place without area between them.
+FacetedShape faceted_cone(const Point& a, const Point& b, double radius_a, double radius_b);
+
+/// A disk, or the ring between two circles, across `normal`, to which its front looks. The radii are larger by so much
+/// that the area is pi (r_outer^2 - r_inner^2).
+FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inner, double outer);
+
+}  // namespace patchlight
