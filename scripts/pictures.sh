@@ -12,5 +12,5 @@ for quality in draft final; do
   "$tool" render meshes/two_rooms.obj --solution "$folder/rooms.vtp" --quality "$quality" --size 480x480 \
     -o "docs/figures/picture_$quality.png" -q
 done
-TIMEFORMAT='800 x 800 at 1 %: %U CPU s, %R s'
+TIMEFORMAT='800 x 800 at 1 %%: %U CPU s, %R s'
 time "$tool" render meshes/two_rooms.obj --solution "$folder/rooms.vtp" -o "$folder/final.png" -q
