@@ -159,7 +159,7 @@ END
       # Its files are in feet.
       files=("$models/frads-office/Objects/materials.mat" "$models"/frads-office/Objects/*.rad)
       unit=(--unit ft)
-      options=(--sky overcast:10000lx --patches 20000 --camera 11.5,13.5,2.4 3,1,0.9 75)
+      options=(--sky overcast:10000lx --patches 20000 --camera 38,44,7.5 12,3,3 75)
       ;;
     house)
       files=("$models/gbxml-urban-house/Urban_House_MEP.xml")

@@ -33,13 +33,13 @@ void require_extension(const std::string& option, const std::string& file, const
   throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + words);
 }
 
-// Sensors may be asked for by --points, or by a scene file among the models.
+// Sensors may be asked for by --points, by a scene file among the models, or by that of which form factors are kept.
 bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& options) {
   const auto is_scene_file = [](const path& model) {
     return model.extension() == ".toml" || model.extension() == ".hbjson";
   };
   const std::string& format = arguments.read.format;
-  return !options.points.empty() || format == "toml" || format == "hbjson" ||
+  return !options.points.empty() || arguments.models.empty() || format == "toml" || format == "hbjson" ||
          std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
 }
 

@@ -71,7 +71,7 @@ std::uint64_t pixels_of_jpeg(std::string_view bytes) {
 }
 
 // A few hundred bytes can stand for very many pixels, each of which takes eight bytes.
-constexpr std::uint64_t most_pixels = 8192 * 8192;
+constexpr std::uint64_t most_pixels = std::uint64_t{8192} * 8192;
 
 // The bytes of those files that may be read and are there.
 std::vector<std::pair<std::string, std::string>> picture_bytes(const std::vector<std::filesystem::path>& files,

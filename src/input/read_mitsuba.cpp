@@ -61,7 +61,7 @@ class MitsubaReader {
 
   // Its id, the name of its mesh, or its kind.
   std::string name_of(const pugi::xml_node& shape) const {
-    const std::string id = file_.text(shape, "id");
+    std::string id = file_.text(shape, "id");
     if (!id.empty()) return id;
     const std::string mesh = stem(file_.word(shape, "filename", ""));
     return mesh.empty() ? file_.text(shape, "type") : mesh;
