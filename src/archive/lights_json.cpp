@@ -1,6 +1,7 @@
 #include "archive/lights_json.h"
 
 #include "scene/photometric_web.h"
+#include "scene/projection.h"
 
 #include <algorithm>
 #include <array>
@@ -237,7 +238,9 @@ Json views_part(const Scene& scene) {
     cameras.push_back({{"name", json_of(camera.name)},
                        {"eye", json_of(camera.eye)},
                        {"target", json_of(camera.target)},
-                       {"vertical_field_of_view", camera.vertical_field_of_view}});
+                       {"vertical_field_of_view", camera.vertical_field_of_view},
+                       {"projection", name_of(camera.projection)},
+                       {"height", camera.height}});
   }
   return {{"sensors", std::move(sensors)}, {"cameras", std::move(cameras)}};
 }
@@ -247,6 +250,9 @@ Scene with_views_of(Scene scene, const Json& json) {
   for (const Json& camera : json.at("cameras")) {
     scene.cameras.push_back({vector_of(camera.at("eye")), vector_of(camera.at("target")),
                              camera.at("vertical_field_of_view").get<double>(), text_of(camera.at("name"))});
+    Camera& read = scene.cameras.back();
+    read.projection = projection_named(camera.value("projection", "perspective")).value_or(Projection::perspective);
+    read.height = camera.value("height", 0.0);
     require(scene.cameras.back().eye.allFinite() && scene.cameras.back().target.allFinite(), "a camera stands nowhere");
   }
   return scene;

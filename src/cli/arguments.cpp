@@ -10,6 +10,7 @@
 #include "cli/new_options.h"
 #include "cli/plan_options.h"
 #include "cli/relight_options.h"
+#include "cli/render_options.h"
 #include "cli/solution_options.h"
 #include "cli/solve_options.h"
 #include "cli/study_options.h"
@@ -111,6 +112,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const std::shared_ptr<PlanOptions> plan_options = add_plan(tool);
   const std::shared_ptr<FormFactorOptions> form_factor_options = add_form_factors(tool);
   const std::shared_ptr<RelightOptions> relight_options = add_relight(tool);
+  const std::shared_ptr<RenderOptionsGiven> render_options = add_render(tool);
   const std::shared_ptr<CompareCommandOptions> compare_options = add_compare(tool);
   const std::shared_ptr<StudyCommandOptions> study_options = add_study(tool);
   const std::shared_ptr<VerifyCommandOptions> verify_options = add_verify(tool);
@@ -130,6 +132,7 @@ Arguments parse_arguments(int count, const char* const* values) {
     if (command.get_name() == "check") return finish_check(*check_options);
     if (command.get_name() == "new") return finish_new(*new_options);
     if (command.get_name() == "plan") return finish_plan(*plan_options);
+    if (command.get_name() == "render") return finish_render(*render_options);
     if (command.get_name() == "validate") return finish_validate(*validate_options);
     if (command.get_name() == "form-factors") {
       FormFactorArguments arguments = finish_form_factors(*form_factor_options);

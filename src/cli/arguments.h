@@ -11,6 +11,7 @@
 #include "study/study.h"
 #include "study/verify.h"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -26,6 +27,18 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A picture that is wanted.
+struct PictureSettings {
+  std::filesystem::path file;       ///< .png, .hdr or .exr; empty: none
+  std::filesystem::path error_map;  ///< .png; empty: none
+  std::optional<Camera> camera;     ///< model units
+  std::vector<std::string> views;   ///< or the names of cameras of the scene; if none, its first one
+  PictureColors colors = PictureColors::natural;
+  PictureQuality quality = PictureQuality::draft;
+  std::array<int, 2> size{800, 800};  ///< width and height, pixels
+  double error = 0.01;                ///< PictureOptions::error
+};
+
 /// What `patchlight solve` or `patchlight relight` is asked to do. A path that is empty stands for an output that is
 /// not wanted.
 struct SolveArguments {
@@ -37,10 +50,7 @@ struct SolveArguments {
   std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
   std::filesystem::path series;                ///< .pvd
   std::filesystem::path report;                ///< .json
-  std::filesystem::path picture;               ///< .png
-  PictureColors colors = PictureColors::natural;
-  std::optional<Camera> camera;  ///< model units
-  std::string view;              ///< or the name of a camera of the scene; if empty, its first one
+  PictureSettings picture;
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
   std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts; empty: none
@@ -133,6 +143,16 @@ struct ValidateArguments {
   int threads = 0;              ///< 0: all processors
 };
 
+/// What `patchlight render` is asked to do.
+struct RenderArguments {
+  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
+  ReadOptions read;
+  std::filesystem::path solution;  ///< input: .vtp
+  PictureSettings picture;
+  int threads = 0;  ///< 0: all processors
+  bool quiet = false;
+};
+
 /// A text that the user asked for: --help or --version.
 struct Information {
   std::string text;
@@ -140,7 +160,7 @@ struct Information {
 
 using Arguments =
     std::variant<Information, SolveArguments, CheckArguments, NewArguments, PlanArguments, FormFactorArguments,
-                 CompareArguments, StudyArguments, VerifyArguments, ValidateArguments>;
+                 CompareArguments, StudyArguments, VerifyArguments, ValidateArguments, RenderArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

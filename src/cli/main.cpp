@@ -9,6 +9,7 @@
 #include "cli/messages.h"
 #include "cli/new.h"
 #include "cli/plan.h"
+#include "cli/render.h"
 #include "cli/solve.h"
 #include "cli/standard_streams.h"
 #include "cli/study.h"
@@ -42,6 +43,7 @@ ExitCode run(int count, const char* const* values) {
   if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
     return validate(*to_validate, validation_cases());
   }
+  if (const auto* to_render = std::get_if<RenderArguments>(&arguments)) return render(*to_render);
   return solve(std::get<SolveArguments>(arguments));
 }
 

@@ -2,36 +2,51 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_image.h"
-#include "patchlight/views/picture.h"
+
+#include "output/write_picture.h"
 
 #include <string>
 
 namespace patchlight::cli {
 namespace {
 
-Camera in_metres(const Camera& camera, double metres_per_unit) {
-  return {camera.eye * metres_per_unit, camera.target * metres_per_unit, camera.vertical_field_of_view};
+Camera in_metres(Camera camera, double metres_per_unit) {
+  camera.eye *= metres_per_unit;
+  camera.target *= metres_per_unit;
+  camera.height *= metres_per_unit;
+  return camera;
 }
 
 }  // namespace
 
-std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& scene) {
-  if (arguments.camera) return in_metres(*arguments.camera, scene.metres_per_unit);
+std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene) {
+  if (settings.camera) return in_metres(*settings.camera, scene.metres_per_unit);
   std::string names;
   for (const Camera& camera : scene.cameras) {
-    if (arguments.view.empty() || camera.name == arguments.view) return camera;
+    if (settings.views.empty() || camera.name == settings.views.front()) return camera;
     names += (names.empty() ? "" : ", ") + camera.name;
   }
-  if (arguments.view.empty()) return std::nullopt;
-  throw InputError("--view", "found '" + arguments.view + "'; expected a camera of the scene file: " +
+  if (settings.views.empty()) return std::nullopt;
+  throw InputError("--view", "found '" + settings.views.front() + "'; expected a camera of the scene file: " +
                                  (names.empty() ? "it has none" : "one of " + names));
 }
 
-DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Observer& observer) {
-  const PictureOptions options{.camera = camera_for(arguments, scene), .colors = arguments.colors};
-  const Picture picture = take_picture(scene, simulation, options, observer);
-  return picture.brightest ? with_legend(picture.image, 0, *picture.brightest, "luminance, cd/m^2") : picture.image;
+Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
+                     const Observer& observer) {
+  return take_picture(scene, simulation,
+                      {.camera = camera_for(settings, scene),
+                       .colors = settings.colors,
+                       .width = settings.size[0],
+                       .height = settings.size[1],
+                       .quality = settings.quality,
+                       .error = settings.error},
+                      observer);
 }
+
+void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {
+  write_picture(file, picture, scene.up, bands_of(scene));
+}
+
+void write_error_map(const std::filesystem::path& file, const Picture& picture) { write_picture_errors(file, picture); }
 
 }  // namespace patchlight::cli

@@ -1,20 +1,27 @@
 #pragma once
 
-#include "patchlight/render/image.h"
 #include "patchlight/simulate.h"
+#include "patchlight/views/picture.h"
 
 #include "cli/arguments.h"
 
+#include <filesystem>
 #include <optional>
 
 namespace patchlight::cli {
 
-/// The camera that the arguments ask for, else the first of the scene, in metres; nothing when there is none. \throws
-/// InputError when the scene has no camera of that name.
-std::optional<Camera> camera_for(const SolveArguments& arguments, const Scene& scene);
+/// The camera that is asked for, else the first of the scene, in metres; nothing when there is none. \throws InputError
+/// when the scene has no camera of that name.
+std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene);
 
-/// The picture that the arguments ask for, with a legend where its colours are false. \throws Cancelled.
-DisplayImage make_picture(const SolveArguments& arguments, const Scene& scene, const Simulation& simulation,
-                          const Observer& observer);
+/// The picture that is asked for. \throws Cancelled.
+Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
+                     const Observer& observer);
+
+/// Writes it, with a legend where its colours are false. \throws OutputError.
+void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene);
+
+/// Writes the errors of its pixels. \throws OutputError.
+void write_error_map(const std::filesystem::path& file, const Picture& picture);
 
 }  // namespace patchlight::cli

@@ -43,33 +43,17 @@ bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& op
          std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
 }
 
-void require_picture(const SolutionOptions& options) {
-  const char* const needs = options.camera          ? "--camera"
-                            : !options.view.empty() ? "--view"
-                            : options.colors        ? "--false-color"
-                                                    : nullptr;
-  if (options.picture.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs --picture FILE");
-  if (options.camera && !options.view.empty()) {
-    throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
-  }
-}
-
 void require_consistent(const std::string& command, const SolutionOptions& options) {
-  if (options.results.empty() && options.series.empty() && options.picture.empty() && options.report.empty() &&
+  if (options.results.empty() && options.series.empty() && options.picture.file.empty() && options.report.empty() &&
       options.points.empty() && options.points_outputs.empty()) {
     throw UsageError(command +
                      ": nothing would be written; give at least one of -o, --series, --picture, --report, --points");
-  }
-  require_picture(options);
-  if (options.camera && options.camera->eye == options.camera->target) {
-    throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
   for (const std::string& file : options.points_outputs)
     require_extension("--points-output", file, points_extensions());
   if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
-  if (!options.picture.empty()) require_extension("--picture", options.picture, {".png"});
 }
 
 // A folder of form factors holds nothing else, so that it may be replaced as a whole.
@@ -121,29 +105,9 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
            "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
            "bounce k");
   add_file(command, "--report", options.report, "what was asked, decided and found, with energy balance (JSON)");
-  add_file(command, "--picture", options.picture, "a picture of the solution (.png), 800 x 800 pixels");
-  add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
-      [&options](const std::string& text) {
-        options.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
-      });
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--camera",
-          [&options](const std::vector<std::string>& values) {
-            const auto angle = [](double x) { return x > 0 && x < 180; };
-            const std::string degrees = std::string("an angle above 0 and below 180 degrees, as in ") + camera_example;
-            options.camera = Camera{point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
-                                    number("--camera (FOV)", values[2], degrees, angle)};
-          },
-          "view of the picture: eye and target as X,Y,Z in model\nunits, vertical field of view in degrees; "
-          "default: a view\nfrom within the scene's bounds that shows most of it")
-      ->expected(3)
-      ->option_text("EYE TARGET FOV");
-  add(command, "--view", "NAME", "view of the picture: a camera of the scene file; default: its first",
-      [&options](const std::string& text) {
-        if (text.empty()) throw refusal("--view", text, "the name of a camera");
-        options.view = text;
-      });
+  add_file(command, "--picture", options.picture.file,
+           "a picture of the solution (.png), or its radiances (.hdr, .exr)");
+  add_picture_options(command, options.picture, PictureQuality::draft);
   add_points_options(command, options);
 }
 
@@ -189,10 +153,9 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   arguments.results.assign(options.results.begin(), options.results.end());
   arguments.series = options.series;
   arguments.report = options.report;
-  arguments.picture = options.picture;
-  arguments.colors = options.colors.value_or(PictureColors::natural);
-  arguments.camera = options.camera;
-  arguments.view = options.view;
+  arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
+  if (arguments.picture.views.size() > 1)
+    throw UsageError("--view: found several; expected one, as patchlight render takes pictures of more");
   arguments.points = options.points;
   arguments.points_outputs.assign(options.points_outputs.begin(), options.points_outputs.end());
   if (!options.points.empty() && arguments.points_outputs.empty()) {
@@ -213,8 +176,8 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
 }
 
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {
-  std::vector<OutputFile> files = {
-      {"--series", arguments.series}, {"--report", arguments.report}, {"--picture", arguments.picture}};
+  std::vector<OutputFile> files = {{"--series", arguments.series}, {"--report", arguments.report}};
+  for (OutputFile& file : picture_files(arguments.picture, "--picture")) files.push_back(std::move(file));
   for (const path& result : arguments.results) files.push_back({"-o", result});
   for (const path& file : arguments.points_outputs) files.push_back({"--points-output", file});
   return files;

@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/distinct_files.h"
+#include "cli/picture_options.h"
 
 #include <CLI/App.hpp>
 #include <optional>
@@ -10,24 +11,20 @@
 
 namespace patchlight::cli {
 
-/// How --camera is given.
-inline constexpr const char* camera_example = "--camera 4,-3,1.6 0,0,1 60";
-
 /// The options that say how the equations are solved and what is written, while they are being parsed.
 struct SolutionOptions {
   bool solver_given = false;
   std::vector<std::string> results;
-  std::string series, report, picture, points, view;
+  std::string series, report, points;
+  PictureGiven picture;
   std::vector<std::string> points_outputs;
-  std::optional<Camera> camera;  ///< model units
-  std::optional<PictureColors> colors;
   bool discards = false;
   bool quiet = false;
   bool verbose = false;
 };
 
-/// Adds -o, --series, --report, --picture, --false-color, --camera, --view, --points and --points-output. What is
-/// parsed lands in `options`, which must outlive the command; so below.
+/// Adds -o, --series, --report, --picture with its own, --points and --points-output. What is parsed lands in
+/// `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
 /// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows, which land in `request`.

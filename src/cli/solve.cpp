@@ -1,12 +1,12 @@
 #include "cli/solve.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/write_image.h"
 #include "patchlight/output/write_result.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/accuracy_options.h"
 #include "cli/checkpoint.h"
@@ -42,7 +42,7 @@ namespace {
 struct Views {
   std::vector<std::filesystem::path> points_outputs;
   SensorView sensors;
-  std::optional<DisplayImage> picture;
+  std::optional<Picture> picture;
 };
 
 // All that is computed before anything is written.
@@ -101,7 +101,7 @@ class Iterates {
 void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.results) check_writable(file);
   if (!arguments.series.empty()) check_series_writable(arguments.series);
-  for (const auto* file : {&arguments.report, &arguments.picture}) {
+  for (const auto* file : {&arguments.report, &arguments.picture.file, &arguments.picture.error_map}) {
     if (!file->empty()) check_writable(*file);
   }
   for (const std::filesystem::path& file : arguments.points_outputs) check_writable(file);
@@ -122,7 +122,7 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   require_not_read(outputs, input.scene.inputs);
   require_not_read(outputs, given_files(arguments));
   check_limits(input.scene);
-  if (const std::optional<Camera> camera = camera_for(arguments, input.scene)) {
+  if (const std::optional<Camera> camera = camera_for(arguments.picture, input.scene)) {
     const Reach reach = reach_of(input.scene);
     require_in_reach(reach, camera->eye, "--camera", "the eye");
     require_in_reach(reach, camera->target, "--camera", "the target");
@@ -139,8 +139,9 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
     views.sensors = read_sensors(scene, simulation, observer);
     looking.finish(Stage::gather);
   }
-  if (!arguments.picture.empty()) {
-    views.picture = make_picture(arguments, scene, simulation, observer);
+  if (!arguments.picture.file.empty()) {
+    views.picture = make_picture(arguments.picture, scene, simulation, observer);
+    if (views.picture->unfinished) simulation.unfinished = true;
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
@@ -185,7 +186,8 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
-  results.provenance = {.command_line = arguments.command_line, .exposure = exposure};
+  results.provenance = {
+      .command_line = arguments.command_line, .exposure = exposure, .scene_hash = scene_hash(results.scene)};
 
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
@@ -215,7 +217,10 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
     }
   }
   const Views& views = results.views;
-  if (views.picture) write_to(arguments.picture, [&](const Path& to) { write_png(to, *views.picture); });
+  if (views.picture) {
+    write_to(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
+    write_to(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
+  }
   for (const Path& file : views.points_outputs) {
     write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, views.sensors.readings); });
   }

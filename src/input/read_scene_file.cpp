@@ -1,6 +1,7 @@
 #include "files/sha256.h"
 #include "input/scene_file.h"
 #include "input/text.h"
+#include "input/toml_cameras.h"
 #include "input/toml_lights.h"
 #include "input/toml_models.h"
 #include "input/toml_sensors.h"

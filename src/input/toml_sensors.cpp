@@ -134,30 +134,6 @@ std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const Tom
   return files;
 }
 
-std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame) {
-  std::vector<Camera> cameras;
-  for (const TomlValue& table : tables(find(root, "camera"))) {
-    allow_keys(table, {"name", "eye", "target", "field_of_view"});
-    const TomlValue* const name = find(table, "name");
-    const TomlValue& target = required(table, "target", "the point [x, y, z] that is looked at");
-    Camera camera;
-    camera.name = name ? text(*name) : "camera " + std::to_string(cameras.size() + 1);
-    camera.eye = frame.metres_per_unit * vector(required(table, "eye", "the point [x, y, z] that is looked from"));
-    camera.target = frame.metres_per_unit * vector(target);
-    if (camera.eye == camera.target) refuse(target, "a point other than the eye");
-    if (const TomlValue* const angle = find(table, "field_of_view")) {
-      camera.vertical_field_of_view = number(*angle);
-      const bool sensible = camera.vertical_field_of_view > 0 && camera.vertical_field_of_view < 180;
-      if (!sensible) refuse(*angle, "an angle above 0 and below 180 degrees");
-    }
-    for (const Camera& other : cameras) {
-      if (other.name == camera.name) refuse(name ? *name : table, "a name that no other camera has");
-    }
-    cameras.push_back(std::move(camera));
-  }
-  return cameras;
-}
-
 namespace {
 
 SensorGroup grid_over(const Floor& floor, const FloorGrid& grid, const std::string& where) {

@@ -14,9 +14,6 @@ std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& ro
 /// The files of points that a scene file names.
 std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame);
 
-/// The tables [[camera]]. \throws InputError.
-std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame);
-
 /// Grids over floors.
 struct FloorSensors {
   std::vector<SensorGroup> groups;

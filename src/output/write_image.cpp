@@ -98,7 +98,7 @@ DisplayImage colour_bar(int width, int height) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, const DisplayImage& image) {
+void write_png(const std::filesystem::path& file, const DisplayImage& image, const std::vector<PngText>& texts) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
@@ -113,6 +113,7 @@ void write_png(const std::filesystem::path& file, const DisplayImage& image) {
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(data);
   writer->WriteToMemoryOn();
+  for (const PngText& text : texts) writer->AddText(text.keyword.c_str(), text.text.c_str());
   writer->Write();
   vtkUnsignedCharArray* const encoded = writer->GetResult();
   if (writer->GetErrorCode() != 0 || encoded == nullptr || encoded->GetNumberOfValues() == 0) {

@@ -140,7 +140,7 @@ std::string facts(const Scene& scene, const Study& study, const Provenance& prov
 }
 
 // What is drawn over what.
-struct Picture {
+struct StudyPlot {
   const char* file;
   const char* x_label;
   const char* y_label;
@@ -150,7 +150,7 @@ struct Picture {
   std::function<bool(const StudySweep&)> shows;
 };
 
-std::vector<Picture> pictures() {
+std::vector<StudyPlot> pictures() {
   const auto competes = [](const StudySweep& sweep) { return sweep.competes; };
   const auto is_estimator = [](const StudySweep& sweep) { return !sweep.competes; };
   const auto megabytes = [](const StudySetting& setting) { return setting.matrix_bytes / 1e6; };
@@ -165,7 +165,7 @@ std::vector<Picture> pictures() {
            &StudySetting::own_error, nullptr, is_estimator}};
 }
 
-Curve front_of(const Study& study, const Picture& picture) {
+Curve front_of(const Study& study, const StudyPlot& picture) {
   Curve front{"Pareto front", {}};
   for (const StudySweep& sweep : study.sweeps) {
     for (const StudySetting& setting : sweep.settings) {
@@ -176,7 +176,7 @@ Curve front_of(const Study& study, const Picture& picture) {
   return front;
 }
 
-void draw(const fs::path& folder, const Scene& scene, const Study& study, const Picture& picture) {
+void draw(const fs::path& folder, const Scene& scene, const Study& study, const StudyPlot& picture) {
   const std::string bar =
       study.reference.closed_form ? "closed form" : "reference " + std::to_string(study.reference.patches) + " patches";
   Plot plot{fs::path(scene.file).filename().string() + ": " + bar,
@@ -197,7 +197,7 @@ void draw(const fs::path& folder, const Scene& scene, const Study& study, const 
 
 bool is_earlier_study(const fs::path& folder) {
   std::vector<std::string> names = {study_facts_file, study_table_file};
-  for (const Picture& picture : pictures()) {
+  for (const StudyPlot& picture : pictures()) {
     for (const char* extension : {".svg", ".png"}) names.push_back(std::string(picture.file) + extension);
   }
   return holds_result(folder, {study_facts_file, study_kind, names});
@@ -208,7 +208,7 @@ bool is_earlier_study(const fs::path& folder) {
 void write_study(const fs::path& folder, const Scene& scene, const Study& study, const Provenance& provenance) {
   write_whole_folder(folder, is_earlier_study, [&](const fs::path& in) {
     write_bytes(in / study_table_file, table(study));
-    for (const Picture& picture : pictures()) draw(in, scene, study, picture);
+    for (const StudyPlot& picture : pictures()) draw(in, scene, study, picture);
     write_bytes(in / study_facts_file, facts(scene, study, provenance));
   });
 }

@@ -3,6 +3,7 @@
 #include "light/photometry.h"
 #include "output/vtk_polygons.h"
 #include "render/tone_map.h"
+#include "visibility/tracing.h"
 
 #include <array>
 #include <numbers>
@@ -14,7 +15,7 @@ namespace patchlight {
 namespace {
 
 // The unit of every array of values; docs/output.md says what they mean.
-constexpr std::array<std::array<const char*, 2>, 23> units_of_arrays = {
+constexpr std::array<std::array<const char*, 2>, 25> units_of_arrays = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
      {"irradiance", "W/m^2"},
@@ -26,6 +27,8 @@ constexpr std::array<std::array<const char*, 2>, 23> units_of_arrays = {
      {"area", "m^2"},
      {"material_id", "index into material_names"},
      {"source_polygon", "number of the face in the model's files, from 0"},
+     {"polygon", "number of the polygon in the scene as it was solved, from 0"},
+     {"side", "0 its front, 1 its back"},
      {"row_sum", "1"},
      {"raw_row_sum", "1"},
      {"rgb", "sRGB, 8 bits, at the recorded exposure"},
@@ -90,11 +93,14 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   std::vector<std::uint32_t> faces;
   for (const PolygonIndex polygon : mesh.polygon) faces.push_back(surface.scene.polygons[polygon].face);
   cell_data.AddArray(numbers<vtkIntArray>("source_polygon", faces));
-  // Not known of rows on demand.
-  if (simulation.transport.row_sum.size() > 0) {
-    cell_data.AddArray(numbers<vtkFloatArray>("row_sum", simulation.transport.row_sum));
-    cell_data.AddArray(numbers<vtkFloatArray>("raw_row_sum", simulation.transport.raw_row_sum));
-  }
+  cell_data.AddArray(numbers<vtkIntArray>("polygon", mesh.polygon));
+  cell_data.AddArray(numbers<vtkIntArray>("side", mesh.side));
+  // Not known of rows on demand. An array of another length than the others makes the file one that cannot be read.
+  const auto add_known = [&](const char* name, const Eigen::VectorXd& values) {
+    if (values.size() == radiance.rows()) cell_data.AddArray(numbers<vtkFloatArray>(name, values));
+  };
+  add_known("row_sum", simulation.transport.row_sum);
+  add_known("raw_row_sum", simulation.transport.raw_row_sum);
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
@@ -141,6 +147,28 @@ void add_history(vtkFieldData& facts, const Simulation& simulation) {
   facts.AddArray(numbers<vtkDoubleArray>("stage_cpu_seconds", cpu_seconds));
 }
 
+// read_vtk() takes these.
+void add_what_pictures_need(vtkFieldData& facts, const Simulation& simulation, const Provenance& provenance) {
+  facts.AddArray(strings("scene_hash", {provenance.scene_hash}));
+  const bool follows = simulation.tracing && simulation.tracing->reflections() == Reflections::followed;
+  facts.AddArray(numbers<vtkIntArray>("follows_reflections", std::array{follows ? 1 : 0}));
+  std::vector<std::string> names;
+  std::vector<int> simulated, forced;
+  for (const Decision& decision : simulation.plan.decisions) {
+    names.emplace_back(name_of(decision.effect));
+    simulated.push_back(decision.simulate ? 1 : 0);
+    forced.push_back(decision.forced ? 1 : 0);
+  }
+  facts.AddArray(strings("effects", names));
+  facts.AddArray(numbers<vtkIntArray>("effects_simulated", simulated));
+  facts.AddArray(numbers<vtkIntArray>("effects_forced", forced));
+  std::vector<std::uint32_t> middles;
+  for (const Middle& middle : simulation.mesh.middles) {
+    for (const std::uint32_t vertex : {middle.vertex, middle.ends[0], middle.ends[1]}) middles.push_back(vertex);
+  }
+  facts.AddArray(numbers<vtkIntArray>("middles", middles));
+}
+
 void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simulation, const Provenance& provenance) {
   std::vector<std::string> material_names;
   for (const Material& material : scene.materials) material_names.push_back(material.name);
@@ -157,6 +185,7 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);
   up->SetNumberOfComponents(3);
   facts.AddArray(up);
+  add_what_pictures_need(facts, simulation, provenance);
   // One array per unit: ParaView's information panel shows the value of a string array with one entry.
   for (const auto& [name, unit] : units_of_arrays) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }

@@ -18,16 +18,6 @@ double display_luminance(const Spectrum& radiance, const Bands& bands) {
   return luminance(radiance, bands) / luminous_efficacy;
 }
 
-// What a radiance is shown as.
-std::array<double, 3> linear_rgb(const Spectrum& radiance, const Bands& bands) {
-  std::array<double, 3> sum{};
-  for (std::size_t band = 0; band < bands.size(); ++band) {
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      sum[channel] += bands[band].rgb[channel] * radiance[static_cast<Eigen::Index>(band)];
-  }
-  return sum;
-}
-
 // The identity up to the shoulder, from there an exponential with the same slope that tends to 1.
 double roll_off(double value) {
   if (value <= shoulder) return value;
@@ -42,6 +32,15 @@ std::uint8_t srgb(double linear) {
 }
 
 }  // namespace
+
+std::array<double, 3> linear_rgb(const Spectrum& radiance, const Bands& bands) {
+  std::array<double, 3> sum{};
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum[channel] += bands[band].rgb[channel] * radiance[static_cast<Eigen::Index>(band)];
+  }
+  return sum;
+}
 
 double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight, const Bands& bands) {
   std::vector<std::pair<double, double>> luminances;  // with their weights

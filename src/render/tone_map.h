@@ -10,6 +10,9 @@
 
 namespace patchlight {
 
+/// What a radiance is shown as: linear RGB with Rec. 709 primaries, by the colour of each band.
+std::array<double, 3> linear_rgb(const Spectrum& radiance, const Bands& bands);
+
 /// Scale that maps radiance in W/(m^2 sr) to display values: the 90th percentile, by weight, of the luminances above 0
 /// becomes 0.7 of the display's white. `weight` has one entry per row: the area of a patch, or 1 per pixel. 1 when all
 /// is dark.

@@ -12,7 +12,9 @@ const char* version();
 /// Where a result comes from.
 struct Provenance {
   std::string command_line;
-  double exposure = 1;  ///< of the colours beside the values
+  double exposure = 1;       ///< of the colours beside the values
+  std::string scene_hash{};  ///< of faces, materials and lights; empty: not recorded, and pictures of the result cannot
+                             ///< be taken later
 };
 
 }  // namespace patchlight

@@ -14,6 +14,10 @@ struct Image {
   int height = 0;
   Field pixels;
   Eigen::VectorXd outlook = {};  ///< per pixel: the share of what is seen behind clear faces, or where nothing is
+  Eigen::VectorXd error = {};    ///< per pixel: standard error of its luminance, cd/m^2; empty: not known
+  std::vector<std::int64_t> patch = {};  ///< that the middle of each pixel shows; -1: none
+  Eigen::VectorXd depth = {};            ///< metres from the eye to there; infinite where nothing is
+  Field normal = {};                     ///< unit, of that patch, three columns; 0 where nothing is
 };
 
 /// Eight bits per channel, sRGB-encoded, from the upper left corner, row by row.

@@ -47,12 +47,26 @@ struct NamedRoom {
   std::vector<std::vector<Point>> faces;  ///< corners, metres
 };
 
+/// How a camera maps directions to its picture.
+enum class Projection : std::uint8_t {
+  perspective,    ///< straight lines stay straight
+  orthographic,   ///< parallel rays from the plane through the eye: plans, and sections along that plane
+  angular,        ///< fisheye: the distance from the middle is in proportion to the angle
+  hemispherical,  ///< fisheye: in proportion to its sine, so that the area is the projected solid angle
+  panorama        ///< all around: azimuth by altitude, 360 degrees by the field of view
+};
+
+/// "perspective", "orthographic", "angular", "hemispherical" or "panorama", as in scene files.
+const char* name_of(Projection projection);
+
 /// Where a picture is taken from.
 struct Camera {
   Point eye;
   Point target;
   double vertical_field_of_view = 50;  ///< degrees
   std::string name = {};               ///< in a scene file
+  Projection projection = Projection::perspective;
+  double height = 0;  ///< of what an orthographic picture shows, metres
 };
 
 /// A material that may be meant as a lamp.

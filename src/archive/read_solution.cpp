@@ -1,0 +1,118 @@
+#include "archive/read_solution.h"
+
+#include "patchlight/base/error.h"
+
+#include "archive/scene_hash.h"
+#include "output/read_vtk.h"
+#include "pipeline/problem_of.h"
+#include "plan/planned_scene.h"
+#include "visibility/covered_places.h"
+#include "visibility/tracing.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+void require_sound(const StoredSolution& stored, const Scene& scene, const std::filesystem::path& file) {
+  const Eigen::Index bands = number_of_bands(scene);
+  const auto is_known = [&](std::uint32_t vertex) { return vertex < stored.vertices.size(); };
+  bool sound =
+      stored.radiosity.cols() == bands && stored.exitance.cols() == bands && stored.reflectance.cols() == bands;
+  for (std::size_t k = 0; k < stored.corners.size(); ++k) {
+    sound = sound && stored.polygon[k] < scene.polygons.size() &&
+            std::all_of(stored.corners[k].begin(), stored.corners[k].end(), is_known);
+    // In the order of the scene's polygons, the front before the back.
+    if (k > 0)
+      sound =
+          sound && std::pair(stored.polygon[k - 1], stored.side[k - 1]) <= std::pair(stored.polygon[k], stored.side[k]);
+  }
+  for (const Middle& middle : stored.middles)
+    sound = sound && is_known(middle.vertex) && is_known(middle.ends[0]) && is_known(middle.ends[1]);
+  if (!sound) throw InputError(file.string(), "its patches do not fit the scene; expected a file as it was written");
+}
+
+PatchMesh mesh_of(StoredSolution& stored, const Scene& scene) {
+  PatchMesh mesh;
+  mesh.vertices = std::move(stored.vertices);
+  mesh.corners = std::move(stored.corners);
+  mesh.polygon = std::move(stored.polygon);
+  mesh.side = std::move(stored.side);
+  mesh.middles = std::move(stored.middles);
+  mesh.area.resize(mesh.corners.size());
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
+    const PolygonIndex polygon = mesh.polygon[patch];
+    const Side side = mesh.side[patch];
+    const PatchCorners corners = mesh.corner_points(patch);
+    mesh.normal.emplace_back((side == Side::front ? 1 : -1) * front_normal(scene, polygon));
+    mesh.centroid.push_back(area_centroid(corners));
+    mesh.area[patch] = mesh.normal.back().dot(area_vector(corners));
+    mesh.material.push_back(material_on(scene.polygons[polygon], side));
+  }
+  PatchIndex next = 0;
+  for (std::size_t slot = 0; slot < 2 * scene.polygons.size(); ++slot) {
+    mesh.first_patch.push_back(next);
+    while (next < mesh.size() &&
+           2 * std::size_t{mesh.polygon[next]} + static_cast<std::size_t>(mesh.side[next]) == slot)
+      ++next;
+  }
+  mesh.first_patch.push_back(next);
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    const auto has = [&](Side side) {
+      const PatchRange range = mesh.patches_on(polygon, side);
+      return range.begin != range.end;
+    };
+    if (is_sheet(scene, polygon) && has(Side::front) && has(Side::back)) mesh.sheets.push_back(polygon);
+  }
+  return mesh;
+}
+
+// Those that have patches.
+KeptSides sides_of(const PatchMesh& mesh, const Scene& scene) {
+  KeptSides sides;
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    const auto has = [&](Side side) {
+      const PatchRange range = mesh.patches_on(polygon, side);
+      return static_cast<std::uint8_t>(range.begin != range.end ? 1 : 0);
+    };
+    sides.front.push_back(has(Side::front));
+    sides.back.push_back(has(Side::back));
+  }
+  return sides;
+}
+
+}  // namespace
+
+Simulation read_solution(const std::filesystem::path& file, const Scene& scene) {
+  StoredSolution stored = read_vtk(file);
+  if (stored.scene_hash != scene_hash(scene)) {
+    throw InputError(file.string(),
+                     "it is the solution of another scene: faces, materials or lights differ; expected that of the "
+                     "models and options that are given; solve these, or give those that it was solved with");
+  }
+  require_sound(stored, scene, file);
+  Simulation simulation;
+  simulation.mesh = mesh_of(stored, scene);
+  const PatchMesh& mesh = simulation.mesh;
+  Plan& plan = simulation.plan;
+  plan.sides = sides_of(mesh, scene);
+  plan.decisions = std::move(stored.decisions);
+  plan.assembly.seed = stored.seed;
+  if (stored.follows_reflections) plan.assembly.storage = Storage::rays;
+  RadiosityProblem& problem = simulation.problem;
+  problem.area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
+  problem.exitance = std::move(stored.exitance);
+  problem.scattering.reflectance = std::move(stored.reflectance);
+  if (!mesh.sheets.empty())
+    problem.scattering = with_sheets(std::move(problem.scattering), scene_as_planned(scene, plan), mesh, problem.area);
+  simulation.solution.radiosity = std::move(stored.radiosity);
+  simulation.solution.converged = stored.converged;
+  simulation.tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan),
+                                                       reflections_of(plan));
+  return simulation;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,155 @@
+#include "cli/picture_options.h"
+
+#include "cli/add_option.h"
+#include "cli/parse_value.h"
+#include "output/write_picture.h"
+#include "scene/projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace patchlight::cli {
+namespace {
+
+constexpr std::uint64_t most_pixels_per_edge = 32768;
+
+std::array<int, 2> size_of_picture(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) throw refusal("--size", text, "width and height in pixels, as in 1600x900");
+  const auto edge = [](const std::string& part) {
+    return static_cast<int>(whole_number("--size", part, 1, most_pixels_per_edge));
+  };
+  return {edge(text.substr(0, cross)), edge(text.substr(cross + 1))};
+}
+
+Projection projection_asked(const std::string& text) {
+  using enum Projection;
+  return choice<Projection>("--projection", text,
+                            {{name_of(perspective), perspective},
+                             {name_of(orthographic), orthographic},
+                             {name_of(angular), angular},
+                             {name_of(hemispherical), hemispherical},
+                             {name_of(panorama), panorama}});
+}
+
+void add_camera_options(CLI::App& command, PictureGiven& given) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--camera",
+          [&given](const std::vector<std::string>& values) {
+            const std::string degrees = std::string("an angle above 0 degrees, as in ") + camera_example;
+            given.camera = Camera{point("--camera (EYE)", values[0]), point("--camera (TARGET)", values[1]),
+                                  number("--camera (FOV)", values[2], degrees, [](double x) { return x > 0; })};
+          },
+          "view of the picture: eye and target as X,Y,Z in model\nunits, vertical field of view in degrees; "
+          "default: a view\nfrom within the scene's bounds that shows most of it")
+      ->expected(3)
+      ->option_text("EYE TARGET FOV");
+  add(command, "--projection", "NAME",
+      "with --camera: perspective, orthographic (FOV is the height that\nis shown, in model units; what is nearer than "
+      "the eye's plane is\ncut away), fisheye angular or hemispherical, panorama; default\nperspective",
+      [&given](const std::string& text) { given.projection = projection_asked(text); });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--view",
+          [&given](const std::vector<std::string>& names) {
+            for (const std::string& name : names)
+              if (name.empty()) throw refusal("--view", name, "the name of a camera");
+            given.views = names;
+          },
+          "view of the picture: a camera of the scene file; default: its first")
+      ->allow_extra_args(false)
+      ->option_text("NAME");
+}
+
+Camera with_projection(Camera camera, Projection projection) {
+  camera.projection = projection;
+  if (projection == Projection::orthographic) camera.height = camera.vertical_field_of_view;
+  if (has_extent(camera)) return camera;
+  const std::string found = std::to_string(std::lround(camera.vertical_field_of_view)) + " degrees";
+  throw UsageError("--camera (FOV): found " + found + "; expected an angle above 0 and " +
+                   (projection == Projection::perspective ? "below " : "up to ") +
+                   std::to_string(std::lround(largest_field_of_view(projection))) + " degrees, as in " +
+                   camera_example);
+}
+
+void require_picture_of(const PictureGiven& given, const std::string& file_option) {
+  const char* const needs = given.camera               ? "--camera"
+                            : !given.views.empty()     ? "--view"
+                            : given.colors             ? "--false-color"
+                            : given.quality            ? "--quality"
+                            : given.size               ? "--size"
+                            : given.error              ? "--picture-error"
+                            : !given.error_map.empty() ? "--picture-error-map"
+                                                       : nullptr;
+  if (given.file.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs " + file_option + " FILE");
+  if (given.camera && !given.views.empty())
+    throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
+  if (given.projection && !given.camera)
+    throw UsageError("--projection needs --camera EYE TARGET FOV; a camera of a scene file states its own");
+  if (given.camera && given.camera->eye == given.camera->target)
+    throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
+}
+
+}  // namespace
+
+void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality usual) {
+  add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
+      [&given](const std::string& text) {
+        given.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
+      });
+  add_camera_options(command, given);
+  add(command, "--quality", "draft|final",
+      std::string("picture of the smoothed solution, or of light that is gathered\nat each of its points; default ") +
+          (usual == PictureQuality::draft ? "draft" : "final"),
+      [&given](const std::string& text) {
+        given.quality = choice<PictureQuality>("--quality", text,
+                                               {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
+      });
+  add(command, "--size", "WIDTHxHEIGHT", "of the picture in pixels; default 800x800",
+      [&given](const std::string& text) { given.size = size_of_picture(text); });
+  add(command, "--picture-error", "NUMBER",
+      "wanted standard error of the luminance of a final picture's\npixels, relative; dark pixels are granted more; "
+      "default 1%",
+      [&given](const std::string& text) { given.error = relative_error("--picture-error", text); });
+  add(command, "--picture-error-map", "FILE",
+      "that error of each pixel in false colors with a legend in\ncd/m^2 (.png); default: not written",
+      [&given](const std::string& text) {
+        if (text.empty()) throw refusal("--picture-error-map", text, "the name of a file");
+        given.error_map = text;
+      });
+}
+
+PictureSettings picture_settings(const PictureGiven& given, const std::string& file_option, PictureQuality usual) {
+  require_picture_of(given, file_option);
+  PictureSettings settings;
+  settings.file = given.file;
+  settings.error_map = given.error_map;
+  settings.views = given.views;
+  if (given.camera)
+    settings.camera = with_projection(*given.camera, given.projection.value_or(Projection::perspective));
+  settings.colors = given.colors.value_or(PictureColors::natural);
+  settings.quality = given.quality.value_or(usual);
+  if (given.size) settings.size = *given.size;
+  settings.error = given.error.value_or(settings.error);
+  const auto& extensions = picture_extensions();
+  if (!given.file.empty() &&
+      std::find(extensions.begin(), extensions.end(), settings.file.extension()) == extensions.end())
+    throw UsageError(file_option + ": found '" + given.file + "'; expected a name that ends in .png, .hdr or .exr");
+  if (!given.error_map.empty() && settings.error_map.extension() != ".png")
+    throw UsageError("--picture-error-map: found '" + given.error_map + "'; expected a name that ends in .png");
+  if (settings.quality == PictureQuality::draft && (given.error || !given.error_map.empty()))
+    throw UsageError(std::string(given.error ? "--picture-error" : "--picture-error-map") +
+                     " is of final pictures; give --quality final");
+  if (given.colors && settings.file.extension() != ".png")
+    throw UsageError("--false-color is of pictures in PNG; found '" + given.file +
+                     "', which has luminances themselves");
+  return settings;
+}
+
+std::vector<OutputFile> picture_files(const PictureSettings& settings, const std::string& file_option) {
+  return {{file_option, settings.file}, {"--picture-error-map", settings.error_map}};
+}
+
+}  // namespace patchlight::cli

@@ -1,0 +1,68 @@
+#include "cli/render_options.h"
+
+#include "cli/add_option.h"
+#include "cli/distinct_files.h"
+#include "cli/model_options.h"
+#include "cli/parse_value.h"
+#include "cli/picture_options.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight::cli {
+
+struct RenderOptionsGiven {
+  ModelOptions model;
+  PictureGiven picture;
+  std::string solution;
+  int threads = 0;
+  bool quiet = false;
+};
+
+std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
+  auto options = std::make_shared<RenderOptionsGiven>();
+  RenderOptionsGiven& to = *options;
+  CLI::App& command = *tool.add_subcommand("render", "takes pictures of a solution that is there, without solving");
+  add_model_options(command, to.model);
+  add(command, "--solution", "FILE", "what patchlight solve has written for this model (.vtp)",
+      [&to](const std::string& text) {
+        if (!text.ends_with(".vtp")) throw refusal("--solution", text, "a name that ends in .vtp");
+        to.solution = text;
+      });
+  command.option_defaults()->group("Results and pictures");
+  add(command, "-o,--output", "FILE",
+      "the picture (.png), or its radiances (.hdr, .exr); of several\nviews each gets its name before the extension",
+      [&to](const std::string& text) {
+        if (text.empty()) throw refusal("-o", text, "the name of a file");
+        to.picture.file = text;
+      });
+  add_picture_options(command, to.picture, PictureQuality::final);
+  command.option_defaults()->group("The run");
+  add(command, "--threads", "N", "number of threads; default 0: one per processor",
+      [&to](const std::string& text) { to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
+  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the files");
+  return options;
+}
+
+RenderArguments finish_render(const RenderOptionsGiven& options) {
+  if (options.model.models.empty())
+    throw UsageError("render: found no model; expected: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
+  if (options.solution.empty())
+    throw UsageError("render: found no solution; expected --solution RESULT.vtp, which patchlight solve has written");
+  if (options.picture.file.empty()) throw UsageError("render: nothing would be written; expected -o VIEW.png");
+  RenderArguments arguments;
+  arguments.models = model_files(options.model);
+  arguments.read = read_options(options.model);
+  arguments.solution = options.solution;
+  arguments.picture = picture_settings(options.picture, "-o", PictureQuality::final);
+  arguments.threads = options.threads;
+  arguments.quiet = options.quiet;
+  std::vector<std::filesystem::path> read = arguments.models;
+  read.push_back(arguments.solution);
+  require_distinct(picture_files(arguments.picture, "-o"));
+  require_not_read(picture_files(arguments.picture, "-o"), read);
+  return arguments;
+}
+
+}  // namespace patchlight::cli

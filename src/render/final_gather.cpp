@@ -1,0 +1,437 @@
+#include "render/final_gather.h"
+
+#include "patchlight/base/error.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "render/pixel_samples.h"
+#include "render/seen.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+constexpr int gather_tile_edge = 32;           // pixels
+constexpr std::uint32_t samples_of_block = 2;  // samples whose mean tells the variance
+constexpr std::uint32_t first_blocks = 2;
+constexpr std::uint32_t rays_to_lights = 4;  // of each sample
+
+// Records are wanted at every so many pixels, first far from each other; where the weights around are less than enough.
+constexpr int first_stride = 32;
+constexpr int last_stride = 2;
+constexpr double enough_weight = 0.35;
+
+// A record serves as many pixels around it, at least and at most.
+constexpr double least_pixels = 3;
+constexpr double most_pixels = 64;
+
+// Points without a record take so many rays of their own.
+constexpr int rays_without_record = 64;
+
+// What is shown as dark as this share of the luminance of bright_share of the pixels may have that much's error.
+constexpr double dark = 0.05;
+constexpr double bright_share = 0.9;
+
+// Of a pixel so far.
+struct Pixel {
+  std::uint32_t blocks = 0;
+  double first = 0, second = 0;  // sums of the blocks' luminances and of their squares
+  double deviation = 0;          // sum over samples of what records may be off
+};
+
+struct PixelTile {
+  int left, top, right, bottom;
+};
+
+// A sample of a pixel.
+struct EyeSample {
+  Eigen::Index pixel = 0;
+  std::uint32_t index = 0;
+};
+
+struct EyeSamples {
+  std::vector<EyeSample> all;
+  std::vector<Ray> rays;
+  std::vector<std::size_t> of_rays;  // the sample of each; beyond the edge of a fisheye's picture there is no ray
+};
+
+// What each sample of a batch brings, and how far it may be off by the records.
+struct Brought {
+  Field radiance;
+  Eigen::VectorXd deviation;
+  Eigen::VectorXd outlook;
+};
+
+// Tells an observer of a part of a stage.
+Observer part_of(const Observer& observer, double from, double to) {
+  if (!observer) return {};
+  return [&observer, from, to](const Progress& progress) {
+    Progress all = progress;
+    all.fraction = from + (to - from) * progress.fraction;
+    return observer(all);
+  };
+}
+
+class FinalGather {
+ public:
+  FinalGather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
+              const FinalGatherOptions& options);
+
+  void place_records(const Observer& observer);
+  void take_samples(const std::vector<std::uint32_t>& blocks, const Observer& observer);
+  std::vector<std::uint32_t> wanted_blocks() const;
+  void see_layers();
+  Image image() const;
+
+ private:
+  struct Candidate {
+    PatchPoint at;
+    bool other_side = false;
+    double pixel_width = 0;
+  };
+  std::vector<Candidate> candidates_in_row(int y, int stride) const;
+  std::vector<Candidate> apart(const std::vector<Candidate>& all) const;
+  EyeSamples eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& blocks) const;
+  Brought brought(const EyeSamples& samples) const;
+  Spectrum gathered(const PatchPoint& at, const EyeSample& sample, double& deviation) const;
+  Eigen::VectorXd pooled_variances() const;
+  bool is_plain(PatchIndex patch) const;
+  std::optional<PatchIndex> behind(PatchIndex patch) const;
+  Eigen::Index index(int x, int y) const { return static_cast<Eigen::Index>(y) * options_.width + x; }
+
+  const SolvedLight& solved_;
+  const SmoothField& radiance_;
+  const Lens& lens_;
+  const FinalGatherOptions& options_;
+  GatheredLight gather_;
+  IrradianceCache cache_;
+  std::vector<PixelTile> tiles_;
+  std::vector<Pixel> pixels_;
+  Image sums_;
+};
+
+FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
+                         const FinalGatherOptions& options)
+    : solved_(solved),
+      radiance_(radiance),
+      lens_(lens),
+      options_(options),
+      gather_(solved),
+      cache_(solved.luminous_weights) {
+  for (int top = 0; top < options.height; top += gather_tile_edge)
+    for (int left = 0; left < options.width; left += gather_tile_edge)
+      tiles_.push_back({left, top, std::min(left + gather_tile_edge, options.width),
+                        std::min(top + gather_tile_edge, options.height)});
+  const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;
+  pixels_.resize(static_cast<std::size_t>(count));
+  sums_ = {options.width, options.height, Field::Zero(count, solved.exitance.cols()), Eigen::VectorXd::Zero(count)};
+  sums_.patch.assign(static_cast<std::size_t>(count), -1);
+  sums_.depth = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity());
+  sums_.normal = Field::Zero(count, 3);
+}
+
+// False where only the solution knows what is scattered: at clear faces and mirrors.
+bool FinalGather::is_plain(PatchIndex patch) const {
+  return solved_.occluder.specular_faces().at(solved_.mesh.polygon[patch]) == nullptr;
+}
+
+// The patch on the other side of a sheet.
+std::optional<PatchIndex> FinalGather::behind(PatchIndex patch) const {
+  if (solved_.other_side.empty() || solved_.other_side[patch] == patch) return std::nullopt;
+  return solved_.other_side[patch];
+}
+
+// Points of every so many pixels that the records there are do not serve.
+std::vector<FinalGather::Candidate> FinalGather::candidates_in_row(int y, int stride) const {
+  std::vector<Ray> rays;
+  for (int x = stride / 2; x < options_.width; x += stride) {
+    const auto ray = lens_.ray(x + 0.5, y + 0.5);
+    if (ray) rays.push_back(*ray);
+  }
+  std::vector<Candidate> wanted;
+  const auto add = [&](const PatchPoint& at, double distance) {
+    if ((solved_.reflectance.row(at.patch) == 0).all()) return;
+    if (cache_.weight_at(at.point, solved_.mesh.normal[at.patch]) < enough_weight)
+      wanted.push_back({at, false, lens_.pixel_width(distance)});
+  };
+  for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+    if (!seen.patch || !is_plain(*seen.patch)) continue;
+    add({seen.point, *seen.patch}, seen.distance);
+    if (const auto other = behind(*seen.patch)) add({seen.point, *other}, seen.distance);
+  }
+  return wanted;
+}
+
+// Of several that would serve the same pixels the first.
+std::vector<FinalGather::Candidate> FinalGather::apart(const std::vector<Candidate>& all) const {
+  IrradianceCache taken(solved_.luminous_weights);
+  std::vector<Candidate> some;
+  for (const Candidate& one : all) {
+    const Vector& normal = solved_.mesh.normal[one.at.patch];
+    if (taken.weight_at(one.at.point, normal) > 0) continue;
+    taken.add({one.at.point, normal, least_pixels * one.pixel_width / 2, {}, {}, 0});
+    some.push_back(one);
+  }
+  return some;
+}
+
+void FinalGather::place_records(const Observer& observer) {
+  const int strides = std::countr_zero(static_cast<unsigned>(first_stride / last_stride)) + 1;
+  for (int k = 0; k < strides; ++k) {
+    const int stride = first_stride >> k;
+    const int rows = (options_.height - stride / 2 + stride - 1) / stride;
+    std::vector<std::vector<Candidate>> found(static_cast<std::size_t>(std::max(0, rows)));
+    parallel_for(found.size(), [&](std::size_t row) {
+      found[row] = candidates_in_row(static_cast<int>(row) * stride + stride / 2, stride);
+    });
+    std::vector<Candidate> all;
+    for (const auto& row : found) all.insert(all.end(), row.begin(), row.end());
+    all = apart(all);
+    std::vector<IrradianceRecord> records(all.size());
+    const double part = 1.0 / strides;
+    parallel_for(all.size(), Stage::render, part_of(observer, k * part, (k + 1) * part), [&](std::size_t n) {
+      const Candidate& one = all[n];
+      records[n] =
+          gather_.record_at(one.at, hash({options_.seed, static_cast<std::uint64_t>(stride), n}),
+                            least_pixels * one.pixel_width, most_pixels * one.pixel_width, options_.hemisphere);
+    });
+    cache_.add_graded(records);
+  }
+}
+
+EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& blocks) const {
+  EyeSamples samples;
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    for (int x = tile.left; x < tile.right; ++x) {
+      const Eigen::Index pixel = index(x, y);
+      const std::uint32_t begin = pixels_[static_cast<std::size_t>(pixel)].blocks * samples_of_block;
+      const std::uint32_t end = begin + blocks[static_cast<std::size_t>(pixel)] * samples_of_block;
+      for (std::uint32_t k = begin; k < end; ++k) {
+        const auto u = pixel_sample(k, hash({options_.seed, static_cast<std::uint64_t>(pixel), 1}));
+        const auto ray = lens_.ray(x + 0.5 + tent(u[0]), y + 0.5 + tent(u[1]));
+        samples.all.push_back({pixel, k});
+        if (!ray) continue;
+        samples.rays.push_back(*ray);
+        samples.of_rays.push_back(samples.all.size() - 1);
+      }
+    }
+  }
+  return samples;
+}
+
+// The irradiance by other patches, from the records around or by rays of its own.
+Spectrum FinalGather::gathered(const PatchPoint& at, const EyeSample& sample, double& deviation) const {
+  if (const auto cached = cache_.at(at.point, solved_.mesh.normal[at.patch])) {
+    deviation = cached->deviation;
+    return cached->irradiance;
+  }
+  HemisphereOptions few = options_.hemisphere;
+  few.rays = rays_without_record;
+  const auto key = hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), sample.index, 2});
+  const IrradianceRecord own = gather_.record_at(at, key, 1, 1, few);
+  deviation = 0;  // its scatter is that of samples
+  return own.irradiance;
+}
+
+Brought FinalGather::brought(const EyeSamples& samples) const {
+  const auto count = static_cast<Eigen::Index>(samples.all.size());
+  const Eigen::Index bands = solved_.exitance.cols();
+  Brought all{Field::Zero(count, bands), Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
+
+  // 1. Points that are seen, and both of their sides where they are of sheets
+  struct Lit {
+    std::size_t sample;
+    PatchPoint at;
+    Spectrum factor;  // of the irradiance in the radiance that is seen
+  };
+  std::vector<Lit> lit;
+  std::vector<LitPoint> points;
+  std::map<PatchIndex, SkyAim> aims;
+  const auto add = [&](const Seen& seen, PatchIndex patch, const Spectrum& factor) {
+    if (!(factor > 0).any()) return;
+    const EyeSample& sample = samples.all[samples.of_rays[seen.ray]];
+    lit.push_back({samples.of_rays[seen.ray], {seen.point, patch}, factor});
+    const SkyAim* aim = nullptr;
+    if (solved_.lights.lighting.sky) {
+      auto place = aims.find(patch);
+      if (place == aims.end()) place = aims.emplace(patch, gather_.aim_at(patch)).first;
+      aim = &place->second;
+    }
+    const SurfacePoint at{seen.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
+    points.push_back({at, sample.index, hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), 3}), aim});
+  };
+  for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays)) {
+    const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
+    if (seen.outlook) all.outlook[ray] += seen.share;
+    if (!seen.patch) {
+      if (options_.surroundings) all.radiance.row(ray) += seen.share * options_.surroundings(seen.direction);
+      continue;
+    }
+    const PatchIndex patch = *seen.patch;
+    if (!is_plain(patch)) {
+      all.radiance.row(ray) += seen.share * value_at(solved_.mesh, radiance_, solved_.occluder, patch, seen.point);
+      continue;
+    }
+    // L = (E + rho H + t H_behind) / pi
+    const double share = seen.share / std::numbers::pi;
+    all.radiance.row(ray) += share * solved_.exitance.row(patch);
+    add(seen, patch, share * solved_.reflectance.row(patch));
+    if (const auto other = behind(patch)) add(seen, *other, share * solved_.transmittance.row(patch));
+  }
+
+  // 2. Their light
+  const Field direct = light_samples(solved_.lights, points, rays_to_lights);
+  for (std::size_t k = 0; k < lit.size(); ++k) {
+    double deviation = 0;
+    const auto row = static_cast<Eigen::Index>(lit[k].sample);
+    const Spectrum irradiance =
+        direct.row(static_cast<Eigen::Index>(k)) + gathered(lit[k].at, samples.all[lit[k].sample], deviation);
+    all.radiance.row(row) += lit[k].factor * irradiance;
+    all.deviation[row] += deviation * lit[k].factor.maxCoeff();
+  }
+  return all;
+}
+
+void FinalGather::take_samples(const std::vector<std::uint32_t>& blocks, const Observer& observer) {
+  parallel_for(tiles_.size(), Stage::render, observer, [&](std::size_t t) {
+    const EyeSamples samples = eye_samples(tiles_[t], blocks);
+    if (samples.all.empty()) return;
+    const Brought found = brought(samples);
+    for (std::size_t k = 0; k < samples.all.size(); k += samples_of_block) {
+      const Eigen::Index at = samples.all[k].pixel;
+      const auto first = static_cast<Eigen::Index>(k);
+      const Spectrum sum = found.radiance.middleRows(first, samples_of_block).colwise().sum();
+      Pixel& pixel = pixels_[static_cast<std::size_t>(at)];
+      const double value = (sum.matrix() * solved_.luminous_weights).value() / samples_of_block;
+      ++pixel.blocks;
+      pixel.first += value;
+      pixel.second += value * value;
+      pixel.deviation += found.deviation.segment(first, samples_of_block).sum();
+      sums_.pixels.row(at) += sum;
+      sums_.outlook[at] += found.outlook.segment(first, samples_of_block).sum();
+    }
+  });
+}
+
+// Of blocks: that of a pixel and those around, as that of few of them is small by chance.
+Eigen::VectorXd FinalGather::pooled_variances() const {
+  Eigen::VectorXd own(static_cast<Eigen::Index>(pixels_.size()));
+  for (std::size_t k = 0; k < pixels_.size(); ++k) {
+    const Pixel& pixel = pixels_[k];
+    const double mean = pixel.first / pixel.blocks;
+    own[static_cast<Eigen::Index>(k)] =
+        std::max(0.0, pixel.second / pixel.blocks - mean * mean) * pixel.blocks / (pixel.blocks - 1.0);
+  }
+  Eigen::VectorXd pooled(own.size());
+  for (int y = 0; y < options_.height; ++y) {
+    for (int x = 0; x < options_.width; ++x) {
+      double sum = 0;
+      int count = 0;
+      for (int v = std::max(0, y - 1); v <= std::min(options_.height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(options_.width - 1, x + 1); ++u, ++count)
+          sum += own[index(u, v)];
+      pooled[index(x, y)] = sum / count;
+    }
+  }
+  return pooled;
+}
+
+// More blocks for each pixel, so that their variance leaves the wanted error; what records are off they do not mend.
+std::vector<std::uint32_t> FinalGather::wanted_blocks() const {
+  const Eigen::VectorXd variances = pooled_variances();
+  std::vector<double> values;
+  for (const Pixel& pixel : pixels_) {
+    if (pixel.first > 0) values.push_back(pixel.first / pixel.blocks);
+  }
+  double least = 0;
+  if (!values.empty()) {
+    const auto bright =
+        values.begin() + static_cast<std::ptrdiff_t>(bright_share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), bright, values.end());
+    least = dark * *bright;
+  }
+  const auto most = static_cast<std::uint32_t>(options_.most_samples) / samples_of_block;
+  std::vector<std::uint32_t> more(pixels_.size());
+  for (std::size_t k = 0; k < pixels_.size(); ++k) {
+    const Pixel& pixel = pixels_[k];
+    const double allowed = options_.error * std::max(least, pixel.first / pixel.blocks);
+    const double variance = variances[static_cast<Eigen::Index>(k)];
+    if (!(variance > 0) || pixel.blocks >= most || variance <= allowed * allowed * pixel.blocks) continue;
+    const double wanted = std::min<double>(most, std::ceil(variance / (allowed * allowed)));
+    more[k] = std::min(most, std::bit_ceil(static_cast<std::uint32_t>(wanted))) - pixel.blocks;
+  }
+  return more;
+}
+
+// What the middle of each pixel shows.
+void FinalGather::see_layers() {
+  parallel_for(tiles_.size(), [&](std::size_t t) {
+    const PixelTile& tile = tiles_[t];
+    std::vector<Ray> rays;
+    std::vector<Eigen::Index> at;
+    for (int y = tile.top; y < tile.bottom; ++y) {
+      for (int x = tile.left; x < tile.right; ++x) {
+        const auto ray = lens_.ray(x + 0.5, y + 0.5);
+        if (!ray) continue;
+        rays.push_back(*ray);
+        at.push_back(index(x, y));
+      }
+    }
+    for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+      const Eigen::Index pixel = at[seen.ray];
+      // The first on the way of a ray comes first.
+      if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;
+      sums_.patch[static_cast<std::size_t>(pixel)] = *seen.patch;
+      sums_.depth[pixel] = seen.distance;
+      sums_.normal.row(pixel) = solved_.mesh.normal[*seen.patch].transpose();
+    }
+  });
+}
+
+Image FinalGather::image() const {
+  Image image = sums_;
+  const Eigen::VectorXd variances = pooled_variances();
+  image.error = Eigen::VectorXd(variances.size());
+  for (Eigen::Index k = 0; k < variances.size(); ++k) {
+    const Pixel& pixel = pixels_[static_cast<std::size_t>(k)];
+    const double samples = pixel.blocks * samples_of_block;
+    image.pixels.row(k) /= samples;
+    image.outlook[k] /= samples;
+    image.error[k] = std::hypot(std::sqrt(variances[k] / pixel.blocks), pixel.deviation / samples);
+  }
+  return image;
+}
+
+}  // namespace
+
+GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
+                           const FinalGatherOptions& options, const Observer& observer) {
+  FinalGather gather(solved, radiance, lens, options);
+  // 1. Records of the light from other patches
+  gather.place_records(part_of(observer, 0, 0.4));
+  // 2. Some samples of all pixels
+  const std::vector<std::uint32_t> first(
+      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), first_blocks);
+  gather.take_samples(first, part_of(observer, 0.4, 0.6));
+  gather.see_layers();
+  // 3. More where they differ; twice, as few samples tell little of how many are wanted
+  bool unfinished = false;
+  try {
+    gather.take_samples(gather.wanted_blocks(), part_of(observer, 0.6, 0.9));
+    gather.take_samples(gather.wanted_blocks(), part_of(observer, 0.9, 1));
+  } catch (const Cancelled&) {
+    unfinished = true;
+  }
+  return {gather.image(), unfinished};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include "visibility/occluder.h"
+
+#include <optional>
+
+namespace patchlight {
+
+/// The rays of a camera's picture.
+class Lens {
+ public:
+  /// \throws InputError when eye and target are one point, or the camera shows no extent that its projection can have.
+  Lens(const Camera& camera, const Vector& up, int width, int height);
+
+  /// The ray through a place of the picture, in pixels from its upper left corner; nothing where the picture of a
+  /// fisheye ends.
+  std::optional<Ray> ray(double x, double y) const;
+
+  /// How wide about a pixel is on a surface across the view so far away, metres.
+  double pixel_width(double distance) const;
+
+ private:
+  Vector direction_of(double across, double above) const;
+
+  Projection projection_;
+  int width_, height_;
+  Point eye_;
+  Vector forward_, right_, up_;
+  double scale_;  // of a pixel: in the plane at distance 1, in the unit disc, radians, or metres
+  double half_angle_;
+};
+
+}  // namespace patchlight

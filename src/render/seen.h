@@ -1,0 +1,30 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
+
+#include "mesh/patch_lookup.h"
+#include "visibility/occluder.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+
+/// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
+struct Seen {
+  std::size_t ray = 0;
+  std::optional<PatchIndex> patch;
+  Point point;  ///< on the patch
+  Vector direction;
+  double share = 1;      ///< of its light that gets through what is before it
+  bool outlook = false;  ///< behind a clear face, or nothing is met
+  double distance = 0;   ///< along the way from the ray's origin, metres
+};
+
+/// What rays see: the first patch that each meets and, as long as that is clear or a mirror, what is behind it and in
+/// it. Rays pass sides without patches: they go on from there.
+std::vector<Seen> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays);
+
+}  // namespace patchlight

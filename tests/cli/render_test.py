@@ -1,0 +1,97 @@
+"""patchlight render: pictures of a solution on disk."""
+import unittest
+
+from support import ToolTest
+
+GOOD, USAGE, INPUT = 0, 1, 2
+
+SCENE = """[[model]]
+file = "room.obj"
+
+[[camera]]
+name = "near"
+eye = [0.5, 0.5, 1.5]
+target = [0, 0, 1]
+
+[[camera]]
+name = "plan"
+eye = [0, 0, 1.9]
+target = [0, 0, 0]
+projection = "orthographic"
+height = 2
+"""
+
+SMALL = ["--size", "24x16", "-q"]
+
+
+class RenderTest(ToolTest):
+    def good(self, *words):
+        done = self.run_tool(*words)
+        self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
+        return done
+
+    def refused(self, code, *words):
+        done = self.run_tool(*words)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stderr
+
+    def solve(self, *words):
+        self.good("solve", "room.obj", "--patches", "200", "-o", "room.vtp", "-q", *words)
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def test_a_picture_of_a_file_is_that_of_the_run(self):
+        # The file has single precision: the picture is that of the run, but for rounding to eight bits.
+        self.solve("--picture", "of_run.hdr", "--quality", "final", "--size", "24x16")
+        self.good("render", "room.obj", "--solution", "room.vtp", "-o", "of_file.hdr", *SMALL)
+        run, file = (self.bytes_of(name) for name in ("of_run.hdr", "of_file.hdr"))
+        self.assertEqual(run.split(b"\n\n")[0], file.split(b"\n\n")[0])
+        self.assertLess(abs(len(run) - len(file)), 0.05 * len(run))
+
+    def test_pictures_are_the_same_on_one_thread_and_two(self):
+        self.solve()
+        for threads in ("1", "2"):
+            self.good("render", "room.obj", "--solution", "room.vtp", "-o", threads + ".exr", "--threads", threads, *SMALL)
+        self.assertEqual(self.bytes_of("1.exr"), self.bytes_of("2.exr"))
+
+    def test_several_views_have_their_names(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "--view", "near", "--view", "plan", "-o", "room.png",
+                  "--picture-error-map", "errors.png", *SMALL)
+        names = sorted(file.name for file in self.folder.glob("*.png"))
+        self.assertEqual(names, ["errors.near.png", "errors.plan.png", "room.near.png", "room.plan.png"])
+
+    def test_other_cameras_are_taken_and_other_lights_refused(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        self.write("scene.toml", SCENE.replace("0.5, 0.5, 1.5", "0.4, 0.4, 1.4"))
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "-o", "room.png", *SMALL)
+        message = self.refused(INPUT, "render", "scene.toml", "--sky", "overcast", "--solution", "scene.vtp", "-o",
+                               "other.png", *SMALL)
+        self.assertIn("scene.vtp", message)
+        self.assertIn("another scene", message)
+        self.assertFalse((self.folder / "other.png").exists())
+
+    def test_refuses_what_is_no_solution(self):
+        self.write("text.vtp", "no file of VTK\n")
+        self.assertIn("text.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "text.vtp", "-o", "a.png"))
+        self.assertIn("none.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "none.vtp", "-o", "a.png"))
+
+    def test_refuses_options_that_contradict_each_other(self):
+        for words, named in (
+            (["-o", "a.gif"], "-o"),
+            (["-o", "a.png", "--size", "12"], "--size"),
+            (["-o", "a.png", "--quality", "draft", "--picture-error", "1%"], "--picture-error"),
+            (["-o", "a.hdr", "--false-color", "luminance"], "--false-color"),
+            (["-o", "a.png", "--projection", "panorama"], "--projection"),
+            (["-o", "a.png", "--camera", "0,0,1", "1,0,1", "190"], "--camera"),
+            ([], "-o"),
+        ):
+            message = self.refused(USAGE, "render", "room.obj", "--solution", "room.vtp", *words)
+            self.assertIn(named, message)
+
+
+if __name__ == "__main__":
+    unittest.main()
