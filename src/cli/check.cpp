@@ -234,10 +234,13 @@ std::string quoted(const std::string& word) {
 }
 
 // The command that comes next.
-std::string next_line(const CheckArguments& arguments, const SceneReport& report) {
+std::string next_line(const CheckArguments& arguments, const SceneReport& report, bool needs_sensors) {
   std::string models;
   for (const std::filesystem::path& file : arguments.models) models += " " + quoted(shown_name(file.string()));
   const std::string result = arguments.models.front().stem().string();
+  if (needs_sensors)
+    return "next: patchlight new" + models + " -o " + quoted(result + ".toml") +
+           ", a scene file with sensors in its rooms; then patchlight solve it\n";
   return "next: patchlight solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
          quoted(result + ".vtp") + " --picture " + quoted(result + ".png") + '\n';
 }
@@ -260,10 +263,10 @@ ExitCode check(const CheckArguments& arguments) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
-              << next_line(arguments, report) << size_line(scene, report) << counts_lines(report, scene.faces)
-              << sides_lines(report) << room_lines(scene, arguments.all) << object_lines(report, arguments.all)
-              << material_lines(report, arguments.all) << lamp_lines(report) << daylight_lines(scene)
-              << problem_lines(scene, report, arguments.all) << std::flush;
+              << next_line(arguments, report, !scene.rooms.empty() && scene.sensors.empty()) << size_line(scene, report)
+              << counts_lines(report, scene.faces) << sides_lines(report) << room_lines(scene, arguments.all)
+              << object_lines(report, arguments.all) << material_lines(report, arguments.all) << lamp_lines(report)
+              << daylight_lines(scene) << problem_lines(scene, report, arguments.all) << std::flush;
   }
   if (report.usable) return good;
   print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));

@@ -3,6 +3,7 @@
 #include "base/rounded.h"
 #include "base/shortest.h"
 #include "input/materials.h"
+#include "input/toml_value.h"
 #include "scene/sensor_grid.h"
 
 #include <algorithm>
@@ -111,6 +112,13 @@ std::optional<Camera> camera_in(const NamedFloor& place) {
   return camera;
 }
 
+std::string unit_name(double metres_per_unit) {
+  for (const auto& [name, length] : units) {
+    if (metres_per_unit == length) return name;
+  }
+  return "m";
+}
+
 std::string model_tables(const Scene& scene, const std::vector<std::filesystem::path>& models, double metres_per_unit,
                          const std::filesystem::path& file) {
   std::set<std::string> classes;
@@ -126,7 +134,7 @@ std::string model_tables(const Scene& scene, const std::vector<std::filesystem::
     const std::filesystem::path relative = absolute.lexically_relative(folder);
     const bool is_near = !relative.empty() && *relative.begin() != "..";
     text << "[[model]]\nfile = " << toml_text((is_near ? relative : absolute).string()) << '\n';
-    if (metres_per_unit != 1) text << "unit = " << shortest(metres_per_unit) << '\n';
+    if (metres_per_unit != 1) text << "unit = " << toml_text(unit_name(metres_per_unit)) << '\n';
     text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
     std::string list;
     for (const std::string& name : classes) {

@@ -7,6 +7,7 @@
 #include "input/material_settings.h"
 #include "input/read_points.h"
 #include "input/text.h"
+#include "scene/room_body.h"
 #include "scene/sensor_grid.h"
 
 #include <algorithm>
@@ -168,6 +169,19 @@ std::vector<SensorGroup> over_floor(const Scene& scene, const FloorGrid& grid, c
   return {group};
 }
 
+// Without sensors above a sloping roof or in a nook of another room. A room that is not closed has no inside: all stay.
+SensorGroup within(SensorGroup group, const RoomBody& body) {
+  SensorGroup inside = group;
+  inside.sensors.clear();
+  inside.cells.clear();
+  for (std::size_t k = 0; k < group.sensors.size(); ++k) {
+    if (!body.holds(group.sensors[k].point)) continue;
+    inside.sensors.push_back(group.sensors[k]);
+    inside.cells.push_back(group.cells[k]);
+  }
+  return inside.sensors.empty() ? group : inside;
+}
+
 // The rooms that a pattern means, each with a grid of its own; those too narrow for one have none.
 FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid, const std::string& where) {
   std::vector<SensorGroup> groups;
@@ -184,6 +198,7 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid, const std::st
       narrow += (narrow.empty() ? "" : ", ") + room.name;
       continue;
     }
+    group = within(std::move(group), RoomBody(room.faces));
     group.name = names.back() == grid.room ? grid.name : grid.name + " " + room.name;
     groups.push_back(std::move(group));
   }

@@ -110,9 +110,7 @@ std::filesystem::path path(const TomlValue& value, const std::filesystem::path& 
   return (file.parent_path() / text(value, "the name of a file")).lexically_normal();
 }
 
-double unit_length(const TomlValue& value) {
-  return choice<double>(value, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
-}
+double unit_length(const TomlValue& value) { return choice<double>(value, {units.begin(), units.end()}); }
 
 Vector upright(const TomlValue& value) {
   return choice<Vector>(value, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});

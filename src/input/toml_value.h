@@ -3,6 +3,7 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -85,6 +86,10 @@ std::filesystem::path path(const TomlValue& value, const std::filesystem::path& 
 /// What one of several allowed words stands for.
 template <typename Value>
 Value choice(const TomlValue& value, const std::vector<std::pair<std::string, Value>>& allowed);
+
+/// The units of lengths, in metres.
+inline constexpr std::array<std::pair<const char*, double>, 5> units = {
+    {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
 /// The length of a unit in metres: m, cm, mm, in or ft.
 double unit_length(const TomlValue& value);

@@ -108,5 +108,42 @@ TEST_F(Rooms, AreInANewSceneFile) {
   EXPECT_NEAR(eye.z(), 1.6, 1e-9);
 }
 
+// What it writes for a model in another unit is read again.
+TEST_F(Rooms, OfAModelInFeetAreInANewSceneFile) {
+  const std::filesystem::path model =
+      write("plate.obj", "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nusemtl floor\nf 1 2 3 4\n");
+  for (const double unit : {0.3048, 0.0254, 0.01, 0.001, 1.0}) {
+    const Scene scene = read_scene(model, {.metres_per_unit = unit, .up = Vector::UnitZ()});
+    const Scene again = read_scene(write("new.toml", new_scene_file(scene, {model}, unit, folder_ / "new.toml")));
+    EXPECT_NEAR(bounds(again).sizes().x(), 10 * unit, 1e-12);
+  }
+}
+
+// Under a roof that comes down to the floor, z = x up to the ridge at x = 2, there is no place at 0.8 m up to x = 0.8.
+TEST_F(Rooms, HaveNoSensorsAboveTheirRoofs) {
+  const auto face = [](const std::string& name, const std::string& corners) {
+    return R"({"type": "Face", "identifier": ")" + name +
+           R"(", "face_type": "Wall", "boundary_condition": {"type": "Outdoors"}, "geometry": {"type": "Face3D", "boundary": )" +
+           corners + "}}";
+  };
+  write("attic.hbjson",
+        R"({"type": "Model", "units": "Meters", "rooms": [{"type": "Room", "identifier": "attic", "faces": [)" +
+            face("floor", "[[0,0,0],[0,4,0],[4,4,0],[4,0,0]]") + "," +
+            face("west", "[[0,0,0],[2,0,2],[2,4,2],[0,4,0]]") + "," +
+            face("east", "[[4,4,0],[2,4,2],[2,0,2],[4,0,0]]") + "," + face("south", "[[0,0,0],[4,0,0],[2,0,2]]") + "," +
+            face("north", "[[4,4,0],[0,4,0],[2,4,2]]") + R"(]}], "properties": {}})");
+  const Scene scene =
+      read_scene(write("attic.toml",
+                       "[[model]]\nfile = \"attic.hbjson\"\n[[sensors]]\nname = \"desk\"\nroom = \"*\"\n"
+                       "height = 0.8\nspacing = 0.5\nfrom_walls = 0.5\n"));
+  ASSERT_EQ(scene.sensors.size(), 1U);
+  EXPECT_EQ(scene.sensors[0].sensors.size(), scene.sensors[0].cells.size());
+  EXPECT_GT(scene.sensors[0].sensors.size(), 20U);
+  for (const Sensor& sensor : scene.sensors[0].sensors) {
+    EXPECT_GT(sensor.point.x(), 0.8);
+    EXPECT_LT(sensor.point.x(), 3.2);
+  }
+}
+
 }  // namespace
 }  // namespace patchlight::rooms_test
