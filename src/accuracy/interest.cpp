@@ -96,9 +96,10 @@ void require_reflecting(const Scene& scene, const RadiosityProblem& problem, con
   if ((interest.array() == 1).all()) return;
   const Field even = interest.array().replicate(1, problem.exitance.cols());
   if ((highest(problem.scattering.reflect(even)) > 0).any()) return;
-  throw InputError(scene.file,
-                   "found nothing that reflects light among what is of interest; expected a material, object or group "
-                   "with a reflectance above 0, as an accuracy is that of reflected light");
+  throw InputError(
+      scene.file,
+      "found nothing that reflects light among what is of interest; expected a material, object, group or room "
+      "with a reflectance above 0, as an accuracy is that of reflected light");
 }
 
 void require_names(const Scene& scene, const std::vector<std::string>& names) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -43,7 +44,7 @@ Json json_of_web(const PhotometricWeb& web) {
 }
 
 bool ascends(const std::vector<double>& values) {
-  return std::is_sorted(values.begin(), values.end(), std::less_equal<>());
+  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
 PhotometricWeb web_of(const Json& json) {
@@ -251,7 +252,9 @@ Scene with_views_of(Scene scene, const Json& json) {
     scene.cameras.push_back({vector_of(camera.at("eye")), vector_of(camera.at("target")),
                              camera.at("vertical_field_of_view").get<double>(), text_of(camera.at("name"))});
     Camera& read = scene.cameras.back();
-    read.projection = projection_named(camera.value("projection", "perspective")).value_or(Projection::perspective);
+    const std::optional<Projection> projection = projection_named(camera.value("projection", "perspective"));
+    require(projection.has_value(), "a camera has no projection");
+    read.projection = *projection;
     read.height = camera.value("height", 0.0);
     require(scene.cameras.back().eye.allFinite() && scene.cameras.back().target.allFinite(), "a camera stands nowhere");
   }

@@ -230,19 +230,28 @@ std::string quoted(const std::string& word) {
   const auto is_plain = [](char letter) {
     return std::isalnum(static_cast<unsigned char>(letter)) || std::strchr("_./,:=-+", letter);
   };
-  return std::all_of(word.begin(), word.end(), is_plain) ? word : "'" + word + "'";
+  if (std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string escaped;
+  for (const char letter : word) escaped += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return "'" + escaped + "'";
 }
 
 // The command that comes next.
 std::string next_line(const CheckArguments& arguments, const SceneReport& report, bool needs_sensors) {
+  if (arguments.models.front() == "-") return {};
   std::string models;
   for (const std::filesystem::path& file : arguments.models) models += " " + quoted(shown_name(file.string()));
+  const ReadOptions& read = arguments.read;
+  const bool has_more = read.metres_per_unit != 1 || read.up || !read.settings.empty() || !read.only.empty() ||
+                        !read.leave_out.empty() || read.detail > 0 || read.keep_faces || !read.format.empty();
+  const std::string more = has_more ? " and the options given here" : "";
   const std::string result = arguments.models.front().stem().string();
   if (needs_sensors)
     return "next: patchlight new" + models + " -o " + quoted(result + ".toml") +
-           ", a scene file with sensors in its rooms; then patchlight solve it\n";
+           ", a scene file with sensors in its rooms" + (more.empty() ? "" : ";" + more.substr(4) + " belong to it") +
+           "\n";
   return "next: patchlight solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
-         quoted(result + ".vtp") + " --picture " + quoted(result + ".png") + '\n';
+         quoted(result + ".vtp") + " --picture " + quoted(result + ".png") + more + '\n';
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ path default_points_output(const SolveArguments& arguments) {
   const path beside = arguments.results.empty() ? path() : arguments.results.front();
   const path name = !arguments.points.empty()   ? arguments.points
                     : !arguments.models.empty() ? arguments.models.front()
-                                                : path("sensors");
+                    : beside.empty()            ? path("sensors")
+                                                : beside;
   return beside.parent_path() / (name.stem().string() + ".irradiance.csv");
 }
 

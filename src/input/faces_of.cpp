@@ -37,7 +37,7 @@ std::vector<bool> faces_of(const Scene& scene, const std::string& pattern, const
   for (const Polygon& polygon : scene.polygons) {
     const std::string file = file_of(scene, polygon);
     const bool by_group = polygon.group < groups.size() && groups[polygon.group];
-    faces.push_back(by_group || is_meant(file) || is_meant(std::filesystem::path(file).filename().string()));
+    faces.push_back(by_group || file == pattern || is_meant(std::filesystem::path(file).filename().string()));
   }
   if (std::find(faces.begin(), faces.end(), true) == faces.end()) refuse_faces(scene, pattern, where);
   return faces;

@@ -9,7 +9,8 @@
 namespace patchlight {
 
 /// Per polygon whether its object, its group or its file bears this name or matches it as a pattern with * and ?; a
-/// file by its whole path or its last part. \throws InputError at `where` when that is none.
+/// file by the last part of its path, or by the whole of it without a pattern. \throws InputError at `where` when that
+/// is none.
 std::vector<bool> faces_of(const Scene& scene, const std::string& pattern, const std::string& where);
 
 /// The materials of these polygons, in order.

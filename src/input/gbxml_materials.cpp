@@ -72,9 +72,8 @@ Material GbxmlMaterials::opening(const pugi::xml_node& opening) {
 }
 
 std::string usual_reflectances() {
-  return "gbXML states no reflectances, so usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
-         "their "
-         "undersides and ceilings 0.8, shades 0.35; read.settings changes them, as InteriorWall.reflectance=0.7";
+  return "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
+         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as InteriorWall.reflectance=0.7";
 }
 
 }  // namespace patchlight

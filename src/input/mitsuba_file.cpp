@@ -149,8 +149,13 @@ std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute)
 }
 
 pugi::xml_node MitsubaFile::property(const pugi::xml_node& node, const std::string& name) const {
-  return node.find_child(
-      [&](const pugi::xml_node& child) { return plain_name(child.attribute("name").value()) == name; });
+  const pugi::xml_node found =
+      node.find_child([&](const pugi::xml_node& child) { return plain_name(child.attribute("name").value()) == name; });
+  if (std::string_view(found.name()) != "ref") return found;
+  const auto meant = by_id_.find(text(found, "id"));
+  if (meant == by_id_.end())
+    throw InputError(place(found), "<ref> names '" + text(found, "id") + "', which nothing has as its id");
+  return meant->second;
 }
 
 std::string MitsubaFile::word(const pugi::xml_node& node, const std::string& name, const std::string& otherwise) const {

@@ -36,7 +36,8 @@ class MitsubaFile {
   /// What an attribute says, "$name" replaced by what <default> says of it; empty if there is none.
   std::string text(const pugi::xml_node& node, const char* attribute) const;
 
-  /// The property of this name; an empty node if there is none.
+  /// The property of this name, or what a <ref> of this name names; an empty node if there is none.
+  /// \throws InputError where a <ref> names nothing.
   pugi::xml_node property(const pugi::xml_node& node, const std::string& name) const;
 
   /// What it says; `otherwise` if there is none.

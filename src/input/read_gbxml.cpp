@@ -132,11 +132,17 @@ class GbxmlReader {
   }
 
   MaterialIndex index_of(const Material& material) {
-    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
-                                    [&](const Material& one) { return one.name == material.name; });
-    const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
-    if (found == scene_.materials.end()) scene_.materials.push_back(material);
-    return index;
+    // Window types of one name may let different shares of light through.
+    Material named = material;
+    for (int copy = 2;; ++copy) {
+      const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                      [&](const Material& one) { return one.name == named.name; });
+      const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
+      if (found == scene_.materials.end()) scene_.materials.push_back(named);
+      const Spectrum& other = scene_.materials[index].transmittance;
+      if (other.size() == named.transmittance.size() && (other == named.transmittance).all()) return index;
+      named.name = material.name + " (" + std::to_string(copy) + ")";
+    }
   }
 
   // The faces of a space: its shell, else what is around it.

@@ -117,6 +117,13 @@ class MitsubaReader {
     const auto [found, is_new] = index_.emplace(key, std::nullopt);
     if (!is_new) return found->second;
     MitsubaMaterial read = mitsuba_material(file_, bsdf, id.empty() ? name : id);
+    const bool emits = (radiance > 0).any();
+    // A lamp without a BSDF, or whose surface is not there for other light, reflects nothing.
+    if (emits && (!bsdf || read.is_nothing)) {
+      read.material.reflectance = rgb(0, 0, 0);
+      read.simplified.clear();
+      read.is_nothing = false;
+    }
     for (const std::string& what : read.simplified) left_out_.add(what, read.material.name);
     if (read.is_nothing) return std::nullopt;
     read.material.exitance = std::numbers::pi * radiance;  // E = pi L
@@ -133,7 +140,8 @@ class MitsubaReader {
 
   std::uint32_t free_group(const std::string& name) {
     std::string free = name;
-    for (int copy = 2; !groups_.insert(free).second; ++copy) free = name + " (" + std::to_string(copy) + ")";
+    int& copy = copies_[name];  // the last number that was given
+    while (!groups_.insert(free).second) free = name + " (" + std::to_string(++copy + 1) + ")";
     scene_.groups.push_back(free);
     return static_cast<std::uint32_t>(scene_.groups.size() - 1);
   }
@@ -143,6 +151,7 @@ class MitsubaReader {
   Scene scene_;
   LeftOut left_out_;
   std::set<std::string> groups_;
+  std::map<std::string, int> copies_;  // of a name
   std::map<std::tuple<std::size_t, std::string, std::array<double, 3>>, std::optional<MaterialIndex>> index_;
 };
 

@@ -77,9 +77,11 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   return with_settings(std::move(scene), file.settings);
 }
 
-// The daylight that is asked for beside the files.
+// The daylight that is asked for, in the place of that of the files.
 Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
   if (!asks_for_daylight(options.daylight)) return scene;
+  if (options.daylight.weather || options.daylight.sun) scene.sun.reset();
+  if (options.daylight.weather || options.daylight.sky) scene.sky.reset();
   LightEntries lights = lights_of(options.daylight, options.confine);
   if (has_north) lights.north = scene.north;
   if (options.daylight.weather) scene.inputs.push_back(options.daylight.weather->file);
@@ -95,7 +97,9 @@ Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vecto
     keep = keep || file.keep_faces;
   }
   if (detail > 0) scene = with_less_detail(std::move(scene), detail);
-  return keep ? scene : with_joined_faces(std::move(scene));
+  if (!keep) scene = with_joined_faces(std::move(scene));
+  check(scene);
+  return scene;
 }
 
 // The sensors that a scene file asks for.

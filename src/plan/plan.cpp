@@ -68,6 +68,18 @@ std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
       " part; equations are solved by gmres, bicgstab or jacobi, as what their sides scatter depends on each other"};
 }
 
+// What solve takes rows of rays for.
+std::vector<std::string> notes_on_pairs(const Scene& scene, const Request& request) {
+  if (!keeps_entries(request.assembly.storage)) return {};
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_opening(scene, p) || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back))
+      return {
+          "form factors of pairs do not see what clear faces and mirrors reflect: that light is missing; "
+          "assembly.storage=rays follows it, as a solve does by itself"};
+  }
+  return {};
+}
+
 // Every kept side takes a patch at least. Of a model with many small faces the large ones have to be cut as well, as
 // the light varies over them: a quarter more patches than the least goes to these.
 std::size_t enough_patches(std::size_t asked, std::size_t least) {
@@ -245,6 +257,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
   auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, false);
   PatchSize size = patch_size(scene, request, sides, contacts);
+  for (std::string& note : notes_on_pairs(scene, request)) size.notes.push_back(std::move(note));
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);
   return {.sides = std::move(sides),

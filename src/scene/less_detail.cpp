@@ -1,6 +1,7 @@
 #include "scene/less_detail.h"
 
 #include "base/rounded.h"
+#include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/shells.h"
 
@@ -9,7 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
+#include <set>
 #include <utility>
 
 namespace patchlight {
@@ -72,6 +73,24 @@ bool is_near_box(const Scene& scene, const std::vector<PolygonIndex>& shell, con
     }
   }
   return true;
+}
+
+// Is the shell a body that is no room and has no hole through it? One with a hole, as a slab with a window or a frame,
+// has another Euler characteristic than a ball's, V - E + F = 2.
+bool is_solid_block(const Scene& scene, const std::vector<PolygonIndex>& shell, const Box& box, double width) {
+  constexpr double depth_of_rooms = 1;  // metres: where all sides are longer one could stand inside
+  if (!(box.sizes().minCoeff() > width) || box.sizes().minCoeff() > depth_of_rooms) return false;
+  std::set<std::uint32_t> vertices;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const PolygonIndex p : shell) {
+    const std::vector<std::uint32_t>& corners = scene.polygons[p].corners;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const std::uint32_t next = corners[(k + 1) % corners.size()];
+      vertices.insert(corners[k]);
+      edges.emplace(std::min(corners[k], next), std::max(corners[k], next));
+    }
+  }
+  return vertices.size() + shell.size() == edges.size() + 2;
 }
 
 // Does the shell, seen along each axis, fill the box but for a rim of width `detail`? Each line through a body meets
@@ -162,6 +181,7 @@ Scene with_less_detail(Scene scene, double detail) {
   const Shells found = shells_of(scene);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) shells[found.shell[p]].push_back(p);
 
+  const double width = weld_distance(scene);
   const FaceTree tree = tree_of_faces(scene, FaceOrder::by_place);
   std::vector<Polygon> polygons;
   std::size_t left_out = 0, boxes = 0;
@@ -176,8 +196,8 @@ Scene with_less_detail(Scene scene, double detail) {
     if (plain && box.sizes().maxCoeff() < detail) {
       ++left_out;
       area_left_out += own;
-    } else if (plain && shell.size() > 6 && is_near_box(scene, shell, frame, box, detail) &&
-               fills_box(scene, shell, frame, box, detail) &&
+    } else if (plain && found.closed[first] != 0 && shell.size() > 6 && is_solid_block(scene, shell, box, width) &&
+               is_near_box(scene, shell, frame, box, detail) && fills_box(scene, shell, frame, box, detail) &&
                !holds_others(scene, tree, found, first, frame, box, detail)) {
       ++boxes;
       area_of_boxes += own;

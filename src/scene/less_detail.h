@@ -7,7 +7,8 @@ namespace patchlight {
 /// The scene without what is smaller than `detail` metres. Of each shell of opaque faces without a lamp, as shells_of()
 /// has it:
 /// - nothing, when it fits into a cube of that size;
-/// - a box of six faces in its place, when it has more faces, no vertex lies farther than `detail` inside of the box,
+/// - a box of six faces in its place, when it is closed, without a hole through it, not thicker than 1 m, has more
+///   faces, no vertex lies farther than `detail` inside of the box,
 /// and
 ///   of none of the box's sides it leaves more free than a rim of that width, and nothing else is inside: its material
 ///   is that of the faces, or a new one with their mean reflectance.

@@ -1,18 +1,32 @@
 #include "scene/room_body.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <numbers>
 
 namespace patchlight {
 namespace {
 
-// The signed solid angle of a triangle: Van Oosterom and Strackee 1983, eq. 8.
-double solid_angle(const Vector& a, const Vector& b, const Vector& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double above = a.dot(b.cross(c));
-  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return 2 * std::atan2(above, below);
+// Does the ray from the origin meet the triangle? Moeller and Trumbore 1997.
+bool meets(const Vector& direction, const Vector& a, const Vector& b, const Vector& c) {
+  const Vector ab = b - a, ac = c - a;
+  const Vector across = direction.cross(ac);
+  const double determinant = ab.dot(across);
+  if (determinant == 0) return false;
+  const double u = -a.dot(across) / determinant;
+  const Vector q = (-a).cross(ab);
+  const double v = direction.dot(q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && ac.dot(q) / determinant > 0;
+}
+
+// Triangles of a fan overlap outside of a polygon that is not convex, an even number of times.
+bool is_inside(const std::vector<std::vector<Point>>& faces, const Point& point, const Vector& direction) {
+  std::size_t crossings = 0;
+  for (const std::vector<Point>& face : faces) {
+    for (std::size_t k = 2; k < face.size(); ++k)
+      crossings += meets(direction, face[0] - point, face[k - 1] - point, face[k] - point) ? 1 : 0;
+  }
+  return crossings % 2 == 1;
 }
 
 }  // namespace
@@ -25,12 +39,12 @@ RoomBody::RoomBody(const std::vector<std::vector<Point>>& faces) : faces_(faces)
 
 bool RoomBody::holds(const Point& point) const {
   if (!box_.contains(point)) return false;
-  double sum = 0;
-  for (const std::vector<Point>& face : faces_) {
-    for (std::size_t k = 2; k < face.size(); ++k)
-      sum += solid_angle(face[0] - point, face[k - 1] - point, face[k] - point);
-  }
-  return std::abs(sum) > 2 * std::numbers::pi;
+  // An edge that one ray just meets is counted twice or not at all: two of three decide.
+  const std::array<Vector, 3> directions = {Vector(0.5377, 0.2113, 0.8163), Vector(-0.7071, 0.6433, 0.2937),
+                                            Vector(0.1931, -0.8701, 0.4535)};
+  const auto votes = std::count_if(directions.begin(), directions.end(),
+                                   [&](const Vector& direction) { return is_inside(faces_, point, direction); });
+  return votes >= 2;
 }
 
 double RoomBody::step() const {

@@ -182,6 +182,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
   const auto surroundings = surroundings_of(seen);
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
+    const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
     const Lighting lighting = lighting_of(seen, *simulation.tracing);
     const SolvedLight light = solved_light(seen, simulation, lighting);
     const Lens lens(camera, scene.up, options.width, options.height);
@@ -189,6 +190,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                          {.width = options.width,
                           .height = options.height,
                           .error = options.error,
+                          .hemisphere = {.most_bounces = reflects_again ? HemisphereOptions().most_bounces : 0},
                           .seed = hash({simulation.plan.assembly.seed}),
                           .surroundings = surroundings},
                          observer);

@@ -36,6 +36,17 @@ Scene with_cylinder(Scene scene, const Point& base, double radius, double height
 
 Scene room() { return with_box(empty_scene({grey(0.5), grey(0.2)}), Point(0, 0, 0), Point(4, 3, 2.5), true); }
 
+Scene in_triangles(Scene scene) {
+  const std::size_t quads = scene.polygons.size();
+  for (std::size_t p = 0; p < quads; ++p) {
+    const std::vector<std::uint32_t> c = scene.polygons[p].corners;
+    scene.polygons.push_back(scene.polygons[p]);
+    scene.polygons.back().corners = {c[0], c[2], c[3]};
+    scene.polygons[p].corners = {c[0], c[1], c[2]};
+  }
+  return scene;
+}
+
 TEST(LessDetail, LeavesOutWhatIsSmaller) {
   const Scene scene = with_box(room(), Point(1, 1, 1), Point(1.04, 1.03, 1.02), false);
   EXPECT_EQ(with_less_detail(scene, 0.05).polygons.size(), 6u);
@@ -96,15 +107,45 @@ TEST(LessDetail, ARoomAColumnALampAndAPaneStay) {
 
 // A room in triangles is a box that holds what stands in it.
 TEST(LessDetail, ARoomOfTrianglesStays) {
-  Scene scene = with_box(room(), Point(1, 1, 1), Point(2, 2, 2), false);
-  const std::size_t quads = scene.polygons.size();
-  for (std::size_t p = 0; p < quads; ++p) {
-    const std::vector<std::uint32_t> c = scene.polygons[p].corners;
-    scene.polygons.push_back(scene.polygons[p]);
-    scene.polygons.back().corners = {c[0], c[2], c[3]};
-    scene.polygons[p].corners = {c[0], c[1], c[2]};
-  }
+  const Scene scene = in_triangles(with_box(room(), Point(1, 1, 1), Point(1.8, 1.8, 1.8), false));
   EXPECT_EQ(with_less_detail(scene, 0.05).polygons.size(), 12u + 6u);  // the box inside is one of six faces
+}
+
+TEST(LessDetail, AnEmptyRoomStays) { EXPECT_EQ(with_less_detail(in_triangles(room()), 0.1).polygons.size(), 12u); }
+
+// A tiled strip is no body.
+TEST(LessDetail, AFlatStripStays) {
+  Scene scene = room();
+  const auto begin = static_cast<std::uint32_t>(scene.vertices.size());
+  for (int x = 0; x <= 8; ++x) {
+    scene.vertices.emplace_back(1 + 0.1 * x, 1, 1);
+    scene.vertices.emplace_back(1 + 0.1 * x, 1.05, 1);
+  }
+  for (std::uint32_t x = 0; x < 8; ++x) {
+    const std::uint32_t a = begin + 2 * x;
+    scene.polygons.push_back({.corners = {a, a + 2, a + 3, a + 1}});
+  }
+  EXPECT_EQ(with_less_detail(scene, 0.1).polygons.size(), scene.polygons.size());
+}
+
+// A slab of 5 x 0.2 x 3 m with a window no larger than a rim of the detail's width: its hole stays.
+TEST(LessDetail, AWallWithAWindowStaysOpen) {
+  Scene scene = empty_scene({grey(0.5)});
+  const Eigen::Vector2d outer[4] = {{0, 0}, {5, 0}, {5, 3}, {0, 3}};
+  const Eigen::Vector2d inner[4] = {{2, 1}, {2.7, 1}, {2.7, 1.8}, {2, 1.8}};
+  for (const double y : {0.0, 0.2}) {
+    for (const auto& ring : {outer, inner}) {
+      for (int k = 0; k < 4; ++k) scene.vertices.emplace_back(ring[k].x(), y, ring[k].y());
+    }
+  }
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t next = (k + 1) % 4;
+    scene.polygons.push_back({.corners = {next, k, 8 + k, 8 + next}});
+    scene.polygons.push_back({.corners = {4 + k, 4 + next, 12 + next, 12 + k}});
+    scene.polygons.push_back({.corners = {k, next, 4 + next, 4 + k}});
+    scene.polygons.push_back({.corners = {8 + next, 8 + k, 12 + k, 12 + next}});
+  }
+  EXPECT_EQ(with_less_detail(scene, 0.05).polygons.size(), scene.polygons.size());
 }
 
 TEST(LessDetail, OfTwoMaterialsABoxHasTheMean) {

@@ -39,6 +39,15 @@ TEST(RoomBody, ThatIsTurnedInsideOutHoldsTheSame) {
   expect_l_shape(RoomBody(faces));
 }
 
+// As a wall between two rooms is turned for one of them.
+TEST(RoomBody, WithOneFaceTurnedHoldsTheSame) {
+  for (std::size_t turned = 0; turned < l_shape().size(); ++turned) {
+    std::vector<std::vector<Point>> faces = l_shape();
+    std::reverse(faces[turned].begin(), faces[turned].end());
+    expect_l_shape(RoomBody(faces));
+  }
+}
+
 TEST(RoomBody, WithoutFacesHoldsNothing) { EXPECT_FALSE(RoomBody({}).holds({0, 0, 0})); }
 
 }  // namespace
