@@ -1,5 +1,6 @@
 #include "scene/less_detail.h"
 
+#include "scene/repair.h"
 #include "support/scenes.h"
 
 #include <cmath>
@@ -108,10 +109,12 @@ TEST(LessDetail, ARoomAColumnALampAndAPaneStay) {
 // A room in triangles is a box that holds what stands in it.
 TEST(LessDetail, ARoomOfTrianglesStays) {
   const Scene scene = in_triangles(with_box(room(), Point(1, 1, 1), Point(1.8, 1.8, 1.8), false));
-  EXPECT_EQ(with_less_detail(scene, 0.05).polygons.size(), 12u + 6u);  // the box inside is one of six faces
+  EXPECT_EQ(with_less_detail(repair(scene), 0.05).polygons.size(), 12u + 6u);  // the box inside is one of six faces
 }
 
-TEST(LessDetail, AnEmptyRoomStays) { EXPECT_EQ(with_less_detail(in_triangles(room()), 0.1).polygons.size(), 12u); }
+TEST(LessDetail, AnEmptyRoomStays) {
+  EXPECT_EQ(with_less_detail(repair(in_triangles(room())), 0.1).polygons.size(), 12u);
+}
 
 // A tiled strip is no body.
 TEST(LessDetail, AFlatStripStays) {
