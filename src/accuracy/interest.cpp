@@ -108,9 +108,10 @@ void require_names(const Scene& scene, const std::vector<std::string>& names) {
     if (known.contains(interest_named(name, known).name)) continue;
     const std::vector<std::string> all(known.begin(), known.end());
     const std::string hint = suggestion(name, all);
-    throw InputError(scene.file, "found no material, object, group or room '" + name + "' to be interested in" + hint +
-                                     (hint.empty() ? "; expected one of " + first_of(all) : " Expected a name") +
-                                     ", or one with .inside or .outside");
+    std::string message = "found no material, object, group or room '" + name + "' to be interested in" + hint;
+    message += hint.empty() ? "; expected one of " + first_of(all) : " Expected a name";
+    message += ", or one with .inside or .outside";
+    throw InputError(scene.file, message);
   }
 }
 

@@ -106,7 +106,7 @@ Spectrum bands_of(const Json& json, Eigen::Index bands) {
 }
 
 Vector unit_of(const Json& json) {
-  const Vector vector = vector_of(json);
+  Vector vector = vector_of(json);
   constexpr double off_unit = 1e-6;
   require(std::abs(vector.norm() - 1) < off_unit, "a direction is not of length 1");
   return vector;
