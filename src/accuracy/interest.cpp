@@ -108,7 +108,8 @@ void require_names(const Scene& scene, const std::vector<std::string>& names) {
     if (known.contains(interest_named(name, known).name)) continue;
     const std::vector<std::string> all(known.begin(), known.end());
     const std::string hint = suggestion(name, all);
-    std::string message = "found no material, object, group or room '" + name + "' to be interested in" + hint;
+    std::string message = "found no material, object, group or room '" + name + "' to be interested in";
+    message += hint;
     message += hint.empty() ? "; expected one of " + first_of(all) : " Expected a name";
     message += ", or one with .inside or .outside";
     throw InputError(scene.file, message);

@@ -163,7 +163,7 @@ std::vector<FinalGather::Candidate> FinalGather::candidates_in_row(int y, int st
     if (cache_.weight_at(at.point, solved_.mesh.normal[at.patch]) < enough_weight)
       wanted.push_back({at, false, lens_.pixel_width(distance)});
   };
-  for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
     if (!seen.patch || !is_plain(*seen.patch)) continue;
     add({seen.point, *seen.patch}, seen.distance);
     if (const auto other = behind(*seen.patch)) add({seen.point, *other}, seen.distance);
@@ -256,7 +256,7 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
   std::vector<Lit> lit;
   std::vector<LitPoint> points;
   std::map<PatchIndex, SkyAim> aims;
-  const auto add = [&](const Seen& seen, PatchIndex patch, const Spectrum& factor) {
+  const auto add = [&](const SeenPatch& seen, PatchIndex patch, const Spectrum& factor) {
     if (!(factor > 0).any()) return;
     const EyeSample& sample = samples.all[samples.of_rays[seen.ray]];
     lit.push_back({samples.of_rays[seen.ray], {seen.point, patch}, factor});
@@ -269,7 +269,7 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
     const SurfacePoint at{seen.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
     points.push_back({at, sample.index, hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), 3}), aim});
   };
-  for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
     if (seen.outlook) all.outlook[ray] += seen.share;
     if (!seen.patch) {
@@ -386,7 +386,7 @@ void FinalGather::see_layers() {
         at.push_back(index(x, y));
       }
     }
-    for (const Seen& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;

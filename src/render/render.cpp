@@ -76,7 +76,7 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const Tile& tile = tiles[index];
     const auto [rays, pixels] = camera_rays(lens, options, tile);
-    for (const Seen& seen : seen_by(occluder, lookup, rays)) {
+    for (const SeenPatch& seen : seen_by(occluder, lookup, rays)) {
       const int pixel = static_cast<int>(pixels[seen.ray]);
       const Eigen::Index x = tile.left + pixel % tile.width();
       const Eigen::Index y = tile.top + pixel / tile.width();

@@ -31,8 +31,8 @@ struct UnderWay {
 
 }  // namespace
 
-std::vector<Seen> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays) {
-  std::vector<Seen> seen;
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays) {
+  std::vector<SeenPatch> seen;
   UnderWay now;
   for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1, 0, false);
   for (int crossing = 0; crossing <= most_crossings && !now.rays.empty(); ++crossing) {

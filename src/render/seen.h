@@ -13,7 +13,7 @@
 namespace patchlight {
 
 /// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
-struct Seen {
+struct SeenPatch {
   std::size_t ray = 0;
   std::optional<PatchIndex> patch;
   Point point;  ///< on the patch
@@ -25,6 +25,6 @@ struct Seen {
 
 /// What rays see: the first patch that each meets and, as long as that is clear or a mirror, what is behind it and in
 /// it. Rays pass sides without patches: they go on from there.
-std::vector<Seen> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays);
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays);
 
 }  // namespace patchlight
