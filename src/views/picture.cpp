@@ -82,7 +82,7 @@ struct PictureLamps {
   Field exitance;  // of their patches, 0 of all others
 };
 
-// SeenPatch from its front, a face's corners go round counter-clockwise.
+// Seen from its front, a face's corners go round counter-clockwise.
 LampFace seen_from_front(LampFace face, Side side) {
   if (side == Side::front) return face;
   const auto [a, b, c, d] = face.corners;
