@@ -1,5 +1,6 @@
 #include "archive/lights_json.h"
 
+#include "plan/survey.h"
 #include "scene/photometric_web.h"
 #include "scene/projection.h"
 
@@ -19,7 +20,6 @@
 namespace patchlight {
 namespace {
 
-constexpr std::array<const char*, 4> sky_kinds = {"uniform", "cie_overcast", "cie_clear", "perez"};
 constexpr std::array<const char*, 3> web_types = {"a", "b", "c"};
 
 template <std::size_t n>
@@ -145,8 +145,15 @@ Luminaire luminaire_of(const Json& json, Eigen::Index bands) {
   return luminaire;
 }
 
+SkyKind sky_kind_named(const std::string& name) {
+  for (const SkyKind kind : {SkyKind::uniform, SkyKind::cie_overcast, SkyKind::cie_clear, SkyKind::perez}) {
+    if (name == name_of(kind)) return kind;
+  }
+  throw std::out_of_range("found a sky '" + name + "'");
+}
+
 Json json_of_sky(const Sky& sky) {
-  return {{"kind", sky_kinds[static_cast<std::size_t>(sky.kind)]},
+  return {{"kind", name_of(sky.kind)},
           {"horizontal_irradiance", json_of(sky.horizontal_irradiance)},
           {"zenith_radiance", json_of(sky.zenith_radiance)},
           {"sun_direction", json_of(sky.sun_direction)},
@@ -157,7 +164,7 @@ Json json_of_sky(const Sky& sky) {
 
 Sky sky_of(const Json& json, Eigen::Index bands) {
   Sky sky;
-  sky.kind = static_cast<SkyKind>(place_in(sky_kinds, json.at("kind").get<std::string>()));
+  sky.kind = sky_kind_named(json.at("kind").get<std::string>());
   const auto none_or_all = [&](const char* key) {
     const Json& values = json.at(key);
     return values.empty() ? Spectrum() : bands_of(values, bands);

@@ -244,14 +244,12 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   const ReadOptions& read = arguments.read;
   const bool has_more = read.metres_per_unit != 1 || read.up || !read.settings.empty() || !read.only.empty() ||
                         !read.leave_out.empty() || read.detail > 0 || read.keep_faces || !read.format.empty();
-  const std::string more = has_more ? " and the options given here" : "";
   const std::string result = arguments.models.front().stem().string();
-  if (needs_sensors)
-    return "next: patchlight new" + models + " -o " + quoted(result + ".toml") +
-           ", a scene file with sensors in its rooms" + (more.empty() ? "" : ";" + more.substr(4) + " belong to it") +
-           "\n";
-  return "next: patchlight solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
-         quoted(result + ".vtp") + " --picture " + quoted(result + ".png") + more + '\n';
+  const std::string command = needs_sensors
+                                  ? "new" + models + " -o " + quoted(result + ".toml")
+                                  : "solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
+                                        quoted(result + ".vtp") + " --picture " + quoted(result + ".png");
+  return "next: patchlight " + command + (has_more ? " and the options given here" : "") + '\n';
 }
 
 }  // namespace

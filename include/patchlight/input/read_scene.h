@@ -85,8 +85,8 @@ std::vector<std::string> readable_formats();
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// A scene that was read before, with the settings, the upright axis and the daylight of these options, which takes the
-/// place of its own. \throws InputError when no
-/// material bears the name of a setting, or settings make a material that check() refuses.
+/// place of its own. \throws InputError when no material bears the name of a setting, or settings make a material that
+/// check() refuses.
 Scene with_options(Scene scene, const ReadOptions& options);
 
 /// Reads several models as one scene. Materials with the same name and values become one; those that only share the
