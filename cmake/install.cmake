@@ -31,5 +31,5 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is li
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
 include(CPack)
