@@ -5,6 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
 install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
 install(FILES docs/patchlight.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
 install(TARGETS patchlight_core patchlight_io EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
