@@ -61,6 +61,20 @@ std::string not_reached(const Comparison& comparison) {
   return names;
 }
 
+void write_page_of_comparison(const CompareArguments& arguments, const Scene& scene, const Comparison& comparison,
+                              const Provenance& provenance, const Observer& observer) {
+  const Simulation& simulation = comparison.simulation;
+  const SolvedSurface surface = surface_of(scene, simulation);
+  const Report report = report_of(scene, arguments.request, simulation);
+  const Picture picture = take_picture(scene, simulation, {}, observer);
+  write_page(arguments.page, {.scene = scene,
+                              .provenance = provenance,
+                              .surface = &surface,
+                              .report = &report,
+                              .pictures = {&picture},
+                              .comparison = &comparison});
+}
+
 }  // namespace
 
 ExitCode compare(const CompareArguments& arguments) {
@@ -88,13 +102,7 @@ ExitCode compare(const CompareArguments& arguments) {
   const WritingGuard guard;
   const Provenance provenance{arguments.command_line, exposure, scene_hash(scene)};
   write_comparison(arguments.output, scene, comparison, provenance, observer);
-  if (!arguments.page.empty()) {
-    const SolvedSurface surface = surface_of(scene, simulation);
-    const Report report = report_of(scene, arguments.request, simulation);
-    write_page(
-        arguments.page,
-        {.scene = scene, .provenance = provenance, .surface = &surface, .report = &report, .comparison = &comparison});
-  }
+  if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();
   if (!arguments.quiet) {
     for (const std::string& note : notes(scene, simulation)) print_message("note", note);

@@ -64,6 +64,14 @@ class ModuleTest(unittest.TestCase):
         # 179 lm/W, Rec. 709
         numpy.testing.assert_allclose(s.illuminance, s.irradiance @ (179 * numpy.array([0.2126, 0.7152, 0.0722])), rtol=2e-4)
 
+    def test_cells_cover_the_area(self):
+        cells = self.solved.cells()
+        areas = []
+        for begin, end in zip(cells["offsets"], cells["offsets"][1:]):
+            ring = cells["points"][cells["connectivity"][begin:end]]
+            areas.append(numpy.linalg.norm(numpy.cross(ring, numpy.roll(ring, -1, axis=0)).sum(axis=0)) / 2)
+        numpy.testing.assert_allclose(areas, self.solved.area, rtol=1e-9)
+
     def test_materials_may_be_changed(self):
         scene = self.scene.copy()
         lamp = next(material for material in scene.materials if max(material.exitance) > 0)

@@ -26,10 +26,12 @@ function axisOf(values, logarithmic) {
   return {at: (value) => (value - low) / (high - low), ticks, logarithmic};
 }
 
+const tickText = (tick) => tick !== 0 && (tick < 1e-3 || tick >= 1e5) ? tick.toExponential(0) : shown(tick, 3);
+
 const curveColours = ["#3b78c2", "#d06a2c", "#3f9a58", "#b0403f", "#8366b4", "#8a6d4f", "#c769ae", "#7a7a7a", "#a5a52a", "#2aa0a8", "#5560d0", "#c09020"];
 
 function chart(caption, curves, xAxis, yAxis) {
-  const width = 640, height = 340, left = 80, right = 150, top = 16, bottom = 48;
+  const width = 720, height = 340, left = 80, right = 220, top = 16, bottom = 48;
   const points = curves.flatMap((curve) => curve.points);
   const x = axisOf(points.map((point) => point[0]), xAxis.logarithmic);
   const y = axisOf(points.map((point) => point[1]), yAxis.logarithmic);
@@ -40,11 +42,11 @@ function chart(caption, curves, xAxis, yAxis) {
   const text = (words, attributes) => svg("text", attributes, words);
   for (const tick of x.ticks) {
     drawn.append(svg("line", {class: "axis", x1: toX(tick), x2: toX(tick), y1: top, y2: height - bottom}));
-    drawn.append(text(shown(tick, 3), {x: toX(tick), y: height - bottom + 16, "text-anchor": "middle"}));
+    drawn.append(text(tickText(tick), {x: toX(tick), y: height - bottom + 16, "text-anchor": "middle"}));
   }
   for (const tick of y.ticks) {
     drawn.append(svg("line", {class: "axis", x1: left, x2: width - right, y1: toY(tick), y2: toY(tick)}));
-    drawn.append(text(shown(tick, 3), {x: left - 6, y: toY(tick) + 4, "text-anchor": "end"}));
+    drawn.append(text(tickText(tick), {x: left - 6, y: toY(tick) + 4, "text-anchor": "end"}));
   }
   drawn.append(text(xAxis.label, {x: (left + width - right) / 2, y: height - 8, "text-anchor": "middle"}));
   drawn.append(text(yAxis.label, {x: 14, y: (top + height - bottom) / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${(top + height - bottom) / 2})`}));

@@ -2,6 +2,8 @@
 import html
 import json
 
+import numpy
+
 from patchlight import _core
 from patchlight.options import picture_arguments_of
 
@@ -26,6 +28,15 @@ def picture(self, **options):
     return self._picture(picture_arguments_of(options))
 
 
+def cells(self):
+    """The patches as VTK, meshio and pyvista take them: points (metres), connectivity and offsets of triangles and
+    quadrilaterals; patch i has the corners connectivity[offsets[i]:offsets[i + 1]]."""
+    corners = self.corners
+    counts = numpy.where(corners[:, 2] == corners[:, 3], 3, 4)
+    kept = numpy.arange(4)[None, :] < counts[:, None]
+    return {"points": self.vertices, "connectivity": corners[kept], "offsets": numpy.concatenate([[0], numpy.cumsum(counts)])}
+
+
 def shown_in_notebook(self):
     """The page in a frame of its own."""
     page = html.escape(self.page().decode("utf-8"), quote=True)
@@ -36,6 +47,7 @@ def described(self):
     return f"<patchlight.Simulation of {self.size} patches>"
 
 
+_core.Simulation.cells = cells
 _core.Simulation.report = report
 _core.Simulation.write_page = write_page
 _core.Simulation.picture = picture
