@@ -45,7 +45,7 @@ def main(build, version, cmake, _compiler):
         for package in ("libembree3-3", "libtbb12", "libvtk9.1", "libc6", "libstdc++6"):
             assert package in needed, f"patchlight does not depend on {package}: {needed}"
         assert not any(package.endswith("-dev") for package in needed), needed
-        wanted = set(re.findall(r"lib[a-z0-9+-]+-dev|nlohmann-json3-dev",
+        wanted = set(re.findall(r"\bz?lib[a-z0-9+-]+-dev|nlohmann-json3-dev",
                                 (ROOT / "scripts" / "install_packages.sh").read_text()))
         missing = wanted - {"libcli11-dev", "libgtest-dev", "libclang-rt-14-dev", "libbenchmark-dev"} - set(dependencies(debs["libpatchlight-dev"]))
         assert not missing, f"libpatchlight-dev does not depend on {missing}"
