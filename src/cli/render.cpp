@@ -1,8 +1,10 @@
 #include "cli/render.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/views/views.h"
 
 #include "archive/read_solution.h"
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -11,6 +13,8 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/whole_file.h"
+#include "page/write_page.h"
+#include "render/tone_map.h"
 #include "scene/limits.h"
 
 #include <algorithm>
@@ -56,6 +60,18 @@ void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& 
   }
 }
 
+void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
+                            const std::vector<Picture>& pictures) {
+  const SolvedSurface surface = surface_of(scene, simulation);
+  Page page{.scene = scene,
+            .provenance = {.command_line = arguments.command_line, .scene_hash = scene_hash(scene)},
+            .surface = &surface};
+  const Eigen::VectorXd& area = simulation.problem.area;
+  page.provenance.exposure = exposure_for(display_radiance(simulation), area, bands_of(scene));
+  for (const Picture& picture : pictures) page.pictures.push_back(&picture);
+  write_page(arguments.page, page);
+}
+
 }  // namespace
 
 ExitCode render(const RenderArguments& arguments) {
@@ -65,6 +81,7 @@ ExitCode render(const RenderArguments& arguments) {
     check_writable(one.file);
     if (!one.error_map.empty()) check_writable(one.error_map);
   }
+  if (!arguments.page.empty()) check_writable(arguments.page);
 
   // 2. Read the scene and its solution
   const ThreadLimit limit(arguments.threads);
@@ -79,17 +96,25 @@ ExitCode render(const RenderArguments& arguments) {
   keep_what_is_there();
   std::vector<std::filesystem::path> written;
   bool unfinished = false;
+  std::vector<Picture> taken;
   for (const PictureSettings& one : wanted) {
     if (!may_write_what_is_there() || unfinished) break;
-    const Picture picture = make_picture(one, scene, simulation, observer);
+    Picture picture = make_picture(one, scene, simulation, observer);
     unfinished = picture.unfinished;
     if (!may_write_what_is_there()) throw Cancelled();
     const WritingGuard guard;
     write_picture_file(one.file, picture, scene);
     written.push_back(one.file);
-    if (one.error_map.empty()) continue;
-    write_error_map(one.error_map, picture);
-    written.push_back(one.error_map);
+    if (!one.error_map.empty()) {
+      write_error_map(one.error_map, picture);
+      written.push_back(one.error_map);
+    }
+    if (!arguments.page.empty()) taken.push_back(std::move(picture));
+  }
+  if (!taken.empty()) {
+    const WritingGuard guard;
+    write_page_of_pictures(arguments, scene, simulation, taken);
+    written.push_back(arguments.page);
   }
   line.hide();
   if (!arguments.quiet) std::cout << files_line(written) << std::flush;

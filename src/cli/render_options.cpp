@@ -3,6 +3,7 @@
 #include "cli/add_option.h"
 #include "cli/distinct_files.h"
 #include "cli/model_options.h"
+#include "cli/page_option.h"
 #include "cli/parse_value.h"
 #include "cli/picture_options.h"
 
@@ -15,7 +16,7 @@ namespace patchlight::cli {
 struct RenderOptionsGiven {
   ModelOptions model;
   PictureGiven picture;
-  std::string solution;
+  std::string solution, page;
   int threads = 0;
   bool quiet = false;
 };
@@ -38,6 +39,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
         to.picture.file = text;
       });
   add_picture_options(command, to.picture, PictureQuality::final);
+  add_page_option(command, to.page);
   command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&to](const std::string& text) { to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
@@ -55,13 +57,16 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.solution = options.solution;
+  arguments.page = options.page;
   arguments.picture = picture_settings(options.picture, "-o", PictureQuality::final);
   arguments.threads = options.threads;
   arguments.quiet = options.quiet;
   std::vector<std::filesystem::path> read = arguments.models;
   read.push_back(arguments.solution);
-  require_distinct(picture_files(arguments.picture, "-o"));
-  require_not_read(picture_files(arguments.picture, "-o"), read);
+  std::vector<OutputFile> files = picture_files(arguments.picture, "-o");
+  files.push_back({"--html", arguments.page});
+  require_distinct(files);
+  require_not_read(files, read);
   return arguments;
 }
 
