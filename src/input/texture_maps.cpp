@@ -53,6 +53,7 @@ std::array<Spectrum, 3> primaries_times(const Spectrum& factor) {
 
 std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const Eigen::Vector2d> places,
                                std::uint32_t line) {
+  if (!(area_vector(corners).norm() > 0)) return no_texture_map;
   const bool known = places.size() == corners.size() && std::all_of(places.begin(), places.end(), [](const auto& at) {
                        return at.allFinite() && at.cwiseAbs().maxCoeff() <= farthest_place;
                      });
