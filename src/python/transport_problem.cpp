@@ -32,7 +32,7 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   return factors;
 }
 
-TransportProblem transport_problem(std::shared_ptr<const Scene> scene, const Request& request,
+TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer) {
   // 1. The form factors as they are found: a run closes them
   Request raw = request;

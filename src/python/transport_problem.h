@@ -22,7 +22,7 @@ struct TransportProblem {
 Field sensor_factors(const TransportProblem& problem, const Observer& observer);
 
 /// Traces and closes form factors, and keeps them. \throws InputError, MemoryError, Cancelled.
-TransportProblem transport_problem(std::shared_ptr<const Scene> scene, const Request& request,
+TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer);
 
 }  // namespace patchlight
