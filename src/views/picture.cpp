@@ -177,6 +177,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                      const Observer& observer) {
   const Occluder& occluder = simulation.tracing->all_faces(scene);
   const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
+  const Vector up = picture_up(camera, scene.up, scene.north);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
   const auto surroundings = surroundings_of(seen);
@@ -185,7 +186,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
     const Lighting lighting = lighting_of(seen, *simulation.tracing);
     const SolvedLight light = solved_light(seen, simulation, lighting);
-    const Lens lens(camera, scene.up, options.width, options.height);
+    const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
                          {.width = options.width,
                           .height = options.height,
@@ -196,7 +197,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                          observer);
   } else {
     const RenderOptions fineness{.width = options.width, .height = options.height, .surroundings = surroundings};
-    taken.image = render(simulation.mesh, radiance, occluder, camera, scene.up, fineness, observer);
+    taken.image = render(simulation.mesh, radiance, occluder, camera, up, fineness, observer);
   }
   return shown(std::move(taken), camera, options.colors, bands_of(scene));
 }
