@@ -5,6 +5,7 @@
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky.h"
+#include "lighting/sky_openings.h"
 #include "pipeline/lamps_apart.h"
 #include "plan/planned_scene.h"
 #include "render/final_gather.h"
@@ -184,7 +185,8 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
-    const Lighting lighting = lighting_of(seen, *simulation.tracing);
+    Lighting lighting = lighting_of(seen, *simulation.tracing);
+    lighting.openings = openings_apart(lighting.openings, lighting.paths);
     const SolvedLight light = solved_light(seen, simulation, lighting);
     const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
