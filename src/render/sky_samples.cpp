@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,8 +18,8 @@
 namespace patchlight {
 namespace {
 
-// Of so few triangles each point knows how much of its hemisphere they fill; of more, its patch says which it looks at.
-constexpr std::size_t few_triangles = 24;
+// Each point looks at so many triangles, to know how much of its hemisphere they fill.
+constexpr std::size_t most_triangles = 32;
 
 // What is seen as smaller than this, sr, is left to rays over the hemisphere.
 constexpr double least_solid_angle = 1e-8;
@@ -27,10 +27,10 @@ constexpr double least_solid_angle = 1e-8;
 // Seeds of the two kinds of rays of a point.
 enum SkyPurpose : std::uint32_t { to_openings = 21, over_hemisphere };
 
-// The triangles of openings, and how often rays go to each.
-struct Targets {
-  std::vector<const std::array<Point, 3>*> triangles;
-  std::vector<double> probabilities;
+// A triangle of an opening as a point sees it, and how probable it is for a ray.
+struct Target {
+  SphericalTriangle triangle;
+  double probability = 0;
 };
 
 // A ray to the sky. What arrives is `factor` times the radiance there and the share that gets through.
@@ -41,103 +41,69 @@ struct SkyRay {
   bool is_aimed = false;
 };
 
-Targets normalised(Targets targets) {
-  double sum = 0;
-  for (const double weight : targets.probabilities) sum += weight;
-  if (!(sum > 0)) return {};
-  for (double& probability : targets.probabilities) probability /= sum;
-  return targets;
-}
-
-std::size_t triangles_of_aim(const Lighting& lighting, const SkyAim& aim) {
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < aim.probabilities.size(); ++k)
-    if (aim.probabilities[k] > 0) count += lighting.openings[k].triangles.size();
-  return count;
-}
-
-// As often as a triangle fills the hemisphere, with its cosine.
-Targets targets_of_point(const Lighting& lighting, const SkyAim& aim, const SurfacePoint& at) {
-  Targets targets;
-  for (std::size_t k = 0; k < aim.probabilities.size(); ++k) {
-    if (!(aim.probabilities[k] > 0)) continue;
-    const Opening& opening = lighting.openings[k];
-    const bool is_before = opening.normal.dot(at.point - opening.centre) > 0;
-    for (const std::array<Point, 3>& triangle : opening.triangles) {
-      std::array<Point, 3> corners = triangle;
-      if (!is_before) std::swap(corners[1], corners[2]);
-      const double form_factor = point_to_polygon(at.point, at.normal, corners);
-      if (!(form_factor > least_solid_angle)) continue;
-      targets.triangles.push_back(&triangle);
-      targets.probabilities.push_back(form_factor);
-    }
-  }
-  return normalised(std::move(targets));
-}
-
-// As often as the aim says of their opening, by their areas.
-Targets targets_of_aim(const Lighting& lighting, const SkyAim& aim) {
-  Targets targets;
-  for (std::size_t k = 0; k < aim.probabilities.size(); ++k) {
-    if (!(aim.probabilities[k] > 0)) continue;
-    const Opening& opening = lighting.openings[k];
-    for (std::size_t t = 0; t < opening.triangles.size(); ++t) {
-      const double area = opening.upto[t] - (t == 0 ? 0 : opening.upto[t - 1]);
-      targets.triangles.push_back(&opening.triangles[t]);
-      targets.probabilities.push_back(aim.probabilities[k] * area / opening.area);
-    }
-  }
-  return normalised(std::move(targets));
-}
-
-// Of rays to these, 1/sr.
-double density(const Targets& targets, const Point& from, const Vector& direction) {
-  double sum = 0;
-  for (std::size_t k = 0; k < targets.triangles.size(); ++k) {
-    const auto& [a, b, c] = *targets.triangles[k];
-    // The same side of the three planes through its edges
-    const double first = direction.dot((a - from).cross(b - from));
-    const double second = direction.dot((b - from).cross(c - from));
-    if ((first > 0) != (second > 0)) continue;
-    const double third = direction.dot((c - from).cross(a - from));
-    if ((first > 0) != (third > 0) || !(direction.dot(a + b + c - 3 * from) > 0)) continue;
-    const double solid_angle = SphericalTriangle(from, *targets.triangles[k]).solid_angle();
-    if (solid_angle > least_solid_angle) sum += targets.probabilities[k] / solid_angle;
-  }
-  return sum;
-}
-
 // The rays of all points, and where they aim.
 class SkySampler {
  public:
   SkySampler(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays)
-      : lighting_(lighting), points_(points), count_(rays) {
-    for (std::size_t k = 0; k < points.size(); ++k)
+      : lighting_(lighting), points_(points), count_(rays), begin_(points.size() + 1, 0) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
       if (points[k].aim != nullptr) add(k);
+      begin_[k + 1] = targets_.size();
+    }
   }
 
   Field irradiance() const;
 
  private:
   void add(std::size_t index);
+  void add_targets(std::size_t index);
   void add_ray(std::size_t index, const Vector& direction, std::uint32_t of_so_many, bool is_aimed);
-  const Targets& targets(std::size_t index) const;
+  const Target& chosen(std::size_t index, double& u) const;
+  double density(std::size_t index, const Vector& direction) const;
 
   const Lighting& lighting_;
   std::span<const LitPoint> points_;
   std::uint32_t count_;
+  std::vector<Target> targets_;     // point after point
+  std::vector<std::size_t> begin_;  // of each point's
   std::vector<SkyRay> rays_;
   std::vector<Segment> segments_;
-  std::map<std::size_t, Targets> of_points_;
-  std::map<const SkyAim*, Targets> of_aims_;
 };
 
-const Targets& SkySampler::targets(std::size_t index) const {
-  static const Targets none;
-  const auto of_point = of_points_.find(index);
-  if (of_point != of_points_.end()) return of_point->second;
-  const auto of_aim = of_aims_.find(points_[index].aim);
-  return of_aim != of_aims_.end() ? of_aim->second : none;
+// As often as a triangle fills the hemisphere, about, with its cosine.
+void SkySampler::add_targets(std::size_t index) {
+  const SurfacePoint& at = points_[index].at;
+  const std::vector<double>& probabilities = points_[index].aim->probabilities;
+  double sum = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    for (const std::array<Point, 3>& corners : lighting_.openings[k].triangles) {
+      const SphericalTriangle triangle(at.point, corners);
+      const double weight = triangle.solid_angle() * triangle.mean_cosine(at.normal);
+      if (!(weight > least_solid_angle)) continue;
+      targets_.push_back({triangle, weight});
+      sum += weight;
+    }
+  }
+  for (std::size_t k = begin_[index]; k < targets_.size(); ++k) targets_[k].probability /= sum;
+}
+
+// The one that a number of [0, 1) falls into; leaves where in it.
+const Target& SkySampler::chosen(std::size_t index, double& u) const {
+  std::size_t k = begin_[index];
+  for (; k + 1 < targets_.size() && u >= targets_[k].probability; ++k) u -= targets_[k].probability;
+  u = std::min(1.0, u / targets_[k].probability);
+  return targets_[k];
+}
+
+// Of the rays to openings, 1/sr.
+double SkySampler::density(std::size_t index, const Vector& direction) const {
+  double sum = 0;
+  for (std::size_t k = begin_[index]; k < begin_[index + 1]; ++k) {
+    const Target& target = targets_[k];
+    if (target.triangle.contains(direction)) sum += target.probability / target.triangle.solid_angle();
+  }
+  return sum;
 }
 
 void SkySampler::add_ray(std::size_t index, const Vector& direction, std::uint32_t of_so_many, bool is_aimed) {
@@ -151,20 +117,11 @@ void SkySampler::add_ray(std::size_t index, const Vector& direction, std::uint32
 
 void SkySampler::add(std::size_t index) {
   const LitPoint& point = points_[index];
-  const SkyAim& aim = *point.aim;
-  if (!aim.probabilities.empty()) {
-    if (triangles_of_aim(lighting_, aim) <= few_triangles)
-      of_points_.emplace(index, targets_of_point(lighting_, aim, point.at));
-    else if (!of_aims_.contains(&aim))
-      of_aims_.emplace(&aim, targets_of_aim(lighting_, aim));
-  }
-  const Targets& to = targets(index);
-  const std::uint32_t aimed = to.triangles.empty() ? 0 : (count_ + 1) / 2;
+  if (!point.aim->probabilities.empty()) add_targets(index);
+  const std::uint32_t aimed = targets_.size() == begin_[index] ? 0 : std::max(1U, count_ - 1);
   for (std::uint32_t k = 0; k < aimed; ++k) {
-    const auto u = pixel_sample(point.sample * aimed + k, hash({point.seed, to_openings}));
-    const Choice choice = choose(to.probabilities, u[0]);
-    const SphericalTriangle triangle(point.at.point, *to.triangles[choice.index]);
-    if (triangle.solid_angle() > least_solid_angle) add_ray(index, triangle.direction(choice.rest, u[1]), aimed, true);
+    auto u = pixel_sample(point.sample * aimed + k, hash({point.seed, to_openings}));
+    add_ray(index, chosen(index, u[0]).triangle.direction(u[0], u[1]), aimed, true);
   }
   const std::uint32_t others = std::max(1U, count_ - aimed);
   for (std::uint32_t k = 0; k < others; ++k) {
@@ -182,7 +139,7 @@ Field SkySampler::irradiance() const {
     const SkyRay& ray = rays_[k];
     // What gets in through openings is the business of the rays that go there, all else that of the others: where all
     // light comes through openings, those over the hemisphere add no noise.
-    const double aimed = density(targets(ray.point), points_[ray.point].at.point, ray.direction);
+    const double aimed = density(ray.point, ray.direction);
     if (ray.is_aimed != (aimed > 0)) continue;
     const double factor = ray.is_aimed ? ray.factor / aimed : ray.factor;
     sum.row(static_cast<Eigen::Index>(ray.point)) +=
@@ -192,6 +149,19 @@ Field SkySampler::irradiance() const {
 }
 
 }  // namespace
+
+SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings) {
+  std::vector<std::size_t> order(aim.probabilities.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return aim.probabilities[a] > aim.probabilities[b]; });
+  std::size_t triangles = 0;
+  for (const std::size_t k : order) {
+    triangles += openings[k].triangles.size();
+    if (triangles > most_triangles) aim.probabilities[k] = 0;
+  }
+  return aim;
+}
 
 Field sky_samples(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays) {
   return SkySampler(lighting, points, rays).irradiance();

@@ -15,23 +15,26 @@ Vector across(const Vector& vector, const Vector& axis) { return (vector - vecto
 SphericalTriangle::SphericalTriangle(const Point& from, const std::array<Point, 3>& corners)
     : a_((corners[0] - from).normalized()), b_((corners[1] - from).normalized()), c_((corners[2] - from).normalized()) {
   if (a_.dot(b_.cross(c_)) < 0) std::swap(b_, c_);
+  ab_ = a_.cross(b_);
+  bc_ = b_.cross(c_);
+  ca_ = c_.cross(a_);
   // tan(omega / 2) = a . (b x c) / (1 + a.b + b.c + c.a): Van Oosterom and Strackee 1983, eq. 8
-  solid_angle_ = 2 * std::atan2(a_.dot(b_.cross(c_)), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_));
-  if (!(solid_angle_ > 0)) solid_angle_ = 0;
-  const Vector ab = across(b_, a_), ac = across(c_, a_);
-  alpha_ = std::atan2(ab.cross(ac).norm(), ab.dot(ac));
+  solid_angle_ = std::max(0.0, 2 * std::atan2(a_.dot(bc_), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_)));
 }
 
 Vector SphericalTriangle::direction(double u, double v) const {
+  // The angle at a
+  const Vector to_b = across(b_, a_), to_c = across(c_, a_);
+  const double cosine = std::clamp(to_b.dot(to_c), -1.0, 1.0), sine = to_b.cross(to_c).norm();
+  const double alpha = std::atan2(sine, cosine);
   // The part of the triangle on b's side of the great circle through b and c' has u of its area.
-  const double phi = u * solid_angle_ - alpha_;
+  const double phi = u * solid_angle_ - alpha;
   const double s = std::sin(phi), t = std::cos(phi);
-  const double sine = std::sin(alpha_), cosine = std::cos(alpha_);
   const double p = t - cosine;
   const double q = s + sine * a_.dot(b_);
   const double below = (q * s + p * t) * sine;
   const double along = below == 0 ? 1 : std::clamp(((q * t - p * s) * cosine - q) / below, -1.0, 1.0);
-  const Vector c = along * a_ + std::sqrt(1 - along * along) * across(c_, a_);
+  const Vector c = along * a_ + std::sqrt(1 - along * along) * to_c;
   const double z = 1 - v * (1 - c.dot(b_));
   const Vector side = c - c.dot(b_) * b_;
   if (!(side.norm() > 0)) return b_;
@@ -39,7 +42,11 @@ Vector SphericalTriangle::direction(double u, double v) const {
 }
 
 bool SphericalTriangle::contains(const Vector& direction) const {
-  return direction.dot(a_.cross(b_)) >= 0 && direction.dot(b_.cross(c_)) >= 0 && direction.dot(c_.cross(a_)) >= 0;
+  return direction.dot(ab_) >= 0 && direction.dot(bc_) >= 0 && direction.dot(ca_) >= 0;
+}
+
+double SphericalTriangle::mean_cosine(const Vector& normal) const {
+  return (std::max(0.0, normal.dot(a_)) + std::max(0.0, normal.dot(b_)) + std::max(0.0, normal.dot(c_))) / 3;
 }
 
 }  // namespace patchlight

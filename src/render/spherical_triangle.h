@@ -21,10 +21,13 @@ class SphericalTriangle {
   /// True when a direction goes through it.
   bool contains(const Vector& direction) const;
 
+  /// The mean over its corners of the cosines to a normal, 0 for those below the horizon: about that of its directions.
+  double mean_cosine(const Vector& normal) const;
+
  private:
-  Vector a_, b_, c_;  // unit, counter-clockwise
+  Vector a_, b_, c_;     // unit, counter-clockwise
+  Vector ab_, bc_, ca_;  // across its edges, inwards
   double solid_angle_ = 0;
-  double alpha_ = 0;  // angle at a
 };
 
 }  // namespace patchlight
