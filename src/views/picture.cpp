@@ -157,6 +157,9 @@ Picture shown(GatheredImage taken, const Camera& camera, PictureColors colors, c
     const Eigen::VectorXd values = pixel_luminance(image, bands);
     picture.brightest = end_of_scale(values.cwiseProduct(weight_of_pixels(image)));
     picture.image.pixels = false_color(values, 0, *picture.brightest);
+    // At the numbers of the legend
+    const double step = *picture.brightest / 4;
+    picture.image = with_isolines(std::move(picture.image), values, {step, 2 * step, 3 * step});
   }
   picture.radiance = std::move(taken.image);
   return picture;

@@ -5,6 +5,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,15 @@ SensorView read_sensors(const Scene& scene, const Simulation& simulation, const 
 struct SolvedSurface {
   const Scene& scene;
   const Simulation& simulation;
-  Field radiance_at_vertices;  ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
+  Field radiance_at_vertices;              ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
+  Eigen::VectorXd ambient_occlusion = {};  ///< per patch: the share of the hemisphere, weighted by the cosine, in which
+                                           ///< nothing lies within a distance; empty: not asked for
+  Eigen::VectorXd ambient_occlusion_at_vertices = {};  ///< smoothed
 };
 
-/// Smooths the radiance of a solution, which traces rays along the patches. `scene` is the one that was solved, and
-/// `simulation` comes from simulate().
-SolvedSurface surface_of(const Scene& scene, const Simulation& simulation);
+/// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in metres finds its
+/// ambient occlusion. `scene` is the one that was solved, and `simulation` comes from simulate().
+SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
+                         const std::optional<double>& ambient_distance = {});
 
 }  // namespace patchlight
