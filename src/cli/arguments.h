@@ -154,7 +154,9 @@ struct RenderArguments {
   ReadOptions read;
   std::filesystem::path solution;  ///< input: .vtp
   PictureSettings picture;
-  int threads = 0;  ///< 0: all processors
+  std::filesystem::path observers;   ///< .csv; empty: not wanted
+  std::filesystem::path difference;  ///< input: another solution, .vtp; empty: none
+  int threads = 0;                   ///< 0: all processors
   bool quiet = false;
 };
 

@@ -1,10 +1,10 @@
+#include "cli/check.h"
 
 #include "base/rounded.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/picture.h"
 #include "cli/picture.h"
 #include "output/whole_file.h"
 #include "output/write_problems.h"

@@ -12,10 +12,13 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/whole_file.h"
+#include "output/write_observers.h"
+#include "output/write_picture.h"
 #include "scene/limits.h"
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <vector>
 
 namespace patchlight::cli {
@@ -31,13 +34,27 @@ void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& 
   }
 }
 
+// The cameras that are asked for, else all of the scene.
+std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, const Scene& scene) {
+  if (wanted.front().views.empty() && !wanted.front().camera && !scene.cameras.empty()) return scene.cameras;
+  std::vector<Camera> cameras;
+  for (const PictureSettings& one : wanted) {
+    const std::optional<Camera> camera = camera_for(one, scene);
+    if (!camera)
+      throw InputError("--observers", "the scene has no [[camera]]; expected one, or --camera EYE TARGET FOV");
+    cameras.push_back(*camera);
+  }
+  return cameras;
+}
+
 }  // namespace
 
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse what cannot be written, or would be lost
   const std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
+  if (!arguments.observers.empty()) check_writable(arguments.observers);
   for (const PictureSettings& one : wanted) {
-    check_writable(one.file);
+    if (!one.file.empty()) check_writable(one.file);
     if (!one.error_map.empty()) check_writable(one.error_map);
   }
 
@@ -49,18 +66,32 @@ ExitCode render(const RenderArguments& arguments) {
   check_limits(scene);
   require_cameras(wanted, scene);
   const Simulation simulation = read_solution(arguments.solution, scene);
+  std::optional<Simulation> other;
+  if (!arguments.difference.empty()) other = read_solution(arguments.difference, scene);
 
   // 3. Take the pictures, and write each as soon as it is there; the first Ctrl-C ends with the one at hand
   std::vector<std::filesystem::path> written;
+  if (!arguments.observers.empty()) {
+    const auto readings = read_observers(scene, simulation, observers_of(wanted, scene), observer);
+    const WritingGuard guard;
+    write_observers(arguments.observers, readings);
+    written.push_back(arguments.observers);
+  }
   bool stopped = false, unfinished = false;
   for (const PictureSettings& one : wanted) {
+    if (one.file.empty()) break;
     keep_what_is_there();
     const Picture picture = make_picture(one, scene, simulation, observer);
+    std::optional<Picture> of_other;
+    if (other) of_other = make_picture(one, scene, *other, observer);
     stopped = interrupted();
-    unfinished = picture.unfinished;
+    unfinished = picture.unfinished || (of_other && of_other->unfinished);
     if (!may_write_what_is_there()) throw Cancelled();
     const WritingGuard guard;
-    write_picture_file(one.file, picture, scene);
+    if (of_other)
+      write_difference(one.file, picture, *of_other, bands_of(scene));
+    else
+      write_picture_file(one.file, picture, scene);
     written.push_back(one.file);
     if (!one.error_map.empty()) {
       write_error_map(one.error_map, picture);

@@ -1,7 +1,13 @@
 """patchlight render: pictures of a solution on disk."""
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
 import unittest
 
-from support import ToolTest
+from support import TOOL, ToolTest
 
 
 def radiances(data):
@@ -29,7 +35,7 @@ def radiances(data):
     assert at == len(rest)
     return header, rows
 
-GOOD, USAGE, INPUT = 0, 1, 2
+GOOD, USAGE, INPUT, INTERRUPTED = 0, 1, 2, 130
 
 SCENE = """[[model]]
 file = "room.obj"
@@ -104,6 +110,46 @@ class RenderTest(ToolTest):
         self.assertIn("scene.vtp", message)
         self.assertIn("another scene", message)
         self.assertFalse((self.folder / "other.png").exists())
+
+    def test_observers_have_a_line_each(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "--observers", "all.csv", "-q")
+        lines = (self.folder / "all.csv").read_text().splitlines()
+        self.assertEqual([line.split(",")[0] for line in lines], ["observer", "near", "plan"])
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "--observers", "one.csv", "--view", "plan", "-q")
+        self.assertEqual((self.folder / "one.csv").read_text().splitlines()[1:], lines[2:])
+
+    def test_two_solutions_stand_beside_each_other(self):
+        self.solve()
+        self.good("solve", "room.obj", "--patches", "400", "-o", "fine.vtp", "-q")
+        self.good("render", "room.obj", "--solution", "room.vtp", "--difference", "fine.vtp", "-o", "both.png", *SMALL)
+        # Width and height of a PNG stand behind its first 16 bytes.
+        width, height = struct.unpack(">2I", self.bytes_of("both.png")[16:24])
+        self.assertEqual(height, 16)
+        self.assertGreater(width, 3 * 24)
+
+    def test_after_ctrl_c_no_other_view_begins(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        ours, theirs = pty.openpty()
+        command = [TOOL, "render", "scene.toml", "--solution", "scene.vtp", "--view", "near", "--view", "plan", "-o",
+                   "room.png", "--size", "1200x1200"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
+            os.close(theirs)
+            shown = b""
+            while not re.search(rb"render [7-9]\d %", shown):  # the first samples of each pixel are there
+                shown += os.read(ours, 4096)
+            process.send_signal(signal.SIGINT)
+            while True:
+                try:
+                    if not os.read(ours, 4096):
+                        break
+                except OSError:
+                    break
+        os.close(ours)
+        self.assertEqual(process.returncode, INTERRUPTED)
+        self.assertEqual(sorted(file.name for file in self.folder.glob("*.png")), ["room.near.png"])
 
     def test_refuses_what_is_no_solution(self):
         self.write("text.vtp", "no file of VTK\n")

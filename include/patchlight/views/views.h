@@ -37,4 +37,20 @@ struct SolvedSurface {
 SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
                          const std::optional<double>& ambient_distance = {});
 
+/// What someone sees who stands at a camera's eye and looks at its target.
+struct ObserverReading {
+  std::string name;                    ///< the camera's
+  double vertical_illuminance = 0;     ///< at the eye, on the plane across the line of sight, lx
+  double cylindrical_illuminance = 0;  ///< the mean on all upright planes at the eye, lx
+  double background_luminance = 0;     ///< of CIE 117: what all but the sources of glare gives that plane, over pi
+  double glare_solid_angle = 0;        ///< of those sources, sr
+  std::optional<double> unified_glare_rating = {};  ///< CIE 117:1995; nothing without sources or background
+};
+
+/// What observers read in a solved scene. Windows, and what is brighter than 500 cd/m^2 and four times the mean of the
+/// half space that is seen, glares. Luminaires without faces give light, and glare does not count them: they have no
+/// extent. \throws Cancelled.
+std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation& simulation,
+                                            const std::vector<Camera>& cameras, const Observer& observer = {});
+
 }  // namespace patchlight
