@@ -1,10 +1,11 @@
 # What `cmake --install` puts where, and the Debian packages that `cpack` makes: patchlight has the tool, libpatchlight-dev
-# the library.
+# the library, python3-patchlight the module for Python.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
 install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
 install(FILES docs/patchlight.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
 install(TARGETS patchlight_core patchlight_io EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
@@ -17,6 +18,13 @@ install(FILES ${PROJECT_BINARY_DIR}/patchlightConfig.cmake ${PROJECT_BINARY_DIR}
         DESTINATION ${patchlight_config_folder} COMPONENT library)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight RENAME copyright COMPONENT tool)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpatchlight-dev RENAME copyright COMPONENT library)
+
+if(PATCHLIGHT_PYTHON)
+  set(patchlight_python_destination lib/python3/dist-packages/patchlight)
+  install(TARGETS patchlight_python LIBRARY DESTINATION ${patchlight_python_destination} COMPONENT python)
+  install(DIRECTORY src/python/patchlight/ DESTINATION ${patchlight_python_destination} COMPONENT python FILES_MATCHING PATTERN *.py)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-patchlight RENAME copyright COMPONENT python)
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "the patchlight authors <patchlight@localhost>")
@@ -31,5 +39,13 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is li
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+if(PATCHLIGHT_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-patchlight)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy")
+endif()
 include(CPack)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes docs/command_line.md and the manual page docs/patchlight.1 from what the tool says about itself.
+"""Writes docs/command_line.md, the manual page docs/patchlight.1 and the completion for bash, docs/patchlight.bash, from
+what the tool says about itself.
 
 usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/make_help.py [--check]
 --check writes nothing and fails when the files are not up to date.
@@ -78,13 +79,68 @@ def manual(texts):
     return "\n".join(lines) + "\n"
 
 
+OPTION = re.compile(r"^  ((?:-\w,)?--[\w-]+)(?: (\S+))?", re.MULTILINE)
+
+
+def options(text):
+    """The options of a help text: {"--solver": the word after it, or None}; short names beside the long ones."""
+    found = {}
+    for names, value in OPTION.findall(text):
+        for name in names.split(","):
+            found[name] = value or None
+    return found
+
+
+COMPLETION = """# Completion of patchlight for bash. scripts/make_help.py writes this file.
+_patchlight() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}}
+  local words=
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    words="{commands}"
+  else
+    case "$command,$before" in
+{choices}
+    esac
+    if [ -z "$words" ] && [[ $current == -* ]]; then
+      case $command in
+{options}
+      esac
+    fi
+  fi
+  if [ -n "$words" ]; then
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  else
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}}
+complete -o filenames -F _patchlight patchlight
+"""
+
+
+def completion(texts):
+    """Commands, then their options and the words that these take; files everywhere else."""
+    choices, names = [], []
+    for words, text in texts.items():
+        if not words:
+            continue
+        found = options(text)
+        names.append(f"        {words[0]}) words=\"{' '.join(found)}\" ;;")
+        for name, value in found.items():
+            if value and re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", value):
+                choices.append(f"      {words[0]},{name}) words=\"{value.replace('|', ' ')}\" ;;")
+    return COMPLETION.format(commands=" ".join(words[0] for words in texts if words) + " --help --version",
+                             choices="\n".join(choices), options="\n".join(names))
+
+
 def main():
     check = sys.argv[1:] == ["--check"]
     texts = {(): help_of()}
     for command in commands(texts[()]):
         texts[(command,)] = help_of(command)
     stale = 0
-    for file, content in ((DOCS / "command_line.md", markdown(texts)), (DOCS / "patchlight.1", manual(texts))):
+    for file, content in ((DOCS / "command_line.md", markdown(texts)), (DOCS / "patchlight.1", manual(texts)),
+                          (DOCS / "patchlight.bash", completion(texts))):
         if file.exists() and file.read_text() == content:
             continue
         if check:

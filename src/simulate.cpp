@@ -51,7 +51,7 @@ SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, Stag
   if (simulation.solution.stopped && !simulation.solution.converged) throw Cancelled();
 
   // 8. How far that may be off.
-  SolvedMesh result = with_error_bars(run, {std::move(simulation), meshed.mesh}, std::move(transport));
+  SolvedMesh result = with_error_bars(run, {std::move(simulation), std::move(meshed.mesh)}, std::move(transport));
   clock.finish(Stage::error_bars);
   return result;
 }

@@ -57,8 +57,9 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
 
 Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance) {
   const RadiosityProblem of_irradiance{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
-  const Solver solver = usual_solver(transport, problem);
-  return irradiance + solve(transport, of_irradiance, {.solver = solver, .relative_error = 0.05}).irradiance;
+  // Few directions: by a million patches these are what takes most of the memory.
+  const SolverOptions options{.solver = usual_solver(transport, problem), .relative_error = 0.05, .restart = 8};
+  return irradiance + solve(transport, of_irradiance, options).irradiance;
 }
 
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,

@@ -182,10 +182,13 @@ void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
     }
     add_hemisphere(quarter, seen, into);
     into.irradiance.row(q) /= std::max(1, exposed);
-    into.area[q] = area_vector(quarter_of(mesh_.corner_points(patch), static_cast<int>(k))).norm();
-    into.exposed[q] = into.area[q] * exposed / rays_.rays;
+    const double area = area_vector(quarter_of(mesh_.corner_points(patch), static_cast<int>(k))).norm();
+    into.part_of_ray[q] = area / rays_.rays;
+    into.exposed[q] = area * exposed / rays_.rays;
     into.seen[q] = static_cast<double>(count(seen, Sight::patch)) / std::max(1, exposed);
   }
+  const double exposed = into.exposed.segment<4>(4 * Eigen::Index{patch}).sum();
+  into.part_of_ray.segment<4>(4 * Eigen::Index{patch}) *= exposed > 0 ? 1 / exposed : 0;
 }
 
 }  // namespace
@@ -194,13 +197,13 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
                                     const Observer& observer) {
   const Gather gather(patches, rays);
   const std::size_t quarters = 4 * std::size_t{patches.mesh.size()};
-  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(quarters));
+  const auto size = static_cast<Eigen::Index>(quarters);
   GatheredQuarters found{rays.rays,
-                         Field::Zero(none.size(), patches.solved.problem.exitance.cols()),
+                         Field::Zero(size, patches.solved.problem.exitance.cols()),
                          std::vector<PatchIndex>(quarters * static_cast<std::size_t>(rays.rays), no_patch),
-                         none,
-                         none,
-                         none};
+                         Eigen::ArrayXd::Zero(size),
+                         Eigen::ArrayXd::Zero(size),
+                         Eigen::ArrayXd::Zero(size)};
   parallel_for(patches.mesh.size(), Stage::error_bars, observer,
                [&](std::size_t patch) { gather.at(static_cast<PatchIndex>(patch), found); });
   return found;

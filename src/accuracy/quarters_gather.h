@@ -27,7 +27,7 @@ struct GatheredQuarters {
   int rays = 0;      ///< from each quarter
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2
   std::vector<PatchIndex> met;  ///< per quarter and ray: the quarter that it meets, or no_patch
-  Eigen::ArrayXd area;          ///< per quarter, m^2
+  Eigen::ArrayXd part_of_ray;   ///< per quarter: what part of the mean over its patch one of its rays is
   Eigen::ArrayXd exposed;       ///< per quarter: what of its area no solid covers, m^2
   Eigen::ArrayXd seen;          ///< per quarter: the share of its hemisphere in which there are patches
 };

@@ -15,11 +15,10 @@ namespace {
 
 // The differences of radiosity inside patches, as one set of rays finds them.
 struct Differences {
-  GatheredQuarters rays;
-  Field of_irradiance;         // of each quarter from the mean of its patch, W/m^2
-  Field of_quarters;           // of radiosity, the same
-  Field at_patches;            // what they change of the irradiance of each patch, W/m^2
-  Eigen::ArrayXd part_of_ray;  // per quarter: what part of the mean over its patch one ray is
+  GatheredQuarters rays;  // without their irradiance
+  Field of_irradiance;    // of each quarter from the mean of its patch, W/m^2, as long as it is needed
+  Field of_quarters;      // of radiosity, the same
+  Field at_patches;       // what they change of the irradiance of each patch, W/m^2
 
   // Those that are met from a quarter.
   std::span<const PatchIndex> met_from(PatchIndex quarter) const {
@@ -57,24 +56,18 @@ PatchIndex quarter_behind(const PatchMesh& mesh, PatchIndex quarter, PatchIndex 
          static_cast<PatchIndex>(quarter_at(behind, mesh.normal[other_patch], area_centroid(corners)));
 }
 
-// R of the quarters of patches.
-Scattering scattering_of_quarters(const PatchMesh& mesh, const Scattering& scattering) {
+// R H of quarters, R that of their patches.
+Field reflected_at_quarters(const PatchMesh& mesh, const Scattering& scattering, const Field& irradiance) {
+  if (scattering.is_diagonal()) {
+    Field radiosity = irradiance;
+    for (Eigen::Index q = 0; q < radiosity.rows(); ++q) radiosity.row(q) *= scattering.reflectance.row(q / 4);
+    return radiosity;
+  }
   Scattering by_quarters{of_quarters(scattering.reflectance)};
-  if (scattering.is_diagonal()) return by_quarters;
   by_quarters.transmittance = of_quarters(scattering.transmittance);
   for (PatchIndex q = 0; q < 4 * mesh.size(); ++q)
     by_quarters.other_side.push_back(quarter_behind(mesh, q, scattering.other_side[q / 4]));
-  return by_quarters;
-}
-
-// What part of the mean over its patch one ray from each quarter is.
-Eigen::ArrayXd parts_of_rays(const GatheredQuarters& rays) {
-  Eigen::ArrayXd part(rays.exposed.size());
-  for (Eigen::Index q = 0; q < part.size(); ++q) {
-    const double exposed = rays.exposed.segment<4>(q - q % 4).sum();
-    part[q] = exposed > 0 ? rays.area[q] / (exposed * rays.rays) : 0;
-  }
-  return part;
+  return by_quarters.reflect(irradiance);
 }
 
 // Root mean squares over the quarters of each patch of what both sets of rays find; quarters of a field that is linear
@@ -101,15 +94,16 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-Differences find_differences(GatheredQuarters rays, const Field& direct, const Scattering& by_quarters) {
-  const Field irradiance = direct.size() > 0 ? Field(rays.irradiance + direct) : rays.irradiance;
-  Differences found{std::move(rays), {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols()), {}};
-  found.part_of_ray = parts_of_rays(found.rays);
+Differences find_differences(GatheredQuarters rays, const Field& direct, const PatchMesh& mesh,
+                             const Scattering& scattering) {
+  Field irradiance = std::exchange(rays.irradiance, {});
+  if (direct.size() > 0) irradiance += direct;
+  Differences found{std::move(rays), {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols())};
   found.of_irradiance = differences_of_irradiance(found.rays, irradiance);
-  found.of_quarters = by_quarters.reflect(found.of_irradiance);
+  found.of_quarters = reflected_at_quarters(mesh, scattering, found.of_irradiance);
   for (PatchIndex q = 0; q < found.of_quarters.rows(); ++q) {
     for (const PatchIndex met : found.met_from(q))
-      if (met != no_patch) found.at_patches.row(q / 4) += found.part_of_ray[q] * found.of_quarters.row(met);
+      if (met != no_patch) found.at_patches.row(q / 4) += found.rays.part_of_ray[q] * found.of_quarters.row(met);
   }
   return found;
 }
@@ -117,11 +111,11 @@ Differences find_differences(GatheredQuarters rays, const Field& direct, const S
 // What the differences of each patch have in common with the changes that other rays find: sum_i w_i c_i dH_i.
 Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& differences) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(weighted_changes.rows());
-  for (PatchIndex q = 0; q < differences.part_of_ray.size(); ++q) {
+  for (PatchIndex q = 0; q < differences.rays.part_of_ray.size(); ++q) {
     for (const PatchIndex met : differences.met_from(q)) {
       if (met == no_patch) continue;
       const double change = (weighted_changes.row(q / 4) * differences.of_quarters.row(met)).sum();
-      parts[met / 4] += differences.part_of_ray[q] * change;
+      parts[met / 4] += differences.rays.part_of_ray[q] * change;
     }
   }
   return parts;
@@ -134,26 +128,26 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   const SolvedProblem& solved = patches.solved;
   const Eigen::VectorXd& area = solved.problem.area;
   // 1. Twice, with other rays.
-  const Scattering by_quarters = scattering_of_quarters(patches.mesh, solved.problem.scattering);
   const auto found = [&](std::size_t half) {
     GatheredQuarters rays = gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
-    return find_differences(std::move(rays), look.direct[half], by_quarters);
+    return find_differences(std::move(rays), look.direct[half], patches.mesh, solved.problem.scattering);
   };
-  const Differences one = found(0);
-  const Differences other = found(1);
+  Differences one = found(0);
+  Differences other = found(1);
+  // Where the two differ in sign the error is not known any better than that.
+  const auto root_of_mean = [&](const Field& square) -> Field {
+    return mean_around(patches.mesh, area, square).abs().sqrt();
+  };
+  UnseenDifferences unseen;
+  unseen.display = root_of_mean(display_of(one, other));
+  one.of_irradiance = other.of_irradiance = {};
 
   // 2. Through all reflections; what is finer than the quarters is extrapolated.
   const double scale = 1 / (1 - std::pow(2.0, -mesh_order));
   const auto through_reflections = [&](const Differences& differences, const Differences& of_other) {
     return followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));
   };
-  // Where the two differ in sign the error is not known any better than that.
-  const auto root_of_mean = [&](const Field& square) -> Field {
-    return mean_around(patches.mesh, area, square).abs().sqrt();
-  };
-  UnseenDifferences unseen;
   unseen.error = scale * root_of_mean(through_reflections(one, other) * through_reflections(other, one));
-  unseen.display = root_of_mean(display_of(one, other));
 
   // 3. Where it comes from.
   const Field weights = weight_of_squares(solved, weight).colwise() * area.array().square();

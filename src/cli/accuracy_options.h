@@ -11,7 +11,7 @@ namespace patchlight::cli {
 /// Adds --accuracy, --time and --interest. What is parsed lands in `request`, which must outlive the command.
 void add_refinement_options(CLI::App& command, Request& request);
 
-/// The same and --error-bars.
+/// The same, --error-bars and --no-error-bars; without either of these there are cheap ones.
 void add_accuracy_options(CLI::App& command, Request& request);
 
 /// What has been understood of --accuracy, in percent, for the beginning of a run; nothing without it.

@@ -132,7 +132,11 @@ Arguments parse_arguments(int count, const char* const* values) {
     if (command.get_name() == "check") return finish_check(*check_options);
     if (command.get_name() == "new") return finish_new(*new_options);
     if (command.get_name() == "plan") return finish_plan(*plan_options);
-    if (command.get_name() == "render") return finish_render(*render_options);
+    if (command.get_name() == "render") {
+      RenderArguments arguments = finish_render(*render_options);
+      arguments.command_line = joined(count, values);
+      return arguments;
+    }
     if (command.get_name() == "validate") return finish_validate(*validate_options);
     if (command.get_name() == "form-factors") {
       FormFactorArguments arguments = finish_form_factors(*form_factor_options);

@@ -51,6 +51,7 @@ struct SolveArguments {
   std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
   std::filesystem::path series;                ///< .pvd
   std::filesystem::path report;                ///< .json
+  std::filesystem::path page;                  ///< .html
   PictureSettings picture;
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
@@ -115,6 +116,7 @@ struct CompareArguments {
   Request request;
   CompareOptions options;
   std::filesystem::path output;  ///< a folder
+  std::filesystem::path page;    ///< .html; empty when it is not wanted
   bool quiet = false;
   std::string command_line;  ///< for the record
 };
@@ -126,6 +128,7 @@ struct StudyArguments {
   Request request;
   StudyOptions options;
   std::filesystem::path output;  ///< a folder
+  std::filesystem::path page;    ///< .html; empty when it is not wanted
   bool quiet = false;
   std::string command_line;  ///< for the record
 };
@@ -153,11 +156,13 @@ struct RenderArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   std::filesystem::path solution;  ///< input: .vtp
+  std::filesystem::path page;      ///< .html; empty when it is not wanted
   PictureSettings picture;
   std::filesystem::path observers;   ///< .csv; empty: not wanted
   std::filesystem::path difference;  ///< input: another solution, .vtp; empty: none
   int threads = 0;                   ///< 0: all processors
   bool quiet = false;
+  std::string command_line;  ///< for the record
 };
 
 /// A text that the user asked for: --help or --version.

@@ -1,5 +1,6 @@
 #include "cli/compare.h"
 
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "base/rounded.h"
 #include "cli/distinct_files.h"
@@ -9,6 +10,7 @@
 #include "cli/text_table.h"
 #include "output/whole_file.h"
 #include "output/write_comparison.h"
+#include "page/write_page.h"
 #include "render/tone_map.h"
 
 #include <cmath>
@@ -59,10 +61,25 @@ std::string not_reached(const Comparison& comparison) {
   return names;
 }
 
+void write_page_of_comparison(const CompareArguments& arguments, const Scene& scene, const Comparison& comparison,
+                              const Provenance& provenance, const Observer& observer) {
+  const Simulation& simulation = comparison.simulation;
+  const SolvedSurface surface = surface_of(scene, simulation);
+  const Report report = report_of(scene, arguments.request, simulation);
+  const Picture picture = take_picture(scene, simulation, {}, observer);
+  write_page(arguments.page, {.scene = scene,
+                              .provenance = provenance,
+                              .surface = &surface,
+                              .report = &report,
+                              .pictures = {&picture},
+                              .comparison = &comparison});
+}
+
 }  // namespace
 
 ExitCode compare(const CompareArguments& arguments) {
   check_comparison_writable(arguments.output);
+  if (!arguments.page.empty()) check_writable(arguments.page);
   const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
@@ -70,6 +87,7 @@ ExitCode compare(const CompareArguments& arguments) {
   // 1. Read the model, run the solvers
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read_from({"-o", arguments.output}, scene.inputs);
+  require_not_read({{"--html", arguments.page}}, scene.inputs);
   const Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
   const Simulation& simulation = comparison.simulation;
   line.hide();
@@ -82,12 +100,14 @@ ExitCode compare(const CompareArguments& arguments) {
   const double exposure =
       exposure_for(simulation.solution.radiosity / std::numbers::pi, simulation.problem.area, bands_of(scene));
   const WritingGuard guard;
-  write_comparison(arguments.output, scene, comparison, {arguments.command_line, exposure}, observer);
+  const Provenance provenance{arguments.command_line, exposure, scene_hash(scene)};
+  write_comparison(arguments.output, scene, comparison, provenance, observer);
+  if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();
   if (!arguments.quiet) {
     for (const std::string& note : notes(scene, simulation)) print_message("note", note);
-    std::cout << table(comparison) << facts(scene, comparison) << "wrote " << shown_name(arguments.output.string())
-              << std::endl;
+    std::cout << table(comparison) << facts(scene, comparison) << files_line({arguments.output, arguments.page})
+              << std::flush;
   }
   const std::string missed = not_reached(comparison);
   if (!missed.empty()) {

@@ -4,6 +4,7 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/page_option.h"
 #include "cli/parse_value.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace patchlight::cli {
 struct CompareCommandOptions {
   ModelOptions model;
   Request request;  // with the edge of patches in model units
-  std::string output;
+  std::string output, page;
   CompareOptions compare;
   bool quiet = false;
 };
@@ -44,6 +45,7 @@ void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
   command.option_defaults()->group("Results");
   add(command, "-o,--output", "FOLDER", "folder for tables, plots and a series for ParaView per solver",
       [&options](const std::string& text) { options.output = text; });
+  add_page_option(command, options.page);
   add(command, "--solvers", "A,B,...",
       "which solvers take part, and in which order: any of\n" + solver_names(", ") +
           ", and\nprogressive-on-demand, whose rows are computed when it shoots;\ndefault: all",
@@ -90,11 +92,14 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
   arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.options = options.compare;
   arguments.output = options.output;
+  arguments.page = options.page;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {
     throw UsageError("compare: found no model; expected: patchlight compare MODEL -o FOLDER");
   }
   if (arguments.output.empty()) throw UsageError("compare: nothing would be written; give -o FOLDER");
+  require_page_elsewhere(arguments.page, arguments.output);
+  require_not_read({{"--html", arguments.page}}, arguments.models);
   check(arguments.request, arguments.options);
   return arguments;
 }

@@ -1,8 +1,10 @@
 #include "cli/render.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/views/views.h"
 
 #include "archive/read_solution.h"
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -14,11 +16,14 @@
 #include "output/whole_file.h"
 #include "output/write_observers.h"
 #include "output/write_picture.h"
+#include "page/write_page.h"
+#include "render/tone_map.h"
 #include "scene/limits.h"
 
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace patchlight::cli {
@@ -47,6 +52,18 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
+void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
+                            const std::vector<Picture>& pictures) {
+  const SolvedSurface surface = surface_of(scene, simulation);
+  Page page{.scene = scene,
+            .provenance = {.command_line = arguments.command_line, .scene_hash = scene_hash(scene)},
+            .surface = &surface};
+  const Eigen::VectorXd& area = simulation.problem.area;
+  page.provenance.exposure = exposure_for(display_radiance(simulation), area, bands_of(scene));
+  for (const Picture& picture : pictures) page.pictures.push_back(&picture);
+  write_page(arguments.page, page);
+}
+
 }  // namespace
 
 ExitCode render(const RenderArguments& arguments) {
@@ -57,6 +74,7 @@ ExitCode render(const RenderArguments& arguments) {
     if (!one.file.empty()) check_writable(one.file);
     if (!one.error_map.empty()) check_writable(one.error_map);
   }
+  if (!arguments.page.empty()) check_writable(arguments.page);
 
   // 2. Read the scene and its solution
   const ThreadLimit limit(arguments.threads);
@@ -77,11 +95,12 @@ ExitCode render(const RenderArguments& arguments) {
     write_observers(arguments.observers, readings);
     written.push_back(arguments.observers);
   }
+  std::vector<Picture> taken;
   bool stopped = false, unfinished = false;
   for (const PictureSettings& one : wanted) {
     if (one.file.empty()) break;
     keep_what_is_there();
-    const Picture picture = make_picture(one, scene, simulation, observer);
+    Picture picture = make_picture(one, scene, simulation, observer);
     std::optional<Picture> of_other;
     if (other) of_other = make_picture(one, scene, *other, observer);
     stopped = interrupted();
@@ -98,7 +117,13 @@ ExitCode render(const RenderArguments& arguments) {
       written.push_back(one.error_map);
     }
     stopped = stopped || interrupted();
+    if (!arguments.page.empty()) taken.push_back(std::move(picture));
     if (stopped) break;
+  }
+  if (!taken.empty()) {
+    const WritingGuard guard;
+    write_page_of_pictures(arguments, scene, simulation, taken);
+    written.push_back(arguments.page);
   }
   line.hide();
   if (!arguments.quiet) std::cout << files_line(written) << std::flush;

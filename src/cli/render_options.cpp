@@ -3,6 +3,7 @@
 #include "cli/add_option.h"
 #include "cli/distinct_files.h"
 #include "cli/model_options.h"
+#include "cli/page_option.h"
 #include "cli/parse_value.h"
 #include "cli/picture_options.h"
 
@@ -15,7 +16,7 @@ namespace patchlight::cli {
 struct RenderOptionsGiven {
   ModelOptions model;
   PictureGiven picture;
-  std::string solution, observers, difference;
+  std::string solution, observers, difference, page;
   int threads = 0;
   bool quiet = false;
 };
@@ -53,6 +54,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
         if (!text.ends_with(".csv")) throw refusal("--observers", text, "a name that ends in .csv");
         to.observers = text;
       });
+  add_page_option(command, to.page);
   command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&to](const std::string& text) { to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
@@ -73,6 +75,7 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.solution = options.solution;
+  arguments.page = options.page;
   arguments.observers = options.observers;
   arguments.difference = options.difference;
   PictureGiven given = options.picture;
@@ -87,6 +90,7 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
   if (!arguments.difference.empty()) read.push_back(arguments.difference);
   std::vector<OutputFile> outputs = picture_files(arguments.picture, "-o");
   outputs.push_back({"--observers", arguments.observers});
+  outputs.push_back({"--html", arguments.page});
   require_distinct(outputs);
   require_not_read(outputs, read);
   return arguments;

@@ -4,6 +4,7 @@
 
 #include "cli/add_option.h"
 #include "cli/mesh_options.h"
+#include "cli/page_option.h"
 #include "cli/parse_value.h"
 #include "output/write_points.h"
 
@@ -64,9 +65,10 @@ bool is_map(const path& file) { return file.extension() == ".svg" || file.extens
 
 void require_consistent(const std::string& command, const SolutionOptions& options) {
   if (options.results.empty() && options.series.empty() && options.picture.file.empty() && options.report.empty() &&
-      options.points.empty() && options.points_outputs.empty()) {
+      options.page.empty() && options.points.empty() && options.points_outputs.empty()) {
     throw UsageError(command +
-                     ": nothing would be written; give at least one of -o, --series, --picture, --report, --points");
+                     ": nothing would be written; give at least one of -o, --html, --series, --picture, --report, "
+                     "--points");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
@@ -139,6 +141,7 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
       "adds to .vtp the share of the hemisphere before each patch in\nwhich nothing lies within this length, as in 2m "
       "(array\nambient_occlusion); default: not found",
       [&options](const std::string& text) { options.ambient_distance = length("--ambient-occlusion", text); });
+  add_page_option(command, options.page);
   add_file(command, "--series", options.series,
            "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
            "bounce k");
@@ -191,6 +194,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   arguments.results.assign(options.results.begin(), options.results.end());
   arguments.series = options.series;
   arguments.report = options.report;
+  arguments.page = options.page;
   arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
   if (arguments.picture.views.size() > 1)
     throw UsageError("--view: found several; expected one, as patchlight render takes pictures of more");
@@ -222,7 +226,8 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
 }
 
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {
-  std::vector<OutputFile> files = {{"--series", arguments.series}, {"--report", arguments.report}};
+  std::vector<OutputFile> files = {
+      {"--series", arguments.series}, {"--report", arguments.report}, {"--html", arguments.page}};
   for (OutputFile& file : picture_files(arguments.picture, "--picture")) files.push_back(std::move(file));
   for (const path& result : arguments.results) files.push_back({"-o", result});
   for (const path& file : arguments.points_outputs) files.push_back({"--points-output", file});

@@ -15,7 +15,7 @@ namespace patchlight::cli {
 struct SolutionOptions {
   bool solver_given = false;
   std::vector<std::string> results;
-  std::string series, report, points;
+  std::string series, report, page, points;
   PictureGiven picture;
   std::vector<std::string> points_outputs;
   MapOptions map;
@@ -26,7 +26,7 @@ struct SolutionOptions {
   bool verbose = false;
 };
 
-/// Adds -o, --series, --report, --picture with its own, --points and --points-output. What is parsed lands in
+/// Adds -o, --series, --report, --html, --picture with its own, --points and --points-output. What is parsed lands in
 /// `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 

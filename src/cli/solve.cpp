@@ -23,6 +23,7 @@
 #include "output/write_points.h"
 #include "output/write_sensor_map.h"
 #include "output/write_series.h"
+#include "page/write_page.h"
 #include "pipeline/stage_clock.h"
 #include "plan/check_request.h"
 #include "render/tone_map.h"
@@ -44,6 +45,7 @@ struct Views {
   std::vector<std::filesystem::path> points_outputs;
   SensorView sensors;
   std::optional<Picture> picture;
+  std::optional<Picture> page_picture;  // where a page is wanted and no picture
 };
 
 // All that is computed before anything is written.
@@ -102,7 +104,7 @@ class Iterates {
 void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.results) check_writable(file);
   if (!arguments.series.empty()) check_series_writable(arguments.series);
-  for (const auto* file : {&arguments.report, &arguments.picture.file, &arguments.picture.error_map}) {
+  for (const auto* file : {&arguments.report, &arguments.page, &arguments.picture.file, &arguments.picture.error_map}) {
     if (!file->empty()) check_writable(*file);
   }
   for (const std::filesystem::path& file : arguments.points_outputs) check_writable(file);
@@ -143,6 +145,9 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
   if (!arguments.picture.file.empty()) {
     views.picture = make_picture(arguments.picture, scene, simulation, observer);
     if (views.picture->unfinished) simulation.unfinished = true;
+    looking.finish(Stage::render);
+  } else if (!arguments.page.empty()) {
+    views.page_picture = make_picture(arguments.picture, scene, simulation, observer);
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
@@ -208,6 +213,15 @@ void write_readings(const std::filesystem::path& file, const Results& results, M
   write_sensor_map(file, results.scene.sensors, readings, map);
 }
 
+Page page_of_run(const Results& results, const SolvedSurface& surface) {
+  const Views& views = results.views;
+  Page page{.scene = results.scene, .provenance = results.provenance, .surface = &surface, .report = &results.report};
+  if (views.sensors.readings.irradiance.size() > 0) page.readings = &views.sensors.readings;
+  if (views.picture) page.pictures.push_back(&*views.picture);
+  if (views.page_picture) page.pictures.push_back(&*views.page_picture);
+  return page;
+}
+
 // Writes one file after the other, the series last, and lets them appear together; the run can be stopped between two.
 // Returns the files written.
 std::vector<std::filesystem::path> write(const SolveArguments& arguments, const Results& results) {
@@ -221,8 +235,9 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   };
   using Path = std::filesystem::path;
   const WritingGuard guard;
-  if (!arguments.results.empty()) {
+  if (!arguments.results.empty() || !arguments.page.empty()) {
     const SolvedSurface surface = surface_of(results.scene, results.simulation, arguments.ambient_distance);
+    write_to(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, surface)); });
     for (const Path& file : arguments.results) {
       write_to(file, [&](const Path& to) { write_result(to, surface, results.provenance); });
     }

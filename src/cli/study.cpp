@@ -1,13 +1,16 @@
 #include "cli/study.h"
 
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "base/rounded.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 #include "cli/text_table.h"
 #include "output/whole_file.h"
 #include "output/write_study.h"
+#include "page/write_page.h"
 #include "study/price.h"
 
 #include <iostream>
@@ -58,6 +61,7 @@ std::string facts(const Scene& scene, const Study& study) {
 
 ExitCode study(const StudyArguments& arguments) {
   check_study_writable(arguments.output);
+  if (!arguments.page.empty()) check_writable(arguments.page);
   const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
@@ -65,6 +69,7 @@ ExitCode study(const StudyArguments& arguments) {
   // 1. Read the model, solve it in many ways
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read_from({"-o", arguments.output}, scene.inputs);
+  require_not_read({{"--html", arguments.page}}, scene.inputs);
   const Study study = patchlight::study(scene, arguments.request, arguments.options, observer);
   line.hide();
   if (!study.trapped.empty()) {
@@ -74,11 +79,13 @@ ExitCode study(const StudyArguments& arguments) {
 
   // 2. Write tables and plots
   const WritingGuard guard;
-  write_study(arguments.output, scene, study, {.command_line = arguments.command_line});
+  const Provenance provenance{.command_line = arguments.command_line, .scene_hash = scene_hash(scene)};
+  write_study(arguments.output, scene, study, provenance);
+  if (!arguments.page.empty()) write_page(arguments.page, {.scene = scene, .provenance = provenance, .study = &study});
   if (!arguments.quiet) {
     for (const std::string& note : study.notes) print_message("note", note);
-    std::cout << table(study) << facts(scene, study) << conclusion(study) << "\nwrote "
-              << shown_name(arguments.output.string()) << std::endl;
+    std::cout << table(study) << facts(scene, study) << conclusion(study) << "\n"
+              << files_line({arguments.output, arguments.page}) << std::flush;
   }
   if (study.reference.converged) return good;
   print_message("warning", "the reference has not converged: the errors above are relative to it");

@@ -4,6 +4,7 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/page_option.h"
 #include "cli/parse_value.h"
 
 #include <string>
@@ -14,7 +15,7 @@ struct StudyCommandOptions {
   ModelOptions model;
   Request request;  // with the edge of patches in model units
   StudyOptions study;
-  std::string output;
+  std::string output, page;
   bool quiet = false;
 };
 
@@ -24,6 +25,7 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
   command.option_defaults()->group("Results");
   add(command, "-o,--output", "FOLDER", "folder for the table, the facts and the plots",
       [&options](const std::string& text) { options.output = text; });
+  add_page_option(command, options.page);
   add(command, "--sizes", "N",
       "how many sizes of patches at most, up to --patches or down to\n--max-edge; each has edges half as long as the "
       "one before, so about\nfour times the patches; default 4",
@@ -69,9 +71,12 @@ StudyArguments finish_study(const StudyCommandOptions& options) {
   arguments.request = in_metres(options.request, options.model.metres_per_unit);
   arguments.options = options.study;
   arguments.output = options.output;
+  arguments.page = options.page;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) throw UsageError("study: found no model; expected: patchlight study MODEL -o FOLDER");
   if (arguments.output.empty()) throw UsageError("study: nothing would be written; give -o FOLDER");
+  require_page_elsewhere(arguments.page, arguments.output);
+  require_not_read({{"--html", arguments.page}}, arguments.models);
   check_for_study(arguments.request);
   return arguments;
 }

@@ -228,7 +228,9 @@ std::string summary(const Report& report, bool long_form, const std::string& how
 
 std::string files_line(const std::vector<std::filesystem::path>& files) {
   std::string line;
-  for (const std::filesystem::path& file : files) line += (line.empty() ? "wrote " : ", ") + shown_name(file.string());
+  for (const std::filesystem::path& file : files) {
+    if (!file.empty()) line += (line.empty() ? "wrote " : ", ") + shown_name(file.string());
+  }
   return line + '\n';
 }
 

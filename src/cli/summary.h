@@ -16,7 +16,7 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
 /// to an accuracy.
 std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors);
 
-/// "wrote a, b, c" as one line.
+/// "wrote a, b, c" as one line; without those that are empty.
 std::string files_line(const std::vector<std::filesystem::path>& files);
 
 /// Why a run was left unfinished, and what the files hold.

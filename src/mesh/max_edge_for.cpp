@@ -139,6 +139,8 @@ EdgeSearch::~EdgeSearch() = default;
 
 double EdgeSearch::patches_with(double max_edge) { return number_->with_edge(max_edge); }
 
+std::size_t EdgeSearch::least_patches() { return static_cast<std::size_t>(number_->with_edge(number_->longest())); }
+
 double EdgeSearch::edge_for(std::size_t patches) {
   constexpr double close_enough = 0.005;
   constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2

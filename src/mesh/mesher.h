@@ -57,6 +57,8 @@ class EdgeSearch {
   EdgeSearch& operator=(const EdgeSearch&) = delete;
   double edge_for(std::size_t patches);
   double patches_with(double max_edge);
+  /// least_patches()
+  std::size_t least_patches();
 
  private:
   class PatchNumber;

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "output/comparison_json.h"
 #include "output/csv_cell.h"
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
@@ -102,7 +103,9 @@ Json run_part(const SolverRun& run, PatchIndex patches) {
   return part;
 }
 
-std::string facts(const Scene& scene, const Comparison& comparison, const Provenance& provenance) {
+}  // namespace
+
+nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& comparison, const Provenance& provenance) {
   const Simulation& simulation = comparison.simulation;
   Json json;
   json["kind"] = comparison_kind;
@@ -117,9 +120,10 @@ std::string facts(const Scene& scene, const Comparison& comparison, const Proven
   json["spectral_radius"] = comparison.spectral_radius;
   json["runs"] = Json::array();
   for (const SolverRun& run : comparison.runs) json["runs"].push_back(run_part(run, simulation.mesh.size()));
-  // Names from a model may hold bytes that are not UTF-8: they are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
 }
+
+namespace {
 
 // On a linear axis an error that falls by a factor with each iteration is a straight line; one axis for runs of very
 // different lengths has to be logarithmic.
@@ -199,7 +203,9 @@ void write_comparison(const fs::path& folder, const Scene& scene, const Comparis
       if (run.frames.empty()) continue;
       write_frames(in / (name_of(run.contestant) + ".pvd"), scene, comparison.simulation, run, provenance, observer);
     }
-    write_bytes(in / comparison_facts_file, facts(scene, comparison, provenance));
+    write_bytes(
+        in / comparison_facts_file,
+        comparison_json(scene, comparison, provenance).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "output/png_bytes.h"
 #include "output/write_bytes.h"
 #include "render/tone_map.h"
 
@@ -98,7 +99,7 @@ DisplayImage colour_bar(int width, int height) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, const DisplayImage& image, const std::vector<PngText>& texts) {
+std::string png_bytes(const DisplayImage& image, const std::vector<PngText>& texts) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
@@ -116,11 +117,15 @@ void write_png(const std::filesystem::path& file, const DisplayImage& image, con
   for (const PngText& text : texts) writer->AddText(text.keyword.c_str(), text.text.c_str());
   writer->Write();
   vtkUnsignedCharArray* const encoded = writer->GetResult();
-  if (writer->GetErrorCode() != 0 || encoded == nullptr || encoded->GetNumberOfValues() == 0) {
-    throw OutputError(file.string(), "the picture cannot be encoded as PNG");
-  }
-  write_bytes(file, {reinterpret_cast<const char*>(encoded->GetPointer(0)),
-                     static_cast<std::size_t>(encoded->GetNumberOfValues())});
+  if (writer->GetErrorCode() != 0 || encoded == nullptr) return {};
+  return {reinterpret_cast<const char*>(encoded->GetPointer(0)),
+          static_cast<std::size_t>(encoded->GetNumberOfValues())};
+}
+
+void write_png(const std::filesystem::path& file, const DisplayImage& image, const std::vector<PngText>& texts) {
+  const std::string bytes = png_bytes(image, texts);
+  if (bytes.empty()) throw OutputError(file.string(), "the picture cannot be encoded as PNG");
+  write_bytes(file, bytes);
 }
 
 DisplayImage with_legend(const DisplayImage& image, double lower, double upper, const std::string& title) {

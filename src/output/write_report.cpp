@@ -3,6 +3,7 @@
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"
 #include "output/json_array.h"
+#include "output/report_json.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
@@ -222,7 +223,7 @@ std::uint64_t memory_peak_bytes() {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const Report& report, const Provenance& provenance) {
+Json report_json(const Report& report, const Provenance& provenance) {
   Json json;
   json["version"] = version();
   json["command_line"] = provenance.command_line;
@@ -241,6 +242,11 @@ void write_report(const std::filesystem::path& file, const Report& report, const
   json["costs"] = costs_part(report.costs);
   json["memory_peak_bytes"] = memory_peak_bytes();
   json["exposure"] = provenance.exposure;
+  return json;
+}
+
+void write_report(const std::filesystem::path& file, const Report& report, const Provenance& provenance) {
+  const Json json = report_json(report, provenance);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   write_bytes(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -1,6 +1,7 @@
 #include "output/write_study.h"
 
 #include "output/csv_cell.h"
+#include "output/study_json.h"
 #include "output/whole_folder.h"
 #include "output/write_bytes.h"
 #include "output/write_plot.h"
@@ -112,7 +113,9 @@ Json price_part(double error, const Study& study) {
       {"error", error}, {"finding", name_of(price.finding)}, {"cpu_seconds", known ? Json(price.cpu_seconds) : Json()}};
 }
 
-std::string facts(const Scene& scene, const Study& study, const Provenance& provenance) {
+}  // namespace
+
+nlohmann::ordered_json study_json(const Scene& scene, const Study& study, const Provenance& provenance) {
   Json json;
   json["kind"] = study_kind;
   json["version"] = version();
@@ -135,9 +138,10 @@ std::string facts(const Scene& scene, const Study& study, const Provenance& prov
   json["prices"] = Json::array();
   for (const double error : {0.1, 0.03, 0.01, 0.003, 0.001}) json["prices"].push_back(price_part(error, study));
   json["conclusion"] = conclusion(study);
-  // Names from a model may hold bytes that are not UTF-8: they are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
 }
+
+namespace {
 
 // What is drawn over what.
 struct StudyPlot {
@@ -209,7 +213,8 @@ void write_study(const fs::path& folder, const Scene& scene, const Study& study,
   write_whole_folder(folder, is_earlier_study, [&](const fs::path& in) {
     write_bytes(in / study_table_file, table(study));
     for (const StudyPlot& picture : pictures()) draw(in, scene, study, picture);
-    write_bytes(in / study_facts_file, facts(scene, study, provenance));
+    write_bytes(in / study_facts_file,
+                study_json(scene, study, provenance).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   });
 }
 

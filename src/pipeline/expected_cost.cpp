@@ -56,9 +56,8 @@ double rays_per_patch(const Scene& scene, const Plan& plan) {
 
 ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   const auto n = static_cast<double>(mesh.size());
-  ExpectedCost cost{.patches = mesh.size(),
-                    .bytes = memory_needed(mesh.size(), plan.assembly, plan.accuracy),
-                    .of_first_mesh = refines(plan.accuracy)};
+  ExpectedCost cost{
+      .patches = mesh.size(), .bytes = memory_needed(mesh.size(), plan), .of_first_mesh = refines(plan.accuracy)};
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
 

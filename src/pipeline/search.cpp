@@ -78,8 +78,8 @@ double patches_in(double seconds, double seconds_per_pair, double known) {
 [[noreturn]] void refuse(const Plan& plan, double patches, double reachable) {
   throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) +
                     "%: found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
-                    gigabytes(memory_needed(static_cast<std::size_t>(patches), plan.assembly, plan.accuracy)) +
-                    ", and " + gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
+                    gigabytes(memory_needed(static_cast<std::size_t>(patches), plan)) + ", and " +
+                    gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
                     percent(reachable, 2) + "% or more: ask for that, or for an accuracy.interest");
 }
 
@@ -177,6 +177,7 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 
 void Search::keep(const Simulation& simulation) {
   if (!run_.with.keeps_unfinished || (kept_ && !simulation.error_bars)) return;
+  if (!may_keep_solution(simulation.mesh.size(), simulation.plan)) return;
   kept_ = simulation;
   kept_->unfinished = true;
   run_.with.keeps_unfinished();

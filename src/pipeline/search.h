@@ -20,7 +20,7 @@ class Search {
   MeshToSolve first() const;
 
   /// Keeps a solution, where Steps::keeps_unfinished, in case the run is stopped before there is a better one: that of
-  /// the first mesh before its errors are known, every later one with them.
+  /// the first mesh before its errors are known, every later one with them, as long as the memory has room for it.
   void keep(const Simulation& simulation);
   /// What was kept last.
   const std::optional<Simulation>& kept() const { return kept_; }

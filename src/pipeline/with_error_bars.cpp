@@ -3,6 +3,7 @@
 #include "accuracy/errors.h"
 #include "accuracy/errors_within_parents.h"
 #include "accuracy/interest.h"
+#include "accuracy/needed_bands.h"
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
@@ -105,7 +106,7 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
   Field dark = dark_differences(simulation.transport.lost, solved);
   Field by_dark_parts = transport.apply(dark);
   return {mesh_errors(result.mesh, transport, solved, coarse),
-          unseen_differences_of(run, simulation, transport, weight, rays_from_quarters),
+          unseen_differences_of(run, simulation, in_needed_bands(solved), transport, weight, rays_from_quarters),
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
@@ -173,11 +174,14 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
   result.interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
   if (!run.is_part) require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
+  const InNeededBands needed = in_needed_bands(solved);
   const UnseenDifferences unseen =
-      unseen_differences_of(run, simulation, transport, weight, rays_of_quarters(simulation));
+      unseen_differences_of(run, simulation, needed, transport, weight, rays_of_quarters(simulation));
+  const auto within_parents = [&] {
+    return expanded(errors_within_parents(result.mesh, transport, needed.solved()), needed.bands);
+  };
   const bool has_parents = result.mesh.parents.size() > 0;
-  const Field mesh =
-      has_parents ? Field(unseen.error.max(errors_within_parents(result.mesh, transport, solved))) : unseen.error;
+  const Field mesh = has_parents ? Field(unseen.error.max(within_parents())) : unseen.error;
   simulation.error_bars = {.mesh = mesh,
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
@@ -193,7 +197,12 @@ double share_of_lamps(const RadiosityProblem& problem) {
 }
 
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
-  if (transport.rays) return with_bars_of_rays(run, std::move(result), *transport.rays);
+  if (transport.rays) {
+    // Beside the rows all of it is in the solution by now.
+    transport.light.reset();
+    transport.facts = {};
+    return with_bars_of_rays(run, std::move(result), *transport.rays);
+  }
   if (!run.plan.accuracy.error_bars) return result;
   result.raw = std::move(transport.assembly);
   const RowTransport& rows = *transport.rows;

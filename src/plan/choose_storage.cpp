@@ -1,5 +1,6 @@
 #include "plan/choose_storage.h"
 
+#include "plan/check_request.h"
 #include "plan/decide.h"
 #include "plan/memory.h"
 
@@ -61,18 +62,34 @@ std::string reason_for_rays(const StoredLight& light, const Request& request, do
 
 }  // namespace
 
+namespace {
+
+// Error bars of so many patches in pairs take two fifths of the run; of twice as many, three fifths.
+constexpr std::size_t most_patches_with_cheap_bars = 5000;
+
+ChosenStorage with_cheap_bars(ChosenStorage chosen, const Given& given, const StoredLight& light) {
+  const bool is_cheap = chosen.request.assembly.storage == Storage::tiles && light.is_reflected &&
+                        light.patches <= most_patches_with_cheap_bars;
+  if (chosen.request.accuracy.cheap_error_bars && is_cheap && !part_without_error_bars(chosen.request, given))
+    chosen.request.accuracy.error_bars = true;
+  return chosen;
+}
+
+}  // namespace
+
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light) {
   ChosenStorage chosen{request, {}};
   const bool asks_for_rays = request.assembly.storage == Storage::rays;
   if (asks_for_rays && light.is_reflected && !given.mesh && !given.ray_rows) chosen.request.accuracy.error_bars = true;
   const bool lacks_bars = asks_for_rays && !light.is_reflected && has_error_bars(request.accuracy);
-  if (request.assembly.storage != Storage::automatic && !lacks_bars) return chosen;
+  if (request.assembly.storage != Storage::automatic && !lacks_bars)
+    return with_cheap_bars(std::move(chosen), given, light);
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
   const bool too_many = light.patches > most_patches_in_pairs || bytes > usable_memory(request.resources);
   const bool pays = light.is_reflected && (too_many || light.is_mirrored);
   const bool has_to = light.is_mirrored && !has_error_bars(request.accuracy);
-  if (!(pays || has_to) || takes_pairs(request, given)) return chosen;
+  if (!(pays || has_to) || takes_pairs(request, given)) return with_cheap_bars(std::move(chosen), given, light);
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
   if (light.is_mirrored && light.patches <= most_patches_with_more_rays)

@@ -39,7 +39,7 @@ struct StoredLight {
 /// pairs do not fit into the memory, unless something that is asked for takes_pairs() or no light is reflected in
 /// either way. Another storage stays, but rays where error bars are wanted of light that is not reflected: that takes
 /// tiles. Rows of rays have error bars where light is reflected, and with these nested meshes. Small meshes that have
-/// rays because of mirrors get more of them.
+/// rays because of mirrors get more of them. Pairs have error bars where AccuracyOptions::cheap_error_bars wants them.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

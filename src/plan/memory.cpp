@@ -24,8 +24,12 @@ constexpr double bytes_of_parents = 0.7;  // with error bars: the matrix of the 
 constexpr double bytes_while_refining =
     5.5;  // another matrix before closure, and at the end of a mesh that of the next
 constexpr double bytes_per_patch = 1500;
-constexpr double bytes_of_ray_rows = 1500;         // per patch: the directions of the solver, and what rows all have
-constexpr double bytes_of_ray = 16;                // and for each of its rays
+constexpr double bytes_of_ray_rows = 180;          // per patch of what rows all have, and for one band of light
+constexpr double bytes_in_colour = 1100;           // and for two more
+constexpr double bytes_of_ray = 4;                 // and for each of its rays
+constexpr double bytes_of_specular_ray = 16;       // which stop at mirrors and clear faces, too
+constexpr double bytes_kept = 600;                 // per patch of a solution that is kept in case the run is stopped
+constexpr double bytes_of_next_mesh = 1000;        // per patch where rows of rays are refined
 constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
 
@@ -39,9 +43,17 @@ double bytes_of_a_pair(const AssemblyOptions& assembly, const AccuracyOptions& a
   return bytes_per_pair + (assembly.keep_errors ? bytes_per_error : 0);
 }
 
-double bytes_of_a_patch(const AssemblyOptions& assembly) {
-  if (assembly.storage == Storage::rays) return bytes_per_patch + bytes_of_ray_rows + bytes_of_ray * assembly.rays;
+double bytes_of_a_patch(const AssemblyOptions& assembly, const AccuracyOptions& accuracy, const LightInMemory& light) {
+  if (assembly.storage == Storage::rays) {
+    return bytes_per_patch + bytes_of_ray_rows + (light.in_colour ? bytes_in_colour : 0) +
+           (refines(accuracy) ? bytes_of_next_mesh : 0) +
+           (light.is_mirrored ? bytes_of_specular_ray : bytes_of_ray) * assembly.rays;
+  }
   return bytes_per_patch + (keeps_entries(assembly.storage) ? 0 : bytes_of_coarse_transport);
+}
+
+LightInMemory light_in_memory(const Plan& plan) {
+  return {simulates(plan.decisions, Effect::colour), simulates(plan.decisions, Effect::mirrors)};
 }
 
 double installed_bytes() {
@@ -56,9 +68,19 @@ std::string gigabytes(double bytes) {
   return text.str();
 }
 
-double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy) {
+double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy,
+                     const LightInMemory& light) {
   const auto n = static_cast<double>(patches);
-  return bytes_of_a_pair(assembly, accuracy) * n * n + bytes_of_a_patch(assembly) * n + bytes_of_program;
+  return bytes_of_a_pair(assembly, accuracy) * n * n + bytes_of_a_patch(assembly, accuracy, light) * n +
+         bytes_of_program;
+}
+
+double memory_needed(std::size_t patches, const Plan& plan) {
+  return memory_needed(patches, plan.assembly, plan.accuracy, light_in_memory(plan));
+}
+
+bool may_keep_solution(std::size_t patches, const Plan& plan) {
+  return memory_needed(patches, plan) + bytes_kept * static_cast<double>(patches) <= usable_memory(plan.resources);
 }
 
 double usable_memory(const Resources& resources) { return resources.memory.value_or(usable_share * installed_bytes()); }
@@ -66,7 +88,7 @@ double usable_memory(const Resources& resources) { return resources.memory.value
 // The number of patches for which memory_needed() is usable.
 double patches_that_fit(const Plan& plan) {
   const double left = std::max(0.0, usable_memory(plan.resources) - bytes_of_program);
-  const double of_a_patch = bytes_of_a_patch(plan.assembly);
+  const double of_a_patch = bytes_of_a_patch(plan.assembly, plan.accuracy, light_in_memory(plan));
   const double of_a_pair = bytes_of_a_pair(plan.assembly, plan.accuracy);
   if (of_a_pair == 0) return std::max(1.0, left / of_a_patch);
   const double half = of_a_patch / (2 * of_a_pair);
@@ -74,7 +96,7 @@ double patches_that_fit(const Plan& plan) {
 }
 
 void require_memory(std::size_t patches, const Request& request, const Plan& plan) {
-  const double needed = memory_needed(patches, plan.assembly, plan.accuracy);
+  const double needed = memory_needed(patches, plan);
   const double usable = usable_memory(plan.resources);
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_that_fit(plan));

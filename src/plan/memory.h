@@ -8,9 +8,22 @@
 
 namespace patchlight {
 
+/// What of the light takes memory: bands that differ, and rays that go on from mirrors and clear faces.
+struct LightInMemory {
+  bool in_colour = true;
+  bool is_mirrored = true;
+};
+
 /// Bytes that solving takes at its peak, all in all: rather a little too many than too few. It follows from whether
 /// form factors are kept, and their standard errors, too.
-double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy);
+double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy,
+                     const LightInMemory& light = {});
+
+/// The same as it is planned.
+double memory_needed(std::size_t patches, const Plan& plan);
+
+/// True when a solution may be copied as well before its errors are known.
+bool may_keep_solution(std::size_t patches, const Plan& plan);
 
 /// Bytes that the run may take.
 double usable_memory(const Resources& resources);

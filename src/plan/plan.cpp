@@ -107,19 +107,29 @@ struct PatchSize {
   std::vector<std::string> notes;
 };
 
+// The kept sides with their lines, and what is known of the number of their patches.
+struct Outlined {
+  const Scene& scene;
+  const KeptSides& sides;
+  const ContactLines& contacts;
+  EdgeSearch& search;
+};
+
+double nested_patches(const Outlined& of, double edge) {
+  return static_cast<double>(nest(tessellate(of.scene, of.sides, edge, of.contacts)).patches.size());
+}
+
 // The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
 // whole: of a model with many small faces the number of parents lies anywhere between a quarter of them and all.
-double parents_edge_for(const Scene& scene, const KeptSides& sides, const ContactLines& contacts, std::size_t wanted,
-                        std::size_t least) {
+double parents_edge_for(const Outlined& scene, std::size_t wanted, std::size_t least) {
   constexpr double enough = 0.8;
   constexpr double close_enough = 0.05;
   constexpr int guesses = 6;
   // What no memory holds is refused later, and not meshed to find that out.
   constexpr std::size_t too_many = 5'000'000;
-  if (wanted > too_many) return 2 * max_edge_for(scene, sides, wanted, contacts);
-  EdgeSearch search(scene, sides, contacts);
-  double edge = search.edge_for(wanted / 4);
-  double number = static_cast<double>(nest(tessellate(scene, sides, edge, contacts)).patches.size());
+  if (wanted > too_many) return 2 * scene.search.edge_for(wanted);
+  double edge = scene.search.edge_for(wanted / 4);
+  double number = nested_patches(scene, edge);
   const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
   // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
   const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - static_cast<double>(least)); };
@@ -128,8 +138,8 @@ double parents_edge_for(const Scene& scene, const KeptSides& sides, const Contac
   std::size_t many = wanted;
   for (int k = 0; k < guesses && many > few + 1; ++k) {
     const std::size_t parents = (few + many) / 2;
-    const double guess = search.edge_for(parents);
-    const auto patches = static_cast<double>(nest(tessellate(scene, sides, guess, contacts)).patches.size());
+    const double guess = scene.search.edge_for(parents);
+    const double patches = nested_patches(scene, guess);
     if (miss(patches) < miss(number)) edge = guess, number = patches;
     if (miss(number) < close_enough) break;
     (patches < static_cast<double>(wanted) ? few : many) = parents;
@@ -144,37 +154,34 @@ std::size_t patches_wanted(std::size_t asked, std::size_t least, const Request& 
 }
 
 // About so many patches there will be, or the least that the edge asked for allows.
-std::size_t expected_patches(const Scene& scene, const Request& request, const KeptSides& sides,
-                             const ContactLines& contacts) {
-  if (request.mesh.max_edge) return least_patches_with(scene, sides, *request.mesh.max_edge, contacts);
-  return patches_wanted(patches_asked(request), least_patches(scene, sides, contacts), request);
+std::size_t expected_patches(const Outlined& of, const Request& request) {
+  if (request.mesh.max_edge) return least_patches_with(of.scene, of.sides, *request.mesh.max_edge, of.contacts);
+  return patches_wanted(patches_asked(request), of.search.least_patches(), request);
 }
 
 // The largest edge for the number of patches that is asked for.
-PatchSize patch_size_for(std::size_t asked, const Scene& scene, const Request& request, const KeptSides& sides,
-                         const ContactLines& contacts) {
-  const std::size_t least = least_patches(scene, sides, contacts);
+PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& request) {
+  const std::size_t least = of.search.least_patches();
   const std::size_t wanted = patches_wanted(asked, least, request);
   // A nested mesh is made from parents with edges twice as long.
-  PatchSize size{has_error_bars(request.accuracy) ? parents_edge_for(scene, sides, contacts, wanted, least) / 2
-                                                  : max_edge_for(scene, sides, wanted, contacts),
-                 wanted,
-                 {}};
-  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(scene, asked, wanted));
+  PatchSize size{
+      has_error_bars(request.accuracy) ? parents_edge_for(of, wanted, least) / 2 : of.search.edge_for(wanted),
+      wanted,
+      {}};
+  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(of.scene, asked, wanted));
   return size;
 }
 
-PatchSize patch_size(const Scene& scene, const Request& request, const KeptSides& sides, const ContactLines& contacts) {
+PatchSize patch_size(const Outlined& of, const Request& request) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  PatchSize size = request.mesh.max_edge
-                       ? PatchSize{*request.mesh.max_edge, expected_patches(scene, request, sides, contacts), {}}
-                       : patch_size_for(asked, scene, request, sides, contacts);
+  PatchSize size = request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, expected_patches(of, request), {}}
+                                         : patch_size_for(asked, of, request);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;
-  for (Problem& problem : problems_with_size(scene)) of_size.push_back(std::move(problem.what));
-  size.notes =
-      joined({std::move(of_size), std::move(size.notes), notes_on_fine_outlines(scene, sides, asked, outline_edge)});
+  for (Problem& problem : problems_with_size(of.scene)) of_size.push_back(std::move(problem.what));
+  size.notes = joined(
+      {std::move(of_size), std::move(size.notes), notes_on_fine_outlines(of.scene, of.sides, asked, outline_edge)});
   return size;
 }
 
@@ -227,9 +234,11 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const bool mirrors = (facts.mirrors > 0 || facts.openings > 0) && !contains(asked.effects.skip, Effect::mirrors);
+  EdgeSearch search(scene, sides, contacts);
+  const Outlined outlined{scene, sides, contacts, search};
   const auto [request, note_on_storage] =
-      choose_storage(asked, given, {expected_patches(scene, asked, sides, contacts), reflects, mirrors});
-  PatchSize size = patch_size(scene, request, sides, contacts);
+      choose_storage(asked, given, {expected_patches(outlined, asked), reflects, mirrors});
+  PatchSize size = patch_size(outlined, request);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
@@ -256,7 +265,8 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
   auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, false);
-  PatchSize size = patch_size(scene, request, sides, contacts);
+  EdgeSearch search(scene, sides, contacts);
+  PatchSize size = patch_size({scene, sides, contacts, search}, request);
   for (std::string& note : notes_on_pairs(scene, request)) size.notes.push_back(std::move(note));
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);

@@ -102,6 +102,7 @@ class FinalGather {
   const Lens& lens_;
   const FinalGatherOptions& options_;
   GatheredLight gather_;
+  std::vector<SeenSphere> spheres_;
   IrradianceCache cache_;
   std::vector<PixelTile> tiles_;
   std::vector<PixelSamples> pixels_;
@@ -116,6 +117,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
       lens_(lens),
       options_(options),
       gather_(solved),
+      spheres_(spheres_of(solved.lights.lighting.luminaires)),
       cache_(solved.luminous_weights) {
   for (int top = 0; top < options.height; top += gather_tile_edge)
     for (int left = 0; left < options.width; left += gather_tile_edge)
@@ -154,7 +156,7 @@ std::vector<FinalGather::Candidate> FinalGather::candidates_in_row(int y, int st
     if (cache_.weight_at(at.point, solved_.mesh.normal[at.patch]) < enough_weight)
       wanted.push_back({at, false, lens_.pixel_width(distance)});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays, spheres_)) {
     if (!seen.patch || !is_plain(*seen.patch)) continue;
     add({seen.point, *seen.patch}, seen.distance);
     if (const auto other = behind(*seen.patch)) add({seen.point, *other}, seen.distance);
@@ -259,9 +261,13 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
     const SurfacePoint at{seen.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
     points.push_back({at, sample.index, hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), 3}), aim});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays, spheres_)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
     if (seen.outlook) all.outlook[ray] += seen.share;
+    if (seen.sphere != nullptr) {
+      all.radiance.row(ray) += seen.share * seen.sphere->radiance;
+      continue;
+    }
     if (!seen.patch) {
       if (options_.surroundings) all.radiance.row(ray) += seen.share * options_.surroundings(seen.direction);
       continue;
@@ -329,7 +335,7 @@ void FinalGather::see_layers() {
         at.push_back(index(x, y));
       }
     }
-    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays, spheres_)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;

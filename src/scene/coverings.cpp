@@ -225,7 +225,9 @@ std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings&
   add(ProblemKind::covered_lamp, std::move(lamps),
       " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
   add(ProblemKind::overlapping_faces, std::move(faces),
-      " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first");
+      " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first, "
+      "and no error bar "
+      "has what that changes");
   return problems;
 }
 

@@ -201,7 +201,10 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                           .surroundings = surroundings},
                          observer);
   } else {
-    const RenderOptions fineness{.width = options.width, .height = options.height, .surroundings = surroundings};
+    const RenderOptions fineness{.width = options.width,
+                                 .height = options.height,
+                                 .surroundings = surroundings,
+                                 .spheres = spheres_of(seen.luminaires)};
     taken.image = render(simulation.mesh, radiance, occluder, camera, up, fineness, observer);
   }
   return shown(std::move(taken), camera, options.colors, bands_of(scene));

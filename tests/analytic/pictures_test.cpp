@@ -356,6 +356,29 @@ TEST(FinalPicture, HidesTheMeshByDay) {
   EXPECT_LT(std::sqrt((a - b).square().sum() / inside.sum()), 0.02 * b.sum() / inside.sum());
 }
 
+TEST(FinalPicture, ShowsSpheresThatEmit) {
+  // At 2 m before a black wall, of radius 0.3: parallel rays see a disc of M / pi.
+  Scene scene = empty_scene({grey(0)});
+  scene = with_quad(std::move(scene), {Point(-9, 4, -9), Point(9, 4, -9), Point(9, 4, 9), Point(-9, 4, 9)});
+  Luminaire lamp;
+  lamp.position = Point(0, 2, 0);
+  lamp.light = SphericalLamp{0.3, Spectrum::Constant(1, 5)};
+  scene.luminaires = {lamp};
+  Camera camera{Point(0, 0, 0), Point(0, 1, 0)};
+  camera.projection = Projection::orthographic;
+  camera.height = 1;
+  const Simulation simulation = solved(scene, 50);
+  for (const PictureQuality quality : {PictureQuality::draft, PictureQuality::final}) {
+    PictureOptions options = final_options(camera, 64);
+    options.quality = quality;
+    const Picture picture = take_picture(scene, simulation, options);
+    EXPECT_NEAR(picture.radiance.pixels(32 * 64 + 32, 0), 5 / pi, 1e-9);
+    EXPECT_EQ(picture.radiance.pixels(0, 0), 0);
+    // Its outline, 2 pi 0.3 of 64 pixels, is resolved to less than a tenth of a pixel.
+    EXPECT_NEAR(picture.radiance.pixels.col(0).mean(), 0.09 * 5, 0.1 / 64 * 2 * pi * 0.3 * 5 / pi);
+  }
+}
+
 TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
   // A room of 6 x 4 x 3 m with two luminous squares of 0.6 m in its ceiling, 3,000 cd/m^2 each, seen from 1.2 m. By
   // hand: omega of each by its two triangles as seen from the eye, p at its middle by Guth's formula, and the

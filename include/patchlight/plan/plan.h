@@ -30,7 +30,10 @@ struct MeshOptions {
 
 /// How far the answer may be off.
 struct AccuracyOptions {
-  bool error_bars = false;  ///< of every patch, from mesh, form factors and solver; keeps standard errors
+  bool error_bars = false;        ///< of every patch, from mesh, form factors and solver; keeps standard errors
+  bool cheap_error_bars = false;  ///< error bars where they take less than half of the run: the plan has them of
+                                  ///< reflected light by rows of rays anyway, and with this by up to 5,000 patches in
+                                  ///< pairs
   std::optional<double> relative_error = {};  ///< of the patches' mean radiosities: patches and samples are refined
                                               ///< until the error bars are below; the mesh and the samples that are
                                               ///< asked for are where it starts

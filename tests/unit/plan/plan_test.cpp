@@ -127,6 +127,29 @@ TEST(MakePlan, TakesRaysForManyPatches) {
 }
 
 // No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
+TEST(MakePlan, HasErrorBarsOfPairsWhereTheyAreCheap) {
+  const Scene scene = cube_room(0.5, 1);
+  const auto has_bars = [&](std::size_t patches, const auto& change) {
+    Request request;
+    request.mesh.patches = patches;
+    request.accuracy.cheap_error_bars = true;
+    change(request);
+    return make_plan(scene, request).accuracy.error_bars;
+  };
+  const auto nothing = [](Request&) {};
+  EXPECT_TRUE(has_bars(4000, nothing));
+  EXPECT_TRUE(has_bars(4000, [](Request& r) { r.assembly.storage = Storage::tiles; }));
+  EXPECT_FALSE(has_bars(8000, nothing));
+  EXPECT_FALSE(has_bars(4000, [](Request& r) { r.accuracy.cheap_error_bars = false; }));
+  // What leaves no error bars is not refused for these.
+  EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.close = false; }));
+  EXPECT_FALSE(has_bars(4000, [](Request& r) { r.effects.skip = {Effect::interreflection}; }));
+  EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.storage = Storage::on_demand; }));
+  Request dark;
+  dark.accuracy.cheap_error_bars = true;
+  EXPECT_FALSE(make_plan(cube_room(0, 1), dark).accuracy.error_bars) << "no light is reflected";
+}
+
 TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
   EXPECT_EQ(make_plan(furnished_room(0), {}).assembly.storage, Storage::on_demand);
   EXPECT_EQ(make_plan(furnished_room(0.5), {}).assembly.storage, Storage::tiles);

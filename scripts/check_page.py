@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""Opens pages of patchlight in a headless Chromium, clicks patches and compares what the page tells with the .vtp.
+
+usage: scripts/check_page.py TOOL FOLDER    writes pages, results and screenshots into FOLDER
+A page must open without a message on its console; of five patches clicked the values are those of the .vtp of the same
+run, and the place clicked lies on the patch. Names that are HTML stay text. Without Chromium it says so and ends well,
+unless CI is set.
+"""
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from read_vtp import read_vtp
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BROWSER = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+           "--hide-scrollbars", "--disable-extensions", "--enable-logging=stderr", "--virtual-time-budget=30000"]
+LUMINOUS = (179 * 0.2126, 179 * 0.7152, 179 * 0.0722)  # lm/W times the weights of Rec. 709
+
+# Clicks places of the canvas until five patches are found, and leaves what the page tells in place of all else.
+CLICKS = """<script>
+setTimeout(() => {
+  const canvas = document.getElementById("canvas"), found = {};
+  const choose = (name) => {
+    const select = document.getElementById("quantity");
+    if (![...select.options].some((option) => option.value === name)) return;
+    select.value = name;
+    select.dispatchEvent(new Event("change"));
+  };
+  for (let k = 0; k < 400 && Object.keys(found).length < 5 && canvas.clientWidth > 0; ++k) {
+    const box = canvas.getBoundingClientRect();
+    const at = {clientX: box.left + box.width * (0.05 + 0.9 * ((k * 0.618034) % 1)), clientY: box.top + box.height * (0.05 + 0.9 * ((k * 0.754878) % 1)), bubbles: true};
+    canvas.dispatchEvent(new MouseEvent("click", at));
+    const told = {};
+    for (const value of document.querySelectorAll("#values dd")) told[value.dataset.name] = value.dataset.value;
+    if (told.patch !== undefined) found[told.patch] = told;
+  }
+  choose("luminance");
+  const facts = {state: document.documentElement.dataset.state, patches: Object.values(found), bold: document.querySelectorAll("b, blink").length, injected: window.injected === true,
+    title: document.title, lost: document.getElementById("lost").textContent, headings: [...document.querySelectorAll("h2")].map((heading) => heading.textContent),
+    unlabelled: [...document.querySelectorAll("input, select")].filter((control) => control.labels.length === 0).length, options: document.getElementById("quantity").options.length,
+    ticks: document.getElementById("ticks").textContent};
+  const pre = document.createElement("pre");
+  pre.id = "check";
+  pre.textContent = JSON.stringify(facts);
+  document.body.replaceChildren(pre);
+  document.head.replaceChildren();
+}, 4000);
+</script></body>"""
+
+
+def browse(browser, page, *options):
+    """What the browser prints, and the messages of the page's console."""
+    with tempfile.TemporaryDirectory(prefix="patchlight-browser-") as profile:
+        done = subprocess.run([browser, *BROWSER, f"--user-data-dir={profile}", *options, page.as_uri()],
+                              capture_output=True, text=True, timeout=300, check=False)
+    return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+
+
+def facts_of(browser, page):
+    """The page after the clicks."""
+    clicked = page.with_suffix(".clicked.html")
+    clicked.write_text(page.read_text(encoding="utf-8").replace("</body>", CLICKS), encoding="utf-8")
+    printed, messages = browse(browser, clicked, "--dump-dom")
+    clicked.unlink()
+    found = re.search(r'<pre id="check">(.*?)</pre>', printed, re.DOTALL)
+    if not found:
+        return None, messages
+    text = found[1].replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+    return json.loads(text), messages
+
+
+def distance_to_plane(place, corners):
+    """Distance of a place from the plane of three corners, and whether it lies inside the polygon's bounds, grown."""
+    a, b, c = corners[:3]
+    u, v, w = ([q[k] - a[k] for k in range(3)] for q in (b, c, place))
+    normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    return abs(sum(n * x for n, x in zip(normal, w))) / math.sqrt(sum(n * n for n in normal))
+
+
+def faults_of_patch(told, points, corners, cells):
+    """What the page tells of a patch that the .vtp does not say."""
+    patch = int(told["patch"])
+    outline = [points[k] for k in corners[patch]]
+    place = [float(word) for word in told["place"].split()]
+    extent = max(max(p[k] for p in points) - min(p[k] for p in points) for k in range(3))
+    step = extent / 65535  # of the page's coordinates
+    if distance_to_plane(place, outline) > 2 * step:
+        yield f"patch {patch}: the place clicked is {distance_to_plane(place, outline)} m off its plane"
+    if any(not min(p[k] for p in outline) - 2 * step <= place[k] <= max(p[k] for p in outline) + 2 * step
+           for k in range(3)):
+        yield f"patch {patch}: the place clicked is not on it"
+    expected = {"source_polygon": cells["source_polygon"][patch], "area": cells["area"][patch],
+                "radiance": cells["radiance"][patch], "irradiance": cells["irradiance"][patch],
+                "luminance": cells["luminance"][patch]}
+    if len(cells["irradiance"][patch]) == 3:
+        for name, array in (("illuminance", "irradiance"), ("direct_illuminance", "direct_irradiance"),
+                            ("error_total", "error_total"), ("error_mesh", "error_mesh"),
+                            ("error_form_factor", "error_form_factor"), ("error_solver", "error_solver")):
+            if array in cells and name in told:
+                expected[name] = [sum(w * x for w, x in zip(LUMINOUS, cells[array][patch]))]
+    for name, values in expected.items():
+        found = [float(word) for word in told[name].split()]
+        # Both files have seven digits.
+        if any(abs(a - b) > 1e-6 * abs(b) + 1e-12 for a, b in zip(found, values)) or len(found) != len(values):
+            yield f"patch {patch}: {name} is {found} on the page, {list(values)} in the .vtp"
+
+
+def check(browser, folder, name):
+    """The faults of one page; prints what it saw."""
+    page = folder / f"{name}.html"
+    facts, messages = facts_of(browser, page)
+    faults = [f"on the console: {message}" for message in messages]
+    if facts is None:
+        return faults + ["the page did not come to its end"]
+    points, corners, cells = read_vtp(folder / f"{name}.vtp")
+    for told in facts["patches"]:
+        faults += faults_of_patch(told, points, corners, cells)
+    if facts["state"] != "ready" or facts["lost"]:
+        faults.append(f"the page is not ready: {facts['lost']}")
+    if len(facts["patches"]) < 5:
+        faults.append(f"found {len(facts['patches'])} patches by clicks; expected 5")
+    if facts["bold"] or facts["injected"]:
+        faults.append("a name became HTML")
+    if facts["unlabelled"]:
+        faults.append("a control has no label")
+    print(f"page: {name}: {page.stat().st_size / 1e6:.2f} MB, patches "
+          f"{', '.join(told['patch'] for told in facts['patches'])} as in the .vtp, {facts['options']} kinds of colours, "
+          f"sections: {', '.join(facts['headings'])}")
+    return faults
+
+
+HOSTILE = {"</script><script>window.injected=true</script>": "0.5 0.5 0.5", '"><b>bold</b>': "0.4 0.2 0.1",
+           "\U0001F4A1&lt;'\\u003c": "0.3 0.6 0.3"}
+
+
+def write_hostile(folder):
+    """A box whose material, object and file names are HTML."""
+    names = list(HOSTILE)
+    (folder / "hostile.mtl").write_text("".join(
+        f"newmtl {name.replace(' ', '_')}\nKd {kd}\n" for name, kd in HOSTILE.items()) + "newmtl lamp\nKd 0 0 0\nKe 5 5 5\n",
+        encoding="utf-8")
+    faces = [(1, 2, 3, 4), (8, 7, 6, 5), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1)]
+    lines = ["mtllib hostile.mtl"] + [f"v {x} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    for k, face in enumerate(faces):
+        material = "lamp" if k == 1 else names[k % 3].replace(" ", "_")
+        lines += [f"o <b>{k}</b>", f"usemtl {material}", "f " + " ".join(map(str, face))]
+    (folder / "hostile.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def solve(tool, folder, name, *words):
+    """Solves a scene with a page and a .vtp."""
+    subprocess.run([tool, "solve", *map(str, words), "--quiet", "--html", folder / f"{name}.html", "-o",
+                    folder / f"{name}.vtp"], check=True)
+
+
+def main():
+    tool, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if browser is None:
+        if os.environ.get("CI"):
+            sys.exit("error: page: there is no chromium; apt-get install --no-install-recommends chromium")
+        print("page: there is no chromium; left out")
+        return
+    folder = folder.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    write_hostile(folder)
+    rooms = folder / "rooms.toml"
+    rooms.unlink(missing_ok=True)
+    subprocess.run([tool, "new", ROOT / "meshes/two_rooms.obj", "-o", rooms], check=True, stdout=subprocess.DEVNULL)
+    solve(tool, folder, "cornell_box", ROOT / "meshes/cornell_box.obj")
+    solve(tool, folder, "two_rooms", ROOT / "meshes/two_rooms.obj", "--patches", 3000)
+    solve(tool, folder, "accuracy", ROOT / "meshes/cornell_box.obj", "--sides", "front", "--accuracy", "1%")
+    solve(tool, folder, "daylight", rooms, "--sky", "overcast:10000lx", "--patches", 3000)
+    solve(tool, folder, "hostile", folder / "hostile.obj", "--patches", 300)
+    failed = False
+    for name in ("cornell_box", "two_rooms", "accuracy", "daylight", "hostile"):
+        for fault in check(browser, folder, name):
+            failed = True
+            print(f"error: page: {name}: {fault}", file=sys.stderr)
+        browse(browser, folder / f"{name}.html", f"--screenshot={folder / name}.png", "--window-size=1280,3600")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,170 @@
+#include "page/model_part.h"
+
+#include "light/photometry.h"
+#include "output/json_array.h"
+#include "page/drawn_faces.h"
+#include "page/packed.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Corners as multiples of the bounds' sizes over 65535: .15 mm in a room of ten metres.
+Json positions_part(const std::vector<Point>& vertices) {
+  Box box;
+  for (const Point& vertex : vertices) box.extend(vertex);
+  std::vector<std::uint16_t> steps;
+  steps.reserve(3 * vertices.size());
+  for (const Point& vertex : vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double size = box.sizes()[axis];
+      const double share = size > 0 ? (vertex[axis] - box.min()[axis]) / size : 0;
+      steps.push_back(static_cast<std::uint16_t>(std::lround(65535 * share)));
+    }
+  }
+  Json part = packed_array<std::uint16_t>(steps, 3);
+  part["low"] = json_array(vertices.empty() ? Point::Zero().eval() : box.min());
+  part["high"] = json_array(vertices.empty() ? Point::Zero().eval() : box.max());
+  return part;
+}
+
+// Means by area over the patches of each row.
+class RowMeans {
+ public:
+  RowMeans(const DrawnFaces& drawn, const PatchMesh& mesh) : drawn_(drawn), mesh_(mesh) {}
+
+  Field of(const FieldView& values) const {
+    Field means(static_cast<Eigen::Index>(drawn_.patches.size()), values.cols());
+    for (Eigen::Index row = 0; row < means.rows(); ++row) {
+      const PatchRange& range = drawn_.patches[static_cast<std::size_t>(row)];
+      // The value of one patch keeps its bits.
+      means.row(row) = values.row(range.begin);
+      if (range.end - range.begin == 1) continue;
+      means.row(row) *= mesh_.area[range.begin];
+      double area = mesh_.area[range.begin];
+      for (PatchIndex patch = range.begin + 1; patch < range.end; ++patch) {
+        means.row(row) += mesh_.area[patch] * values.row(patch);
+        area += mesh_.area[patch];
+      }
+      means.row(row) /= area;
+    }
+    return means;
+  }
+
+ private:
+  const DrawnFaces& drawn_;
+  const PatchMesh& mesh_;
+};
+
+Json floats_part(const Field& values) {
+  std::vector<float> numbers;
+  numbers.reserve(static_cast<std::size_t>(values.size()));
+  for (Eigen::Index k = 0; k < values.size(); ++k) numbers.push_back(static_cast<float>(values.data()[k]));
+  return packed_array<float>(numbers, static_cast<std::size_t>(values.cols()));
+}
+
+Field luminances(const Field& values, const Bands& bands) {
+  Field one(values.rows(), 1);
+  for (Eigen::Index row = 0; row < one.rows(); ++row) one(row, 0) = luminance(values.row(row), bands);
+  return one;
+}
+
+// Names are those of the arrays in .vtp where these are the same; of errors the luminance.
+Json values_part(const SolvedSurface& surface, const RowMeans& means) {
+  const Simulation& simulation = surface.simulation;
+  const Solution& solution = simulation.solution;
+  const Bands bands = bands_of(surface.scene);
+  Json part = Json::object();
+  const auto add = [&](const char* name, const Field& values) {
+    if (values.rows() == static_cast<Eigen::Index>(simulation.mesh.size())) part[name] = floats_part(means.of(values));
+  };
+  const auto add_luminous = [&](const char* name, const Field& values) {
+    if (values.rows() == static_cast<Eigen::Index>(simulation.mesh.size())) add(name, luminances(values, bands));
+  };
+  const auto add_scattered = [&](const char* name, const Field& irradiance) {
+    if (irradiance.rows() == static_cast<Eigen::Index>(simulation.mesh.size()))
+      add_luminous(name, simulation.problem.scattering.reflect(irradiance) / std::numbers::pi);  // dL = R dH / pi
+  };
+  add("radiance", solution.radiosity / std::numbers::pi);  // L = B / pi
+  add("irradiance", solution.irradiance);
+  add_luminous("luminance", solution.radiosity / std::numbers::pi);
+  add_luminous("illuminance", solution.irradiance);
+  add_luminous("direct_illuminance", solution.direct_irradiance);
+  if (const auto& bars = simulation.error_bars) {
+    add_scattered("error_total", bars->total());
+    add_scattered("error_mesh", bars->mesh);
+    add_scattered("error_form_factor", bars->form_factor);
+    add_scattered("error_solver", bars->solver);
+    add_scattered("display_error", bars->display);
+    add_luminous("error_illuminance", bars->total());
+    return part;
+  }
+  add_luminous("error_solver", solution.error / std::numbers::pi);
+  add_scattered("error_form_factor", simulation.ray_standard_error);
+  return part;
+}
+
+// Per row: its patch or the first of them, how many they are, their area, and what they are made of.
+Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
+  const PatchMesh& mesh = surface.simulation.mesh;
+  std::vector<std::uint32_t> first, count, face, material, group;
+  std::vector<std::uint8_t> side;
+  std::vector<float> areas;
+  for (const PatchRange& range : drawn.patches) {
+    const Polygon& polygon = surface.scene.polygons[mesh.polygon[range.begin]];
+    double area = 0;
+    for (PatchIndex patch = range.begin; patch < range.end; ++patch) area += mesh.area[patch];
+    first.push_back(range.begin);
+    count.push_back(range.end - range.begin);
+    areas.push_back(static_cast<float>(area));
+    face.push_back(polygon.face);
+    group.push_back(polygon.group);
+    material.push_back(mesh.material[range.begin]);
+    side.push_back(static_cast<std::uint8_t>(mesh.side[range.begin]));
+  }
+  return {{"patch", packed_array<std::uint32_t>(first, 1)},
+          {"patches", packed_array<std::uint32_t>(count, 1)},
+          {"area", packed_array<float>(areas, 1)},
+          {"source_polygon", packed_array<std::uint32_t>(face, 1)},
+          {"group_id", packed_array<std::uint32_t>(group, 1)},
+          {"material_id", packed_array<std::uint32_t>(material, 1)},
+          {"side", packed_array<std::uint8_t>(side, 1)}};
+}
+
+}  // namespace
+
+Json model_part(const SolvedSurface& surface, double exposure, std::size_t most_faces) {
+  const DrawnFaces drawn = drawn_faces(surface, exposure, most_faces);
+  const std::span<const std::uint32_t> corners(drawn.corners.empty() ? nullptr : drawn.corners.front().data(),
+                                               4 * drawn.corners.size());
+  const std::span<const std::uint8_t> colours(drawn.colours.empty() ? nullptr : drawn.colours.front().data(),
+                                              3 * drawn.colours.size());
+  Json part;
+  part["patches"] = surface.simulation.mesh.size();
+  part["faces"] = drawn.corners.size();
+  part["patches_left_out"] = drawn.left_out;
+  part["up"] = json_array(surface.scene.up);
+  part["photometric"] = surface.scene.photometric;
+  part["bands"] = Json::array();
+  for (const Band& band : bands_of(surface.scene)) part["bands"].push_back(band.name);
+  part["materials"] = Json::array();
+  for (const Material& material : surface.scene.materials) part["materials"].push_back(material.name);
+  part["groups"] = Json::array();
+  for (std::uint32_t group = 0; group < surface.scene.groups.size(); ++group)
+    part["groups"].push_back(group_name(surface.scene, group));
+  part["positions"] = positions_part(drawn.vertices);
+  part["colours"] = packed_array<std::uint8_t>(colours, 3);
+  part["corners"] = packed_array<std::uint32_t>(corners, 4);
+  part["row"] = packed_array<std::uint32_t>(drawn.row, 1);
+  part["rows"] = rows_part(surface, drawn);
+  part["values"] = values_part(surface, RowMeans(drawn, surface.simulation.mesh));
+  return part;
+}
+
+}  // namespace patchlight

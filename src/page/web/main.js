@@ -1,0 +1,212 @@
+// From the data of the page to what is seen of it: words and tables first, as they need nothing, then the model.
+const data = JSON.parse(byId("data").textContent);
+
+function writeHead() {
+  byId("title").textContent = data.file.split("/").pop() || "Scene";
+  const {report, model} = data;
+  const parts = [];
+  if (report) {
+    const error = report.relative_error;
+    parts.push(`${report.mesh.patches.toLocaleString("en")} patches on ${shown(report.mesh.area_m2)} m².`);
+    parts.push(error ? `Light that is reflected is known to ${percent(error.total)}.` : "How far the values may be off is not known: the run was made without error bars.");
+  } else if (model) {
+    parts.push(`${model.patches.toLocaleString("en")} patches.`);
+  }
+  parts.push(`Solved by patchlight ${data.version}.`);
+  byId("lead").textContent = parts.join(" ");
+}
+
+function problemParts(show) {
+  return data.problems.map((problem) => {
+    const line = element("p", problem.severity === "remark" ? {} : {class: "warning"}, `${problem.severity}: ${problem.what} `);
+    if (show && problem.outlines.length > 0) {
+      const button = element("button", {type: "button"}, "Show in the model");
+      button.addEventListener("click", () => show(problem.outlines));
+      line.append(button);
+    }
+    return line;
+  });
+}
+
+function writePictures() {
+  for (const picture of data.pictures) {
+    const image = element("img", {src: "data:image/png;base64," + picture.png, width: picture.width, height: picture.height, alt: picture.caption});
+    byId("pictures").append(element("figure", {}, image, element("figcaption", {}, picture.caption)));
+  }
+  byId("pictures").hidden = data.pictures.length === 0;
+}
+
+async function writeTables(show) {
+  const {report} = data;
+  if (data.comparison) section("comparison", "Solvers side by side", ...comparisonParts(data.comparison));
+  if (data.study) section("study", "What accuracy costs", ...studyParts(data.study));
+  const notes = report ? [...report.input.notes, ...report.plan.notes] : data.scene_notes;
+  const warnings = report && report.sensors ? report.sensors.warnings : [];
+  section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
+  if (report) {
+    section("accuracy", "What accuracy cost", ...accuracyParts(report));
+    if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch(() => []) : []));
+    section("materials", "Materials", materialsTable(report));
+    section("energy", "Energy balance", energyTable(report.energy_balance));
+    section("convergence", "Convergence", ...convergenceParts(report.solution));
+    section("plan", "Plan", ...planTable(report.plan));
+    section("costs", "Time", table("Seconds of each stage", ["stage", "seconds", "CPU s"], report.costs.map((cost) => [cost.stage, cost.seconds, cost.cpu_seconds])));
+  }
+  section("repeat", "How to repeat it", ...repeatParts(data));
+}
+
+function writeContents() {
+  for (const part of document.querySelectorAll("main section:not([hidden])")) {
+    byId("contents").append(element("a", {href: "#" + part.id}, part.querySelector("h2").textContent), " ");
+  }
+}
+
+// The views to start from: that of the first picture, from above, and all from outside.
+function views(model) {
+  const {low, high} = model.faces;
+  const middle = low.map((value, axis) => (value + high[axis]) / 2);
+  const size = Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1;
+  const up = model.up;
+  const away = (direction) => {
+    const length = Math.hypot(...direction);
+    return middle.map((value, axis) => value + 1.2 * size * direction[axis] / length);
+  };
+  const level = Math.abs(up[2]) > 0.7 ? [0.35, -1, 0] : Math.abs(up[1]) > 0.7 ? [0.35, 0, 1] : [0, 0.35, 1];
+  const outside = [away(level.map((value, axis) => value + 0.45 * up[axis])), middle, 50];
+  const above = [away(up.map((value, axis) => value + 0.001 * level[axis])), middle, 50];
+  const camera = data.pictures.length > 0 ? data.pictures[0].camera : null;
+  const usable = camera && camera.projection === "perspective";
+  return {outside, above, home: usable ? [camera.eye, camera.target, camera.vertical_field_of_view] : outside};
+}
+
+async function unpackedModel() {
+  const {model} = data;
+  const arrays = await unpackedAll({positions: model.positions, colours: model.colours, corners: model.corners, row: model.row});
+  return {...model, faces: {...arrays, low: model.positions.low, high: model.positions.high}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
+}
+
+function listenToColours(model, view) {
+  const choices = [["natural", "natural"], ...Object.keys(model.values).filter((name) => model.values[name].length === model.rows.area.length).map((name) => [name, `${names[name]}, ${units[name]}`])];
+  for (const [value, words] of choices) byId("quantity").append(element("option", {value}, words));
+  let scale = null;
+  const paint = () => {
+    const name = byId("quantity").value;
+    byId("legend").hidden = name === "natural";
+    if (name === "natural") return view.colour(naturalColours(model.faces, view.mesh));
+    view.colour(falseColours(model.faces, view.mesh, model.values[name], scale));
+    byId("ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", {}, shown(valueAt(share, scale), 3))));
+  };
+  const setScale = (to) => {
+    scale = {...to, logarithmic: byId("logarithmic").checked};
+    byId("low").value = Number(scale.low.toPrecision(4));
+    byId("high").value = Number(scale.high.toPrecision(4));
+    paint();
+  };
+  const fromInputs = () => setScale({low: Number(byId("low").value) || 0, high: Number(byId("high").value) || 0});
+  const chosen = () => model.values[byId("quantity").value];
+  byId("quantity").addEventListener("change", () => chosen() ? setScale(usualScale(chosen(), model.rows.area)) : paint());
+  for (const id of ["low", "high", "logarithmic"]) byId(id).addEventListener("change", fromInputs);
+  byId("whole-range").addEventListener("click", () => {
+    const known = chosen().filter((value) => Number.isFinite(value));
+    setScale({low: known.reduce((least, value) => Math.min(least, value), Infinity), high: known.reduce((most, value) => Math.max(most, value), -Infinity)});
+  });
+  drawBar(byId("bar"));
+  paint();
+}
+
+function listenToCut(model, view) {
+  const cut = () => {
+    const axis = byId("cut-axis").value === "" ? null : Number(byId("cut-axis").value);
+    byId("cut-at").disabled = byId("cut-other").disabled = axis === null;
+    const {low, high} = model.faces;
+    const at = axis === null ? 0 : low[axis] + byId("cut-at").value / 1000 * (high[axis] - low[axis]);
+    byId("cut-place").textContent = axis === null ? "" : shown(at) + " m";
+    view.setCut(axis, at, byId("cut-other").checked);
+  };
+  for (const id of ["cut-axis", "cut-at", "cut-other"]) byId(id).addEventListener("input", cut);
+}
+
+function listenToView(model, view) {
+  const from = views(model);
+  let marked = null, edges = null, pressed = null;
+  const choose = (x, y) => {
+    const hit = view.pick(x, y);
+    if (marked) marked.remove();
+    marked = null;
+    if (!hit) return byId("values").replaceChildren(element("p", {class: "faint"}, "There is no patch at that place."));
+    const same = [];
+    model.faces.row.forEach((row, face) => { if (row === hit.row) same.push(face); });
+    marked = view.lines(outlines(model.faces, view.mesh, same), 0xff2fd0);
+    tellRow(model, hit.row, hit.place);
+  };
+  view.canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+  view.canvas.addEventListener("click", (event) => {
+    if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
+    const box = view.canvas.getBoundingClientRect();
+    choose(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height);
+  });
+  for (const name of ["home", "above", "outside"]) byId(name).addEventListener("click", () => view.look(...from[name]));
+  byId("edges").addEventListener("change", () => {
+    if (edges) edges.remove();
+    edges = byId("edges").checked ? view.lines(outlines(model.faces, view.mesh, model.faces.row.keys()), 0x555555) : null;
+  });
+  listenToKeys(view, {home: () => view.look(...from.home), choose: () => choose(0, 0)});
+  view.look(...from.home);
+}
+
+function showOutlines(view) {
+  let shownLines = null;
+  return (places) => {
+    const ends = [];
+    for (const outline of places) {
+      outline.forEach((corner, k) => ends.push(...view.inside(corner).toArray(), ...view.inside(outline[(k + 1) % outline.length]).toArray()));
+    }
+    if (shownLines) shownLines.remove();
+    shownLines = view.lines(new Float32Array(ends), 0xff3020);
+    const corners = places.flat();
+    const middle = [0, 1, 2].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
+    view.controls.target.copy(view.inside(middle));
+    view.controls.update();
+    view.canvas.scrollIntoView({block: "center"});
+    view.canvas.focus();
+  };
+}
+
+function tellFewer(model) {
+  if (!model.photometric) byId("fewer").textContent = "Photometric values are 179 lm/W times the bands by their luminous weights: the lights of this scene are stated in watts. ";
+  if (model.faces.row.length === model.patches) return;
+  const left = model.patches_left_out;
+  byId("fewer").textContent += `The model has ${model.patches.toLocaleString("en")} patches and is drawn with ${model.faces.row.length.toLocaleString("en")} faces: where patches differ least, whole faces stand in their place with their means.`
+    + (left > 0 ? ` ${left.toLocaleString("en")} patches of the smallest faces are left out.` : "");
+}
+
+async function showModel() {
+  if (!data.model) return null;
+  byId("model").hidden = false;
+  try {
+    const model = await unpackedModel();
+    await loadThree(data.three);
+    tellFewer(model);
+    const view = modelView(byId("canvas"), model.faces, model.up);
+    listenToColours(model, view);
+    listenToCut(model, view);
+    listenToView(model, view);
+    return showOutlines(view);
+  } catch (error) {
+    byId("lost").hidden = false;
+    byId("lost").textContent = "The model cannot be drawn: this needs WebGL and DecompressionStream, as browsers since 2023 have them (" + error.message + "). Tables and pictures below are complete.";
+    for (const control of document.querySelectorAll(".controls *")) control.disabled = true;
+    return null;
+  }
+}
+
+async function start() {
+  writeHead();
+  writePictures();
+  const show = await showModel();
+  await writeTables(show);
+  writeContents();
+  document.documentElement.dataset.state = "ready";
+}
+
+start();

@@ -1,0 +1,24 @@
+// How numbers are written: four digits, as many as are worth reading.
+function shown(value, digits = 4) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "not known";
+  if (!Number.isFinite(value)) return value > 0 ? "no bound" : "none";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1);
+  return Number(value.toPrecision(digits)).toLocaleString("en", {maximumFractionDigits: 12, useGrouping: size >= 1e4});
+}
+
+function percent(share) {
+  if (share === null || share === undefined || !Number.isFinite(share)) return shown(share);
+  return shown(100 * share, 3) + " %";
+}
+
+function spectrum(values) {
+  return values.map((value) => shown(value)).join(", ");
+}
+
+// The next of 1, 2, 5, 10, ... not below the value.
+function roundedUp(value) {
+  const decade = Math.pow(10, Math.floor(Math.log10(value)));
+  return [1, 2, 5, 10].map((step) => step * decade).find((step) => value <= step * (1 + 1e-9));
+}

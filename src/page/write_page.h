@@ -1,0 +1,36 @@
+#pragma once
+
+#include "patchlight/output/provenance.h"
+#include "patchlight/report/report.h"
+#include "patchlight/views/picture.h"
+#include "patchlight/views/views.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+struct Comparison;
+struct Study;
+
+/// What a page shows of a scene. Where there is no pointer, that part is left out.
+struct Page {
+  const Scene& scene;
+  Provenance provenance = {};
+  const SolvedSurface* surface = nullptr;
+  const Report* report = nullptr;
+  const Readings* readings = nullptr;  ///< of the scene's sensors
+  std::vector<const Picture*> pictures = {};
+  const Comparison* comparison = nullptr;
+  const Study* study = nullptr;
+};
+
+/// The page's bytes: HTML, one file that needs nothing else.
+std::string page_of(const Page& page);
+
+/// Writes one page for browsers, which needs no other file and no network: the model to turn around, its values, tables
+/// and pictures. docs/page.md describes it. \throws OutputError.
+void write_page(const std::filesystem::path& file, const Page& page);
+
+}  // namespace patchlight

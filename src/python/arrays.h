@@ -1,0 +1,48 @@
+#pragma once
+
+#include "patchlight/base/field.h"
+#include "patchlight/base/geometry.h"
+
+#include <pybind11/numpy.h>
+#include <vector>
+
+namespace patchlight {
+
+/// A read-only array over memory that `owner` keeps: nothing is copied.
+template <class Number>
+pybind11::array array_over(const Number* values, std::vector<pybind11::ssize_t> shape, pybind11::handle owner) {
+  pybind11::array array(pybind11::dtype::of<Number>(), std::move(shape), values, owner);
+  array.attr("setflags")(pybind11::arg("write") = false);
+  return array;
+}
+
+inline pybind11::array array_over(const Field& field, pybind11::handle owner) {
+  return array_over(field.data(), {field.rows(), field.cols()}, owner);
+}
+
+inline pybind11::array array_over(const Eigen::VectorXd& values, pybind11::handle owner) {
+  return array_over(values.data(), {values.size()}, owner);
+}
+
+/// Points as rows of three.
+inline pybind11::array array_over(const std::vector<Point>& points, pybind11::handle owner) {
+  static_assert(sizeof(Point) == 3 * sizeof(double));
+  return array_over(points.empty() ? nullptr : points.front().data(),
+                    {static_cast<pybind11::ssize_t>(points.size()), 3}, owner);
+}
+
+template <class Number>
+pybind11::array array_over(const std::vector<Number>& values, pybind11::handle owner) {
+  return array_over(values.data(), {static_cast<pybind11::ssize_t>(values.size())}, owner);
+}
+
+/// Numbers of any kind, in rows; one column where there is one axis.
+using NumbersIn = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// \throws InputError unless there are `rows` rows.
+Field field_of(const NumbersIn& numbers, Eigen::Index rows);
+
+/// A field of its own memory, which the array keeps.
+pybind11::array array_of(Field field);
+
+}  // namespace patchlight

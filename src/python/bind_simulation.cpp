@@ -1,0 +1,242 @@
+#include "patchlight/base/error.h"
+#include "patchlight/output/write_result.h"
+#include "patchlight/views/picture.h"
+#include "patchlight/views/views.h"
+
+#include "archive/scene_hash.h"
+#include "base/parallel.h"
+#include "cli/arguments.h"
+#include "cli/picture.h"
+#include "light/photometry.h"
+#include "output/report_json.h"
+#include "page/write_page.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interrupt_flag.h"
+#include "python/solved_scene.h"
+#include "render/tone_map.h"
+
+#include <pybind11/stl.h>
+
+namespace patchlight {
+namespace {
+
+namespace py = pybind11;
+
+using SolvedPointer = std::shared_ptr<SolvedScene>;
+
+// A function of Python in place of the solver: it gets H = F B as a function, and E, rho and H_direct, and returns H.
+SolveWith solve_by(const py::object& own) {
+  return [&own](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&, const Observer&) {
+    Solution solution;
+    const Eigen::Index size = problem.exitance.rows();
+    {
+      const py::gil_scoped_acquire lock;
+      const auto apply = py::cpp_function(
+          [&](const NumbersIn& radiosity) { return array_of(transport.apply(field_of(radiosity, size))); });
+      const Field direct =
+          problem.direct_irradiance.size() > 0 ? problem.direct_irradiance : Field::Zero(size, problem.exitance.cols());
+      solution.irradiance = field_of(
+          NumbersIn(own(apply, array_of(problem.exitance), array_of(problem.scattering.reflectance), array_of(direct))),
+          size);
+    }
+    if (solution.irradiance.cols() != problem.exitance.cols())
+      throw InputError("own solver", "found " + std::to_string(solution.irradiance.cols()) +
+                                         " columns; expected one for each of " +
+                                         std::to_string(problem.exitance.cols()) + " bands");
+    solution.radiosity = radiosity_from(problem, solution.irradiance);
+    solution.direct_irradiance = transport.apply(problem.exitance);
+    if (problem.direct_irradiance.size() > 0) solution.direct_irradiance += problem.direct_irradiance;
+    solution.history.emplace_back();
+    solution.converged = true;
+    return solution;
+  };
+}
+
+SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArguments& arguments, const py::object& own,
+                     const py::object& progress) {
+  const InterruptFlag flag;
+  const Observer observer = InterruptFlag::observer(progress);
+  const auto result = std::make_shared<SolvedScene>();
+  // What is changed of the scene later does not change this.
+  result->scene = std::make_shared<const Scene>(*scene);
+  result->request = arguments.request;
+  result->command_line = arguments.command_line;
+  Steps with;
+  if (!own.is_none()) with.solve = solve_by(own);
+  const py::gil_scoped_release others;
+  result->simulation = simulate(*result->scene, arguments.request, observer, with);
+  return result;
+}
+
+Provenance provenance_of(const SolvedScene& self) {
+  const double exposure =
+      exposure_for(display_radiance(self.simulation), self.simulation.problem.area, bands_of(*self.scene));
+  return {.command_line = self.command_line, .exposure = exposure, .scene_hash = scene_hash(*self.scene)};
+}
+
+std::string report_of_run(const SolvedScene& self) {
+  const Report report = report_of(*self.scene, self.request, self.simulation);
+  return report_json(report, provenance_of(self))
+      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+py::bytes page_of_run(const SolvedScene& self) {
+  std::string html;
+  {
+    const py::gil_scoped_release others;
+    const SolvedSurface surface = surface_of(*self.scene, self.simulation);
+    const Picture picture = take_picture(*self.scene, self.simulation, {.width = 640, .height = 480});
+    SensorView view;
+    SensorFacts facts;
+    if (!self.scene->sensors.empty()) {
+      view = read_sensors(*self.scene, self.simulation);
+      facts = sensor_facts(self.scene->sensors, view.readings, view.warnings);
+    }
+    const Report report = report_of(*self.scene, self.request, self.simulation, facts);
+    html = page_of({.scene = *self.scene,
+                    .provenance = provenance_of(self),
+                    .surface = &surface,
+                    .report = &report,
+                    .readings = self.scene->sensors.empty() ? nullptr : &view.readings,
+                    .pictures = {&picture}});
+  }
+  return html;
+}
+
+void write_run(const SolvedScene& self, const std::string& file) {
+  const py::gil_scoped_release others;
+  write_result(file, surface_of(*self.scene, self.simulation), provenance_of(self));
+}
+
+py::dict sensors_of(const SolvedScene& self) {
+  SensorView view;
+  {
+    const py::gil_scoped_release others;
+    view = read_sensors(*self.scene, self.simulation);
+  }
+  const Readings& readings = view.readings;
+  const Eigen::Index count = readings.irradiance.rows();
+  Field values(count, 1), errors(count, 1), factors(readings.outside_by_sky ? count : 0, 1);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const SensorValue value = sensor_value(readings, static_cast<std::size_t>(k));
+    values(k, 0) = value.value;
+    errors(k, 0) = value.standard_error;
+    if (readings.outside_by_sky) factors(k, 0) = daylight_factor(readings, static_cast<std::size_t>(k));
+  }
+  py::dict result;
+  result["unit"] = sensor_unit(readings);
+  result["irradiance"] = array_of(readings.irradiance);
+  result["standard_error"] = array_of(readings.standard_error);
+  result["value"] = array_of(values).attr("ravel")();
+  result["value_error"] = array_of(errors).attr("ravel")();
+  if (readings.outside_by_sky) result["daylight_factor"] = array_of(factors).attr("ravel")();
+  result["warnings"] = view.warnings;
+  return result;
+}
+
+py::dict picture_of(const SolvedScene& self, const cli::SolveArguments& arguments) {
+  Picture picture;
+  {
+    const InterruptFlag flag;
+    const Observer observer = InterruptFlag::observer(py::none());
+    const py::gil_scoped_release others;
+    picture = cli::make_picture(arguments.picture, *self.scene, self.simulation, observer);
+  }
+  const py::ssize_t width = picture.image.width, height = picture.image.height;
+  py::dict result;
+  result["srgb"] = py::array_t<std::uint8_t>({height, width, py::ssize_t{3}}, picture.image.pixels.front().data());
+  result["radiance"] = array_of(picture.radiance.pixels).attr("reshape")(height, width, -1);
+  result["exposure"] = picture.exposure;
+  return result;
+}
+
+Field luminances_of(const SolvedScene& self, const Field& values) {
+  const Bands bands = bands_of(*self.scene);
+  Field result(values.rows(), 1);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) result(row, 0) = luminance(values.row(row), bands);
+  return result;
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  py::class_<SolvedScene, SolvedPointer> type(
+      module, "Simulation",
+      "A solved scene. Arrays have a row for each patch; they are the solver's own memory, read only.");
+  const auto add = [&](const char* name, auto of, const char* text) {
+    type.def_property_readonly(
+        name, [of](const py::object& self) { return of(self.cast<SolvedPointer>()->simulation, self); }, text);
+  };
+  using Self = const py::object&;
+  using Run = const Simulation&;
+  add(
+      "irradiance", [](Run run, Self self) { return array_over(run.solution.irradiance, self); },
+      "H, W/m^2, patches x bands");
+  add(
+      "radiosity", [](Run run, Self self) { return array_over(run.solution.radiosity, self); },
+      "B, W/m^2, patches x bands");
+  add(
+      "direct_irradiance", [](Run run, Self self) { return array_over(run.solution.direct_irradiance, self); },
+      "the part of H straight from lamps, W/m^2");
+  add(
+      "exitance", [](Run run, Self self) { return array_over(run.problem.exitance, self); },
+      "E, W/m^2, patches x bands");
+  add(
+      "reflectance", [](Run run, Self self) { return array_over(run.problem.scattering.reflectance, self); },
+      "rho, patches x bands");
+  add(
+      "area", [](Run run, Self self) { return array_over(run.problem.area, self); }, "m^2");
+  add(
+      "vertices", [](Run run, Self self) { return array_over(run.mesh.vertices, self); }, "metres, vertices x 3");
+  add(
+      "centroid", [](Run run, Self self) { return array_over(run.mesh.centroid, self); }, "metres, patches x 3");
+  add(
+      "normal", [](Run run, Self self) { return array_over(run.mesh.normal, self); }, "unit, patches x 3");
+  add(
+      "corners",
+      [](Run run, Self self) {
+        return array_over(run.mesh.corners.front().data(), {static_cast<py::ssize_t>(run.mesh.corners.size()), 4},
+                          self);
+      },
+      "indices of vertices, patches x 4; a triangle repeats its last");
+  add(
+      "material", [](Run run, Self self) { return array_over(run.mesh.material, self); }, "index into Scene.materials");
+  add(
+      "polygon", [](Run run, Self self) { return array_over(run.mesh.polygon, self); },
+      "index into the scene's polygons");
+  add(
+      "error",
+      [](Run run, Self) -> py::object {
+        return run.error_bars ? py::object(array_of(run.error_bars->total())) : py::none();
+      },
+      "error bars of H, W/m^2, patches x bands; None without error_bars");
+  type.def_property_readonly(
+          "luminance",
+          [](const SolvedScene& self) {
+            return array_of(luminances_of(self, self.simulation.solution.radiosity / std::numbers::pi)).attr("ravel")();
+          },
+          "cd/m^2")
+      .def_property_readonly(
+          "illuminance",
+          [](const SolvedScene& self) {
+            return array_of(luminances_of(self, self.simulation.solution.irradiance)).attr("ravel")();
+          },
+          "lx")
+      .def_property_readonly("size", [](const SolvedScene& self) { return self.simulation.mesh.size(); })
+      .def_property_readonly(
+          "solution",
+          [](const SolvedPointer& self) { return std::shared_ptr<Solution>(self, &self->simulation.solution); })
+      .def_property_readonly("irradiance_address",
+                             [](const SolvedScene& self) {
+                               return reinterpret_cast<std::uintptr_t>(self.simulation.solution.irradiance.data());
+                             })
+      .def("report_json", &report_of_run)
+      .def("page", &page_of_run)
+      .def("write", &write_run, py::arg("file"), "Writes .vtp, .ply or .glb.")
+      .def("sensors", &sensors_of)
+      .def("_picture", &picture_of);
+  module.def("solve", &solved, py::arg("scene"), py::arg("arguments"), py::arg("own"), py::arg("progress"));
+}
+
+}  // namespace patchlight

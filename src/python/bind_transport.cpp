@@ -1,0 +1,156 @@
+#include "base/near_match.h"
+#include "base/parallel.h"
+#include "cli/arguments.h"
+#include "cli/parse_value.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interrupt_flag.h"
+#include "python/transport_problem.h"
+
+#include <optional>
+#include <pybind11/stl.h>
+
+namespace patchlight {
+namespace {
+
+namespace py = pybind11;
+
+using ProblemPointer = std::shared_ptr<TransportProblem>;
+
+ProblemPointer found_problem(const std::shared_ptr<Scene>& scene, const cli::SolveArguments& arguments,
+                             const py::object& progress) {
+  const InterruptFlag flag;
+  const Observer observer = InterruptFlag::observer(progress);
+  const auto kept = std::make_shared<const Scene>(*scene);
+  const py::gil_scoped_release others;
+  const ThreadLimit limit(arguments.request.resources.threads);
+  return std::make_shared<TransportProblem>(transport_problem(kept, arguments.request, observer));
+}
+
+py::array applied(const TransportProblem& self, const NumbersIn& radiosity) {
+  const Field B = field_of(radiosity, self.transport->size());
+  Field H;
+  {
+    const py::gil_scoped_release others;
+    H = self.transport->apply(B);
+  }
+  return array_of(std::move(H));
+}
+
+Solution solved_by(const TransportProblem& self, const std::string& solver, const RadiosityProblem& problem,
+                   std::optional<double> tolerance, int max_iterations, std::optional<double> relaxation) {
+  const InterruptFlag flag;
+  const Observer observer = InterruptFlag::observer(py::none());
+  SolverOptions options{.solver = cli::solver_named("solver", solver)};
+  options.relative_error = tolerance;
+  options.max_iterations = max_iterations;
+  options.relaxation = relaxation;
+  const py::gil_scoped_release others;
+  return solve(*self.transport, problem, options, observer);
+}
+
+Solution solved_problem(const TransportProblem& self, const std::string& solver, std::optional<double> tolerance,
+                        int max_iterations, std::optional<double> relaxation, const py::object& exitance) {
+  RadiosityProblem problem = self.problem;
+  if (!exitance.is_none()) {
+    problem.exitance = field_of(NumbersIn(exitance), self.transport->size());
+    problem.direct_irradiance = {};
+  }
+  return solved_by(self, solver, problem, tolerance, max_iterations, relaxation);
+}
+
+py::array factors(const TransportProblem& self, const std::array<PatchIndex, 2>& from,
+                  const std::array<PatchIndex, 2>& to) {
+  const PatchIndex size = self.transport->size();
+  for (const auto& [begin, end] : {from, to}) {
+    if (begin > end || end > size) throw py::index_error("patches are 0 to " + std::to_string(size));
+  }
+  return array_of(self.transport->form_factors({from[0], from[1]}, {to[0], to[1]}).array());
+}
+
+py::list history_of(const Solution& solution) {
+  py::list rows;
+  for (const Iteration& iteration : solution.history) {
+    py::dict row;
+    row["iteration"] = iteration.number;
+    row["relative_residual"] = iteration.relative_residual;
+    row["error_bound"] = iteration.error_bound;
+    row["applications"] = iteration.work;
+    row["seconds"] = iteration.seconds;
+    rows.append(row);
+  }
+  return rows;
+}
+
+template <class Owner>
+void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
+  const auto add = [&](const char* name, auto of, const char* text) {
+    type.def_property_readonly(
+        name, [of](const py::object& self) { return of(*self.cast<std::shared_ptr<Owner>>(), self); }, text);
+  };
+  add(
+      "vertices", [](const Owner& o, const py::object& self) { return array_over(o.mesh.vertices, self); },
+      "metres, vertices x 3");
+  add(
+      "corners",
+      [](const Owner& o, const py::object& self) {
+        const auto& corners = o.mesh.corners;
+        return array_over(corners.empty() ? nullptr : corners.front().data(),
+                          {static_cast<py::ssize_t>(corners.size()), 4}, self);
+      },
+      "indices of vertices, patches x 4; a triangle repeats its last");
+  add(
+      "material", [](const Owner& o, const py::object& self) { return array_over(o.mesh.material, self); },
+      "index into Scene.materials");
+  add(
+      "centroid", [](const Owner& o, const py::object& self) { return array_over(o.mesh.centroid, self); },
+      "metres, patches x 3");
+  add(
+      "area", [](const Owner& o, const py::object& self) { return array_over(o.problem.area, self); }, "exposed, m^2");
+  add(
+      "exitance", [](const Owner& o, const py::object& self) { return array_over(o.problem.exitance, self); },
+      "E, W/m^2, patches x bands");
+  add(
+      "reflectance",
+      [](const Owner& o, const py::object& self) { return array_over(o.problem.scattering.reflectance, self); },
+      "rho, patches x bands");
+  add(
+      "direct_irradiance",
+      [](const Owner& o, const py::object& self) { return array_over(o.problem.direct_irradiance, self); },
+      "H_direct by luminaires, sun and sky, W/m^2; empty where there are none");
+}
+
+}  // namespace
+
+void bind_transport(py::module_& module) {
+  py::class_<Solution, std::shared_ptr<Solution>>(module, "Solution", "What a solver has found, and how.")
+      .def_property_readonly(
+          "radiosity", [](const py::object& self) { return array_over(self.cast<const Solution&>().radiosity, self); })
+      .def_property_readonly(
+          "irradiance",
+          [](const py::object& self) { return array_over(self.cast<const Solution&>().irradiance, self); })
+      .def_readonly("converged", &Solution::converged)
+      .def_property_readonly("history", &history_of);
+  py::class_<TransportProblem, ProblemPointer> type(
+      module, "Transport", "H = F B between the patches of a scene, and B = E + rho (F B + H_direct).");
+  bind_mesh(type);
+  type.def_property_readonly("size", [](const TransportProblem& self) { return self.transport->size(); })
+      .def_property_readonly(
+          "front",
+          [](const py::object& self) {
+            const auto& side = self.cast<ProblemPointer>()->mesh.side;
+            return array_over(reinterpret_cast<const std::uint8_t*>(side.data()),
+                              {static_cast<py::ssize_t>(side.size())}, self);
+          },
+          "0 for patches on the front of their polygons")
+      .def_readonly("emits_from_back", &TransportProblem::emits_from_back)
+      .def("apply", &applied, "H = F B for radiosities B, patches x columns", py::arg("radiosity"))
+      .def("form_factors", &factors, "F_ij from patches [begin, end) to patches [begin, end)", py::arg("begin_end"),
+           py::arg("to"))
+      .def("solve", &solved_problem, py::arg("solver") = "cg", py::arg("tolerance") = py::none(),
+           py::arg("max_iterations") = 1000, py::arg("relaxation") = py::none(), py::arg("exitance") = py::none(),
+           "Solves with one of patchlight.solvers; with `exitance` for other lamps, W/m^2, patches x bands.");
+  module.def("transport", &found_problem, py::arg("scene"), py::arg("arguments"), py::arg("progress"));
+}
+
+}  // namespace patchlight

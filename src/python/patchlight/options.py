@@ -1,0 +1,40 @@
+"""Keywords of Python as options of the command line: max_edge=0.1 is --max-edge 0.1."""
+from patchlight import _core
+
+
+def words_of(command, models, options):
+    """The words of a command line. True gives a flag, False and None give nothing, a list repeats its option."""
+    words = ["patchlight", command, *map(str, models)]
+    for name, value in options.items():
+        option = "--" + name.rstrip("_").replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, (list, tuple)) and name not in TRIPLES:
+            for one in value:
+                words += [option, str(one)]
+        else:
+            words += [option, ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)]
+    return words
+
+
+# Options whose one value has commas in it.
+TRIPLES = {"skip", "force", "up", "size"}
+
+
+def arguments_of(models, options):
+    """The options of patchlight solve, understood or refused as there."""
+    # Something has to be written there; here it is returned.
+    return _core.parse(words_of("solve", models, options) + ["--report", "unwritten.json"])
+
+
+def picture_arguments_of(options):
+    """Those of a picture."""
+    options = dict(options)
+    camera = options.pop("camera", None)
+    words = words_of("solve", ["scene"], options) + ["--picture", "unwritten.png"]
+    if camera is not None:
+        eye, target, field_of_view = camera
+        words += ["--camera", *(",".join(map(str, place)) for place in (eye, target)), str(field_of_view)]
+    return _core.parse(words)

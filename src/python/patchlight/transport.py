@@ -1,0 +1,52 @@
+"""Form factors as an operator of scipy, and what an adjoint solution tells."""
+import numpy
+
+from patchlight import _core
+
+
+def operator_of(transport):
+    """H = F B as a scipy.sparse.linalg.LinearOperator, with the transpose by reciprocity: F^T x = A o F (x / A)."""
+    from scipy.sparse.linalg import LinearOperator
+
+    size, area = transport.size, transport.area
+
+    def apply(radiosity):
+        return transport.apply(radiosity).reshape(numpy.shape(radiosity))
+
+    def transposed(values):
+        scale = area.reshape((-1,) + (1,) * (numpy.ndim(values) - 1))
+        return scale * apply(numpy.asarray(values) / scale)
+
+    return LinearOperator((size, size), matvec=apply, matmat=apply, rmatvec=transposed, rmatmat=transposed,
+                          dtype=numpy.float64)
+
+
+def sensitivities(transport, weights, tolerance=1e-10):
+    """How a mean irradiance Q = sum_i weights_i H_i depends on materials, by one adjoint solution.
+
+    weights: a number for each patch; area / area.sum() over the patches of a floor gives its mean irradiance. Returns Q
+    in W/m^2 per band and, per material and band, its derivatives by reflectance ("reflectance", W/m^2) and by exitance
+    ("exitance", 1). With H = F B, B = E + rho o H the adjoint z = w / A + rho o F z gives dQ = (A o F z) . (dE + drho o H).
+    """
+    area = transport.area[:, None]
+    weights = numpy.asarray(weights, dtype=float).reshape(-1, 1)
+    bands = transport.exitance.shape[1]
+    lamps = numpy.broadcast_to(weights / area, (transport.size, bands))
+    # Weights may have either sign, which the solver's bounds do not mind.
+    adjoint = transport.solve("cg", tolerance=tolerance, exitance=lamps).radiosity
+    solution = transport.solve("cg", tolerance=tolerance)
+    arriving = area * transport.apply(adjoint)
+    by_reflectance = arriving * solution.irradiance
+    materials = int(transport.material.max()) + 1
+
+    def summed(values, counts=None):
+        return numpy.array([numpy.bincount(transport.material, values[:, band] * (1 if counts is None else counts), materials)
+                            for band in range(bands)]).T
+
+    emits = numpy.ones(transport.size) if transport.emits_from_back else (transport.front == 0).astype(float)
+    return {"value": (weights * solution.irradiance).sum(axis=0), "reflectance": summed(by_reflectance),
+            "exitance": summed(arriving, emits)}
+
+
+_core.Transport.operator = property(operator_of, doc="H = F B as a scipy.sparse.linalg.LinearOperator.")
+_core.Transport.sensitivities = sensitivities

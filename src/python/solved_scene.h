@@ -1,0 +1,18 @@
+#pragma once
+
+#include "patchlight/simulate.h"
+
+#include <memory>
+#include <string>
+
+namespace patchlight {
+
+/// A solved scene, and what it was solved with.
+struct SolvedScene {
+  std::shared_ptr<const Scene> scene;
+  Request request;
+  Simulation simulation;
+  std::string command_line;
+};
+
+}  // namespace patchlight

@@ -1,0 +1,71 @@
+"""The page that the tool writes: --html of solve, relight, compare, study and render."""
+import json
+import re
+import unittest
+
+from support import ToolTest
+
+
+def data_of(page):
+    """What the page knows."""
+    return json.loads(re.search(r'id="data">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)[1])
+
+
+class PageTest(ToolTest):
+    def made(self, *arguments):
+        done = self.run_tool(*arguments, "--html", "page.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return data_of(self.folder / "page.html")
+
+    def test_solve_writes_model_report_and_picture(self):
+        data = self.made("solve", "room.obj", "--patches", 200, "--report", "room.json")
+        report = json.loads((self.folder / "room.json").read_text())
+        self.assertEqual(data["report"]["materials"], report["materials"])
+        self.assertEqual(data["report"]["energy_balance"], report["energy_balance"])
+        self.assertEqual(data["model"]["patches"], report["mesh"]["patches"])
+        self.assertEqual(len(data["pictures"]), 1)
+        self.assertIn("--html page.html", data["command_line"])
+
+    def test_page_alone_is_enough_to_write(self):
+        self.assertEqual(self.made("solve", "room.obj", "--patches", 100, "--accuracy", "20%")["report"]["accuracy"][0]["samples"] > 0, True)
+
+    def test_sensors_have_their_values(self):
+        self.write("points.txt", "0.5 0.5 0.1 0 0 1\n0.4 0.5 0.1 0 0 1\n")
+        data = self.made("solve", "room.obj", "--patches", 100, "--points", "points.txt")
+        self.assertEqual(data["sensors"][0]["values"]["components"], 1)
+        self.assertEqual(data["report"]["sensors"]["groups"][0]["sensors"], 2)
+
+    def test_relight_compare_study_and_render_write_pages(self):
+        self.run_tool("form-factors", "room.obj", "--patches", 100, "-o", "room.ff")
+        self.assertEqual(self.made("relight", "room.ff")["report"]["mesh"]["patches"] > 0, True)
+        compared = self.made("compare", "room.obj", "--patches", 100, "--solvers", "jacobi,cg", "-o", "compared")
+        self.assertEqual([run["solver"] for run in compared["comparison"]["runs"]], ["jacobi", "cg"])
+        self.assertGreater(compared["model"]["patches"], 0)
+        studied = self.made("study", "room.obj", "--patches", 100, "--sizes", 2, "--no-adaptive", "--no-estimators", "-o", "studied")
+        self.assertGreater(len(studied["study"]["settings"]), 1)
+        self.run_tool("solve", "room.obj", "--patches", 100, "-o", "room.vtp")
+        rendered = self.made("render", "room.obj", "--solution", "room.vtp", "-o", "room.png", "--quality", "draft", "--size", "40x30")
+        self.assertEqual(rendered["pictures"][0]["width"], 40)
+        self.assertNotIn("report", rendered)
+
+    def test_refuses_what_is_no_page(self):
+        done = self.run_tool("solve", "room.obj", "--html", "page.pdf")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--html: found 'page.pdf'; expected a name that ends in .html", done.stderr)
+        done = self.run_tool("compare", "room.obj", "-o", "folder", "--html", "folder/page.html")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("lies in the folder of -o", done.stderr)
+        done = self.run_tool("solve", "room.obj", "--html", "page.html", "--report", "page.html")
+        self.assertEqual(done.returncode, 1)
+
+    def test_hostile_names_stay_text(self):
+        name = "</script><script>alert(1)</script>"
+        self.write("room.mtl", (self.folder / "room.mtl").read_text().replace("newmtl white", f"newmtl {name}"))
+        self.write("room.obj", (self.folder / "room.obj").read_text().replace("usemtl white", f"usemtl {name}"))
+        data = self.made("solve", "room.obj", "--patches", 100)
+        self.assertIn(name, [material["name"] for material in data["report"]["materials"]])
+        self.assertNotIn("alert(1)</script>", (self.folder / "page.html").read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    unittest.main()
