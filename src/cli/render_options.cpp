@@ -69,6 +69,8 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
     throw UsageError("render: found no solution; expected --solution RESULT.vtp, which patchlight solve has written");
   if (options.picture.file.empty() && options.observers.empty())
     throw UsageError("render: nothing would be written; expected -o VIEW.png");
+  if (options.picture.file.empty() && !options.page.empty())
+    throw UsageError("--html shows the pictures of patchlight render; expected -o VIEW.png");
   if (!options.difference.empty() && (!options.picture.file.ends_with(".png") || options.picture.colors))
     throw UsageError("--difference is written as a picture in natural colors; expected -o FILE.png");
   RenderArguments arguments;

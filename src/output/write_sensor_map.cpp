@@ -9,6 +9,7 @@
 #include "render/tone_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -31,7 +32,8 @@ constexpr int most_levels = 9;
 // One grid, with its axes and what it reads.
 struct GridMap {
   const SensorGroup* group = nullptr;
-  std::vector<double> values;                       // NaN inside walls
+  std::vector<std::array<Point, 4>> cells;
+  std::vector<double> values;
   Vector right, above;                              // unit
   double left = 0, top = 0, width = 0, height = 0;  // along these, metres
 };
@@ -46,15 +48,37 @@ Vector right_of(const Vector& normal, const MapOptions& options) {
   return (is_level ? options.north.cross(options.up) : options.up.cross(normal)).normalized();
 }
 
+// Squares around sensors whose file says nothing of cells, as wide as the two nearest are apart; none around few.
+std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sensors, const GridMap& map) {
+  constexpr std::size_t least = 4, most = 20000;
+  if (sensors.size() < least || sensors.size() > most) return {};
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    for (std::size_t other = 0; other < k; ++other) {
+      const double apart = (sensors[k].point - sensors[other].point).norm();
+      if (apart > 0) step = std::min(step, apart);
+    }
+  }
+  if (!std::isfinite(step)) return {};
+  const Vector across = step / 2 * map.right, upward = step / 2 * map.above;
+  std::vector<std::array<Point, 4>> cells;
+  for (const Sensor& sensor : sensors) {
+    const Point& at = sensor.point;
+    cells.push_back({at - across - upward, at + across - upward, at + across + upward, at - across + upward});
+  }
+  return cells;
+}
+
 GridMap grid_map(const SensorGroup& group, std::vector<double> values, const MapOptions& options) {
-  GridMap map{&group, std::move(values), {}, {}};
+  GridMap map{&group, group.cells, std::move(values), {}, {}};
   const Vector normal = group.sensors[0].normal;
   map.right = right_of(normal, options);
   map.above = std::abs(normal.dot(options.up)) > 0.7 ? options.north : normal.cross(map.right).normalized();
+  if (map.cells.empty()) map.cells = squares_around(group.sensors, map);
   double right = -std::numeric_limits<double>::infinity(), bottom = right;
   map.left = -right;
   map.top = -right;
-  for (const auto& cell : group.cells) {
+  for (const auto& cell : map.cells) {
     for (const Point& corner : cell) {
       map.left = std::min(map.left, corner.dot(map.right));
       right = std::max(right, corner.dot(map.right));
@@ -79,7 +103,9 @@ std::vector<GridMap> grid_maps(std::span<const SensorGroup> groups, const Readin
                        : options.quantity == MapQuantity::daylight_factor ? daylight_factor(readings, sensor)
                                                                           : sensor_value(readings, sensor).value);
     }
-    if (!group.cells.empty() && maps.size() < most_maps) maps.push_back(grid_map(group, std::move(values), options));
+    if (group.sensors.empty() || maps.size() >= most_maps) continue;
+    GridMap map = grid_map(group, std::move(values), options);
+    if (!map.cells.empty()) maps.push_back(std::move(map));
   }
   return maps;
 }
@@ -106,7 +132,7 @@ void set_colour(cairo_t* cairo, double value, const AxisRange& range) {
 void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const AxisRange& range) {
   for (std::size_t k = 0; k < map.values.size(); ++k) {
     cairo_new_path(cairo);
-    for (const Point& corner : map.group->cells[k]) {
+    for (const Point& corner : map.cells[k]) {
       const Pixel pixel = pixel_of(map, at, corner);
       cairo_line_to(cairo, pixel.x, pixel.y);
     }
@@ -131,7 +157,7 @@ struct SensorLattice {
 
 SensorLattice lattice_of(const GridMap& map) {
   const std::vector<Sensor>& sensors = map.group->sensors;
-  const auto& cell = map.group->cells[0];
+  const auto& cell = map.cells[0];
   SensorLattice lattice{{}, sensors[0].point, cell[1] - cell[0], cell[3] - cell[0]};
   const auto place = [&](const Point& point) -> Eigen::Vector2d {
     const Vector way = point - lattice.origin;

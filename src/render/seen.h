@@ -12,6 +12,13 @@
 
 namespace patchlight {
 
+/// A sphere that emits evenly and hides what is behind it.
+struct SeenSphere {
+  Point centre;
+  double radius = 0;  ///< metres
+  Spectrum radiance;  ///< W/(m^2 sr)
+};
+
 /// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
 struct SeenPatch {
   std::size_t ray = 0;
@@ -22,13 +29,6 @@ struct SeenPatch {
   bool outlook = false;                ///< behind a clear face, or nothing is met
   double distance = 0;                 ///< along the way from the ray's origin, metres
   const SeenSphere* sphere = nullptr;  ///< that is seen in place of a patch
-};
-
-/// A sphere that emits evenly and hides what is behind it.
-struct SeenSphere {
-  Point centre;
-  double radius = 0;  ///< metres
-  Spectrum radiance;  ///< W/(m^2 sr)
 };
 
 /// The luminaires that are spheres.

@@ -111,6 +111,11 @@ TEST(SensorMap, TakesARangeAndRefusesWhatHasNoMap) {
       OutputError);
   std::vector<SensorGroup> points = some.groups;
   points[0].cells.clear();
+  // Squares around sensors in a lattice are their cells.
+  write_sensor_map(folder.path() / "cells.svg", some.groups, some.readings);
+  write_sensor_map(folder.path() / "squares.svg", points, some.readings);
+  EXPECT_EQ(content_of(folder.path() / "cells.svg"), content_of(folder.path() / "squares.svg"));
+  points[0].sensors.resize(3);
   EXPECT_THROW(write_sensor_map(folder.path() / "c.svg", points, some.readings), OutputError);
 }
 
