@@ -10,6 +10,7 @@
 #include "files/regular_file.h"
 #include "output/write_bytes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -224,7 +225,10 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["metres_per_unit"] = scene.metres_per_unit;
   json["up"] = json_of(scene.up);
   json["up_stated"] = scene.up_stated;
-  json["notes"] = json_of(scene.notes);
+  std::vector<std::string> notes = scene.notes;
+  if (std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.texture; }))
+    notes.emplace_back("pictures are not stored: their means count");
+  json["notes"] = json_of(notes);
   json["materials"] = materials_part(scene);
   if (!scene.bands.empty()) json["bands"] = json_of(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);

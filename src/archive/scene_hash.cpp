@@ -40,8 +40,22 @@ void add_faces(Bytes& to, const Scene& scene) {
     to.numbers(corners);
     to.number(polygon.material);
     to.number(polygon.back_material ? *polygon.back_material : -1.0);
+    for (const Side side : {Side::front, Side::back}) {
+      const TextureMap* map = texture_map_on(scene, polygon, side);
+      if (!map) continue;
+      to.numbers({map->linear.data(), 6});
+      to.numbers({map->offset.data(), 2});
+    }
   }
   to.vector(scene.up);
+}
+
+void add_texture(Bytes& to, const TexturedReflectance& textured) {
+  for (const Spectrum& primary : textured.of_primaries) to.spectrum(primary);
+  to.numbers(std::array{static_cast<double>(textured.wrap[0]), static_cast<double>(textured.wrap[1]),
+                        static_cast<double>(textured.texture->width)});
+  for (const auto& texel : textured.texture->texels)
+    for (const float value : texel) to.number(value);
 }
 
 void add_materials(Bytes& to, const Scene& scene) {
@@ -50,6 +64,7 @@ void add_materials(Bytes& to, const Scene& scene) {
                                      &material.specular_reflectance, &material.diffuse_transmittance})
       to.spectrum(*spectrum);
     to.number(material.index);
+    if (material.texture) add_texture(to, *material.texture);
   }
   for (const Band& band : bands_of(scene)) {
     to.number(band.luminous_weight);

@@ -34,7 +34,8 @@ std::shared_ptr<RelightOptions> add_relight(CLI::App& tool) {
   add_set_option(command, to.settings);
   add_up_option(command, to.up);
   add_daylight_options(command, to.daylight);
-  add_effect_options(command, to.request, effects_but({Effect::occlusion, Effect::reach, Effect::backs}));
+  add_effect_options(command, to.request,
+                     effects_but({Effect::occlusion, Effect::reach, Effect::backs, Effect::textures}));
   add_output_options(command, to.solution);
   add_solver_options(command, to.solution, to.request);
   add_machine_options(command, to.request);

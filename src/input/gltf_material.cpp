@@ -1,9 +1,11 @@
 #include "input/gltf_material.h"
 
 #include "base/rounded.h"
+#include "input/gltf_texture.h"
 #include "input/materials.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
+#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <functional>
@@ -103,12 +105,22 @@ Material with_transparency(Material material, const tinygltf::Material& read) {
   return pane;
 }
 
+// The picture of the base colour where it has more than one colour.
+std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinygltf::Material& read) {
+  const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
+  const auto found = gltf.textures.find(image_of(gltf.model, surface.baseColorTexture.index));
+  if (found == gltf.textures.end()) return std::nullopt;
+  return TexturedReflectance{found->second, primaries_times(color(surface.baseColorFactor, 1)),
+                             gltf_wrap(gltf.model, surface.baseColorTexture.index)};
+}
+
 Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const Spectrum radiance = emissive_strength(read) * color(read.emissiveFactor, 0);
   // Exitance = pi radiance for a Lambertian emitter.
   Material material{read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
                     std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)};
+  material.texture = textured(gltf, read);
   if (is_mirror(read)) return with_metal(std::move(material), read);
   return is_clear(read) ? with_transparency(std::move(material), read) : material;
 }
@@ -169,7 +181,18 @@ std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
       return false;
     };
   };
-  note("textures are replaced by their mean colour", has_texture(true));
+  const auto is_used_whole = [&](const tinygltf::Material& material) {
+    const bool has_place = !is_clear(material) && !is_mirror(material);
+    const bool has_mean = texture_color(gltf, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
+    return (has_mean && !has_place) || texture_color(gltf, material.emissiveTexture.index).has_value();
+  };
+  note("textures of lamps, panes and mirrors are replaced by their mean colour", is_used_whole);
+  for (const auto& [image, fault] : gltf.picture_faults) {
+    const tinygltf::Image& found = gltf.model.images[static_cast<std::size_t>(image)];
+    const std::string name = found.uri.empty() ? found.name : found.uri;
+    notes.push_back("image " + std::to_string(image) + (name.empty() ? "" : " (" + name.substr(0, 80) + ")") + " " +
+                    fault);
+  }
   note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
   note("metallic surfaces are simulated as matt ones of their base colour", is_matt_metal);
   note("transparency by textures and masks is ignored, factors alone count", has_cut_outs);

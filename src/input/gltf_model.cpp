@@ -38,21 +38,43 @@ void require_known_extensions(const tinygltf::Model& model, const std::string& f
   }
 }
 
-// The mean colours of images by index, and by the digest of their bytes: nothing for those that could not be decoded.
+// The images by index, and by the digest of their bytes.
 struct Pictures {
-  std::map<int, Spectrum> mean_color;
-  std::map<std::string, std::optional<Spectrum>> by_content;
+  std::map<int, std::string> digest;
+  std::map<std::string, DecodedPicture> by_content;
 };
 
-// Keeps the mean colour of PNG and JPEG, the formats of glTF 2.0, and drops the pixels; the same bytes once. A picture
+// Of all of them, the texels that are kept.
+void limit_texels(Pictures& pictures) {
+  std::size_t texels = 0;
+  for (const auto& [digest, picture] : pictures.by_content)
+    if (picture.texture) texels += picture.texture->texels.size();
+  if (texels <= most_texels_of_model) return;
+  const std::size_t most = std::max(most_texels_of_model / pictures.by_content.size(), std::size_t{1});
+  for (auto& [digest, picture] : pictures.by_content)
+    if (picture.texture) picture.texture = std::make_shared<const Texture>(reduced(*picture.texture, most));
+}
+
+GltfModel with_pictures(GltfModel model, Pictures pictures) {
+  limit_texels(pictures);
+  for (const auto& [image, digest] : pictures.digest) {
+    const DecodedPicture& picture = pictures.by_content[digest];
+    if (picture.mean) model.mean_color.emplace(image, *picture.mean);
+    if (picture.texture) model.textures.emplace(image, picture.texture);
+    if (!picture.mean) model.picture_faults.emplace(image, picture.fault);
+  }
+  return model;
+}
+
+// Keeps the texels that matter of PNG and JPEG, the formats of glTF 2.0; the same bytes once. A picture
 // that cannot be decoded is no reason to stop.
 bool take_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                 void* into) {
   const std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
   auto& pictures = *static_cast<Pictures*>(into);
   const auto [known, is_new] = pictures.by_content.try_emplace(sha256({&text, 1}));
-  if (is_new) known->second = mean_colour(text);
-  if (known->second) pictures.mean_color.emplace(index, *known->second);
+  if (is_new) known->second = decoded_picture(text, most_texels_of_picture);
+  pictures.digest.emplace(index, known->first);
   return true;
 }
 
@@ -150,7 +172,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
           ? reader.LoadBinaryFromMemory(&result.model, &error, &warning,
                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
           : reader.LoadASCIIFromString(&result.model, &error, &warning, bytes.data(), size, folder);
-  result.mean_color = std::move(pictures.mean_color);
+  result = with_pictures(std::move(result), std::move(pictures));
   require_known_extensions(result.model, file.string());
   if (!good) {
     throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it anew");
@@ -171,7 +193,9 @@ std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, 
   const std::size_t value_size = bytes_per_value(list.componentType);
   const std::size_t element = value_size * static_cast<std::size_t>(components);
   const std::size_t stride = view.byteStride > 0 ? view.byteStride : element;
-  const int expected_type = components == 1 ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
+  const int expected_type = components == 1   ? TINYGLTF_TYPE_SCALAR
+                            : components == 2 ? TINYGLTF_TYPE_VEC2
+                                              : TINYGLTF_TYPE_VEC3;
   // Each sum is compared in parts, so that none overflows.
   const std::size_t end = buffer.data.size();
   const bool fits = value_size > 0 && list.type == expected_type && view.byteOffset <= end &&

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "patchlight/light/spectrum.h"
+#include "patchlight/light/material.h"
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <tiny_gltf.h>
 #include <vector>
@@ -21,6 +22,8 @@ struct GltfFiles {
 struct GltfModel {
   tinygltf::Model model;
   std::map<int, Spectrum> mean_color;  ///< linear RGB of those images that could be decoded, by index
+  std::map<int, std::shared_ptr<const Texture>> textures;  ///< those of them with more than one colour
+  std::map<int, std::string> picture_faults;               ///< why the others could not
   GltfFiles files;
 };
 

@@ -62,10 +62,13 @@ Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
                                       std::to_string(bands) + " bands");
 }
 
-// What a setting makes a pane is no mirror of the file's, and the other way round; one of 0 takes back the file's own.
+// A reflectance takes the place of a picture, and only opaque matt surfaces have one. What a setting makes a pane is no
+// mirror of the file's, and the other way round; one of 0 takes back the file's own.
 Material changed(Material material, const MaterialSetting& setting) {
   const Spectrum value = spread(setting, material.reflectance.size());
   const bool is_some = (value > 0).any();
+  const bool is_of_light_sent_on = setting.quantity != Quantity::exitance && setting.quantity != Quantity::radiance;
+  if (is_of_light_sent_on && (is_some || setting.quantity == Quantity::reflectance)) material.texture.reset();
   switch (setting.quantity) {
     case Quantity::reflectance:
       material.reflectance = value;

@@ -11,9 +11,16 @@ namespace {
 
 bool same_values(const Spectrum& a, const Spectrum& b) { return a.size() == b.size() && (a == b).all(); }
 
+bool same_values(const std::optional<TexturedReflectance>& a, const std::optional<TexturedReflectance>& b) {
+  if (!a || !b) return !a && !b;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!same_values(a->of_primaries[k], b->of_primaries[k])) return false;
+  return a->wrap == b->wrap && a->texture->width == b->texture->width && a->texture->texels == b->texture->texels;
+}
+
 bool same_values(const Material& a, const Material& b) {
-  return same_values(a.reflectance, b.reflectance) && same_values(a.exitance, b.exitance) &&
-         same_values(a.transmittance, b.transmittance) && a.index == b.index &&
+  return same_values(a.texture, b.texture) && same_values(a.reflectance, b.reflectance) &&
+         same_values(a.exitance, b.exitance) && same_values(a.transmittance, b.transmittance) && a.index == b.index &&
          same_values(a.specular_reflectance, b.specular_reflectance) &&
          same_values(a.diffuse_transmittance, b.diffuse_transmittance);
 }
@@ -60,6 +67,7 @@ MergedPalette with_materials(std::vector<Material> materials, const Scene& added
 // The first scene with the second added; its polygons come from file number `file`.
 Scene joined(Scene scene, Scene added, std::uint32_t file) {
   const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto maps = static_cast<std::uint32_t>(scene.texture_maps.size());
   const auto groups = static_cast<std::uint32_t>(scene.groups.size());
   MergedPalette palette = with_materials(std::move(scene.materials), added);
   scene.materials = std::move(palette.materials);
@@ -68,10 +76,13 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
     for (std::uint32_t& corner : polygon.corners) corner += vertices;
     polygon.material = palette.index[polygon.material];
     if (polygon.back_material) polygon.back_material = palette.index[*polygon.back_material];
+    for (std::uint32_t* map : {&polygon.texture_map, &polygon.back_texture_map})
+      if (*map != no_texture_map) *map += maps;
     polygon.group += groups;
     polygon.file = file;
     scene.polygons.push_back(std::move(polygon));
   }
+  scene.texture_maps.insert(scene.texture_maps.end(), added.texture_maps.begin(), added.texture_maps.end());
   scene.groups.insert(scene.groups.end(), added.groups.begin(), added.groups.end());
   for (const std::string& note : added.notes) scene.notes.push_back(added.file + ": " + note);
   scene.notes.insert(scene.notes.end(), palette.notes.begin(), palette.notes.end());

@@ -26,6 +26,12 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
     turn(luminaire.zero_plane);
   }
   if (scene.sun) turn(scene.sun->direction);
+  // L x + o = L A^-1 (x' - t) + o for x' = A x + t.
+  const Eigen::Matrix3d back = placement.linear().inverse();
+  for (TextureMap& map : scene.texture_maps) {
+    map.linear = map.linear * back;
+    map.offset -= map.linear * placement.translation();
+  }
   if (placement.linear().determinant() >= 0) return scene;
   for (Polygon& polygon : scene.polygons) std::reverse(polygon.corners.begin(), polygon.corners.end());
   return scene;

@@ -5,8 +5,10 @@
 #include "files/sha256.h"
 #include "input/gltf_material.h"
 #include "input/gltf_model.h"
+#include "input/gltf_texture.h"
 #include "input/isolated.h"
 #include "input/materials.h"
+#include "input/texture_maps.h"
 
 #include <array>
 
@@ -46,7 +48,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::ui
 class GltfCollector {
  public:
   GltfCollector(const tinygltf::Model& model, Scene scene)
-      : model_(model), scene_(std::move(scene)), is_added_(model.nodes.size(), 0) {
+      : model_(model), scene_(std::move(scene)), mapped_(scene_.file), is_added_(model.nodes.size(), 0) {
     // The last material is the one of primitives without a material.
     scene_.materials.push_back(default_material());
   }
@@ -72,6 +74,8 @@ class GltfCollector {
     note("parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
     note("parts that are points or lines, ignored: ", other_primitives_);
     note("parts with vertex colours, which are ignored: ", colored_);
+    scene_.texture_maps = mapped_.maps();
+    for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
     return std::move(scene_);
   }
 
@@ -105,12 +109,31 @@ class GltfCollector {
     polygon.group = static_cast<std::uint32_t>(scene_.groups.size() - 1);
     // Section 3.7.4: a transformation that mirrors turns the winding round, so that the front stays the front.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
+    const bool is_textured = scene_.materials[polygon.material].texture.has_value();
+    const std::vector<Eigen::Vector2d> places = is_textured ? places_of(primitive) : std::vector<Eigen::Vector2d>{};
     for (std::array<std::uint32_t, 3> triangle : triangles_of(corners_of(primitive, count), mode)) {
       if (mirrored) std::swap(triangle[1], triangle[2]);
       polygon.corners = {first + triangle[0], first + triangle[1], first + triangle[2]};
+      if (is_textured) polygon.texture_map = mapped(triangle, first, places);
       scene_.polygons.push_back(polygon);
     }
     colored_ += primitive.attributes.count("COLOR_0");
+  }
+
+  std::vector<Eigen::Vector2d> places_of(const tinygltf::Primitive& primitive) const {
+    const auto& material = model_.materials[static_cast<std::size_t>(primitive.material)];
+    return gltf_places(model_, primitive, material.pbrMetallicRoughness.baseColorTexture, scene_.file);
+  }
+
+  std::uint32_t mapped(const std::array<std::uint32_t, 3>& triangle, std::uint32_t first,
+                       const std::vector<Eigen::Vector2d>& places) {
+    std::vector<Point> corners;
+    std::vector<Eigen::Vector2d> in_picture;
+    for (const std::uint32_t vertex : triangle) {
+      corners.push_back(scene_.vertices[first + vertex]);
+      if (vertex < places.size()) in_picture.push_back(places[vertex]);
+    }
+    return mapped_.add(corners, in_picture, 0);
   }
 
   MaterialIndex material_of(const tinygltf::Primitive& primitive) {
@@ -140,6 +163,7 @@ class GltfCollector {
 
   const tinygltf::Model& model_;
   Scene scene_;
+  MappedFaces mapped_;
   std::vector<std::uint8_t> is_added_;  // per node
   std::size_t without_material_ = 0;
   std::size_t other_primitives_ = 0;
@@ -152,11 +176,11 @@ std::vector<int> top_nodes(const tinygltf::Model& model) {
     const auto chosen = static_cast<std::size_t>(std::max(0, model.defaultScene));
     return model.scenes[std::min(chosen, model.scenes.size() - 1)].nodes;
   }
-  std::vector<std::uint8_t> is_child(model.nodes.size(), 0);
+  std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children) {
       if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
-        is_child[static_cast<std::size_t>(child)] = 1;
+        is_child[static_cast<std::size_t>(child)] = true;
     }
   }
   std::vector<int> tops;

@@ -20,6 +20,7 @@ struct Statements {
   std::optional<Spectrum> radiance;
   MtlTransparency transparency;
   MtlReflection reflection;
+  std::uint32_t texture_line = 0;
 };
 
 // A line of the file, its words, and the file's name for messages.
@@ -54,6 +55,7 @@ double one_number(const MtlLine& statement) {
 
 void take(Statements& material, const MtlLine& statement) {
   const std::string_view key = statement.words[0];
+  if (key == "map_Kd") material.texture_line = statement.line.number;
   if (key == "Kd") material.reflectance = three_numbers(statement);
   if (key == "Ke") material.radiance = three_numbers(statement);
   if (key == "Tf") material.transparency.filter = three_numbers(statement);
@@ -117,6 +119,10 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.is_specular = any(read.specular);
   material.textures = textures_of(read);
   material.diffuse_texture = read.diffuse_texname;
+  const tinyobj::texture_option_t& options = read.diffuse_texopt;
+  material.texture_options = {
+      {options.scale[0], options.scale[1]}, {options.origin_offset[0], options.origin_offset[1]}, options.clamp};
+  material.texture_line = stated.texture_line;
   material.pane = mtl_pane(stated.transparency);
   if (!material.pane) material.mirror = mirror_from(read, stated.reflection, material.reflectance);
   material.is_contradictory = is_contradictory(stated.transparency);
@@ -164,7 +170,8 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
-  note("map_Kd counts by the mean colour of its picture", [](const MtlMaterial& m) { return m.has_mean; });
+  note("map_Kd counts by the mean colour of its picture",
+       [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
   note("textures are ignored, Kd is used instead",
        [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1 : 0); });
   note("d and Tr contradict each other, the surface is opaque",

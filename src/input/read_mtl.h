@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/light/spectrum.h"
+#include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
 
 #include "input/mtl_mirror.h"
@@ -13,23 +13,33 @@
 
 namespace patchlight {
 
+/// How a picture is put on: -s, -o and -clamp.
+struct TextureOptions {
+  Eigen::Vector2d scale{1, 1};
+  Eigen::Vector2d offset{0, 0};
+  bool clamp = false;
+};
+
 /// A material of an MTL file.
 struct MtlMaterial {
   std::string name;
-  Spectrum reflectance;               ///< Kd
-  Spectrum radiance;                  ///< Ke, W/(m^2 sr)
-  Spectrum ambient;                   ///< Ka
-  bool has_reflectance = false;       ///< Kd is given
-  bool is_specular = false;           ///< Ks is not 0
-  std::vector<std::string> textures;  ///< the files of map_, bump, disp, refl and norm
-  std::string diffuse_texture;        ///< the file of map_Kd, by read_libraries() its place
-  bool has_mean = false;              ///< the mean colour of map_Kd is in the reflectance
-  std::optional<MtlPane> pane;        ///< what d, Tr, Tf, Ni and illum make of it
-  std::optional<MtlMirror> mirror;    ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
-  bool is_contradictory = false;      ///< d and Tr contradict each other
-  bool has_cut_outs = false;          ///< map_d is given
-  bool is_mirror_or_glass = false;    ///< illum 3 to 9
-  bool is_metallic = false;           ///< Pm is not 0
+  Spectrum reflectance;                        ///< Kd
+  Spectrum radiance;                           ///< Ke, W/(m^2 sr)
+  Spectrum ambient;                            ///< Ka
+  bool has_reflectance = false;                ///< Kd is given
+  bool is_specular = false;                    ///< Ks is not 0
+  std::vector<std::string> textures;           ///< the files of map_, bump, disp, refl and norm
+  std::string diffuse_texture;                 ///< the file of map_Kd, by read_libraries() its place
+  TextureOptions texture_options;              ///< those of map_Kd
+  std::uint32_t texture_line = 0;              ///< on which map_Kd stands
+  bool has_mean = false;                       ///< the mean colour of map_Kd is in the reflectance
+  std::optional<TexturedReflectance> texture;  ///< what it is the mean of, where that has more than one colour
+  std::optional<MtlPane> pane;                 ///< what d, Tr, Tf, Ni and illum make of it
+  std::optional<MtlMirror> mirror;             ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
+  bool is_contradictory = false;               ///< d and Tr contradict each other
+  bool has_cut_outs = false;                   ///< map_d is given
+  bool is_mirror_or_glass = false;             ///< illum 3 to 9
+  bool is_metallic = false;                    ///< Pm is not 0
 };
 
 /// Reads the materials of an MTL file; of materials with the same name the first is kept.

@@ -11,6 +11,7 @@
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
+#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <map>
@@ -87,15 +88,21 @@ ObjPalette used_materials(std::span<const MtlMaterial> defined, std::span<const 
   return palette;
 }
 
-// The palette with the mean colours of the pictures that map_Kd names, times Kd where it is not 0, as exporters write
-// it beside a picture.
+// The palette with the pictures that map_Kd names and their mean colours, times Kd where it is not 0, as exporters
+// write it beside a picture.
 ObjPalette with_pictures(ObjPalette palette, const PictureColours& pictures) {
   for (MtlMaterial& material : palette.materials) {
     const auto found = pictures.by_file.find(material.diffuse_texture);
     if (found == pictures.by_file.end()) continue;
     const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
-    material.reflectance = has_factor ? Spectrum(material.reflectance * found->second) : found->second;
+    const Spectrum stated = material.reflectance;
+    material.reflectance = has_factor ? Spectrum(stated * found->second) : found->second;
     material.has_mean = true;
+    const auto texture = pictures.textures.find(material.diffuse_texture);
+    if (texture == pictures.textures.end()) continue;
+    const Spectrum factor = has_factor ? stated : rgb(1, 1, 1);
+    const Wrap wrap = material.texture_options.clamp ? Wrap::clamp : Wrap::repeat;
+    material.texture = {texture->second, primaries_times(factor), {wrap, wrap}};
   }
   return palette;
 }
@@ -147,6 +154,46 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
     }
   }
   return scene;
+}
+
+// The corners of a face in the picture of its material: v from the top, as -s and -o have it.
+std::vector<Eigen::Vector2d> picture_places(const ObjScan& scan, const ObjFace& face, std::size_t corners,
+                                            const TextureOptions& options) {
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t k = face.first_place; k < face.first_place + corners; ++k) {
+    if (scan.places[k] >= scan.picture_points.size()) return {};
+    const Eigen::Vector2d point = scan.picture_points[scan.places[k]].cwiseProduct(options.scale) + options.offset;
+    places.emplace_back(point.x(), 1 - point.y());
+  }
+  return places;
+}
+
+// The scene with the pictures of the palette on its polygons, which are the faces in the scan's order.
+Scene with_texture_maps(Scene scene, const ObjScan& scan, const ObjPalette& palette) {
+  MappedFaces mapped(scene.file);
+  for (std::size_t f = 0; f < scene.polygons.size(); ++f) {
+    Polygon& polygon = scene.polygons[f];
+    if (!scene.materials[polygon.material].texture) continue;
+    const std::vector<Eigen::Vector2d> places = picture_places(scan, scan.faces[f], polygon.corners.size(),
+                                                               palette.materials[polygon.material].texture_options);
+    polygon.texture_map = mapped.add(corner_points(scene, static_cast<PolygonIndex>(f)), places, polygon.line);
+  }
+  scene.texture_maps = mapped.maps();
+  for (std::string& note : mapped.notes()) scene.notes.push_back(std::move(note));
+  return scene;
+}
+
+// One sentence for each map_Kd whose picture cannot be read.
+std::vector<std::string> notes_on_pictures(const ObjPalette& palette, const PictureColours& pictures) {
+  std::vector<std::string> notes;
+  for (const MtlMaterial& material : palette.materials) {
+    const auto fault = pictures.faults.find(material.diffuse_texture);
+    if (fault == pictures.faults.end()) continue;
+    notes.push_back("the picture " + material.diffuse_texture + " of material '" + material.name + "' (map_Kd, line " +
+                    std::to_string(material.texture_line) + " of its material file) " + fault->second +
+                    "; Kd is used alone");
+  }
+  return notes;
 }
 
 std::vector<std::string> notes_on(const ObjScan& scan, const ObjPalette& palette) {
@@ -214,6 +261,7 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
 Material obj_material(const MtlMaterial& read) {
   // Exitance = pi radiance for a Lambertian emitter.
   Material material{read.name, read.reflectance, std::numbers::pi * read.radiance};
+  material.texture = read.texture;
   if (read.mirror)
     return as_mirror(std::move(material), read.mirror->specular_reflectance, read.mirror->reflectance,
                      read.mirror->statement);
@@ -258,6 +306,8 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   scene.metres_per_unit = metres_per_unit;
   scene.notes = notes_on(scan, palette);
   scene.unsimulated = unsimulated(palette.materials);
+  for (std::string& note : notes_on_pictures(palette, pictures)) scene.notes.push_back(std::move(note));
+  scene = with_texture_maps(std::move(scene), scan, palette);
   scene.lamp_hints = lamp_hints(palette.materials);
   scene.inputs = libraries.files;
   scene.problems = libraries.problems;

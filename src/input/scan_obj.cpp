@@ -6,6 +6,7 @@
 #include "input/text.h"
 
 #include <charconv>
+#include <limits>
 #include <map>
 #include <span>
 #include <utility>
@@ -70,6 +71,27 @@ std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& stat
   return corners;
 }
 
+// A vt statement; not a number where it has fewer than two numbers.
+Eigen::Vector2d picture_point(const std::vector<std::string_view>& statement) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector2d point(unknown, unknown);
+  for (std::size_t k = 0; k < 2 && k + 1 < statement.size(); ++k)
+    point[static_cast<Eigen::Index>(k)] = finite_number(statement[k + 1]).value_or(unknown);
+  return point;
+}
+
+// The picture point of a corner such as 7/2 or -1/-2/3, from 0; no_place where there is none.
+std::uint32_t place_of(std::string_view corner, std::size_t points_above) {
+  const std::size_t slash = corner.find('/');
+  if (slash == std::string_view::npos) return no_place;
+  const std::string_view digits = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || number == 0) return no_place;
+  const std::int64_t place = number > 0 ? number - 1 : static_cast<std::int64_t>(points_above) + number;
+  return place >= 0 && place < std::int64_t{no_place} ? static_cast<std::uint32_t>(place) : no_place;
+}
+
 std::string face_statement(std::span<const std::int64_t> corners) {
   std::string statement = "f";
   for (const std::int64_t corner : corners) statement.append(" ").append(std::to_string(corner));
@@ -119,7 +141,11 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
         scan.short_faces.push_back(line.number);
         continue;
       }
-      scan = with_face(std::move(scan), {line.number, material, {}}, corners);
+      scan = with_face(std::move(scan), {line.number, material, {}, scan.places.size()}, corners);
+      for (std::size_t k = 1; k < statement.size(); ++k)
+        scan.places.push_back(place_of(statement[k], scan.picture_points.size()));
+    } else if (keyword == "vt") {
+      scan.picture_points.push_back(picture_point(statement));
     } else if (keyword == "g" || keyword == "o") {
       scan.geometry += line.text + "\n";
     } else if (keyword == "usemtl") {

@@ -1,9 +1,12 @@
 #include "input/scene_bytes.h"
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 namespace patchlight {
 namespace {
@@ -23,6 +26,10 @@ class Writer {
   void numbers(const Vector& values) {
     plain(static_cast<std::size_t>(values.size()));
     for (const auto value : values) plain(value);
+  }
+  void texels(const std::vector<std::array<float, 3>>& texels) {
+    plain(texels.size());
+    bytes_.append(reinterpret_cast<const char*>(texels.data()), texels.size() * sizeof texels[0]);
   }
   std::string bytes() && { return std::move(bytes_); }
 
@@ -58,6 +65,14 @@ class Reader {
     for (double& value : values) value = plain<double>();
     return values;
   }
+  std::vector<std::array<float, 3>> texels() {
+    std::vector<std::array<float, 3>> texels(count());
+    const std::size_t size = texels.size() * sizeof(std::array<float, 3>);
+    if (size > bytes_.size()) throw std::runtime_error("a message ends early");
+    if (size > 0) std::memcpy(texels.data(), bytes_.data(), size);
+    bytes_.remove_prefix(size);
+    return texels;
+  }
   Point point() {
     Point values;
     if (count() != 3) throw std::runtime_error("a point has not three coordinates");
@@ -74,6 +89,7 @@ void write_polygon(Writer& out, const Polygon& polygon) {
   out.plain(polygon.material);
   out.plain(polygon.group);
   out.plain(polygon.line);
+  out.plain(polygon.texture_map);
 }
 
 Polygon read_polygon(Reader& in) {
@@ -83,6 +99,7 @@ Polygon read_polygon(Reader& in) {
   polygon.material = in.plain<MaterialIndex>();
   polygon.group = in.plain<std::uint32_t>();
   polygon.line = in.plain<std::uint32_t>();
+  polygon.texture_map = in.plain<std::uint32_t>();
   return polygon;
 }
 
@@ -101,7 +118,73 @@ std::optional<StatedSurface> read_stated(Reader& in) {
   return stated;
 }
 
-void write_material(Writer& out, const Material& material) {
+using Textures = std::vector<std::shared_ptr<const Texture>>;
+
+// The pictures of a scene's materials, each once.
+Textures textures_of(const Scene& scene) {
+  Textures textures;
+  for (const Material& material : scene.materials) {
+    if (!material.texture) continue;
+    const auto& texture = material.texture->texture;
+    if (std::find(textures.begin(), textures.end(), texture) == textures.end()) textures.push_back(texture);
+  }
+  return textures;
+}
+
+void write_textures(Writer& out, const Textures& textures) {
+  out.plain(textures.size());
+  for (const auto& texture : textures) {
+    out.plain(texture->width);
+    out.plain(texture->height);
+    out.texels(texture->texels);
+  }
+}
+
+Textures read_textures(Reader& in) {
+  Textures textures(in.count());
+  for (auto& texture : textures) {
+    Texture read;
+    read.width = in.plain<std::uint32_t>();
+    read.height = in.plain<std::uint32_t>();
+    read.texels = in.texels();
+    if (read.texels.empty() || read.texels.size() != std::uint64_t{read.width} * read.height)
+      throw std::runtime_error("a picture has not the size that it says");
+    texture = std::make_shared<const Texture>(std::move(read));
+  }
+  return textures;
+}
+
+void write_textured(Writer& out, const std::optional<TexturedReflectance>& textured, const Textures& textures) {
+  out.plain(textured.has_value());
+  if (!textured) return;
+  out.plain(
+      static_cast<std::size_t>(std::find(textures.begin(), textures.end(), textured->texture) - textures.begin()));
+  for (const Spectrum& primary : textured->of_primaries) out.numbers(primary);
+  for (const Wrap wrap : textured->wrap) out.plain(static_cast<std::uint8_t>(wrap));
+}
+
+std::optional<TexturedReflectance> read_textured(Reader& in, const Textures& textures) {
+  if (!in.plain<bool>()) return std::nullopt;
+  TexturedReflectance textured;
+  textured.texture = textures.at(in.plain<std::size_t>());
+  for (Spectrum& primary : textured.of_primaries) primary = in.spectrum();
+  for (Wrap& wrap : textured.wrap) wrap = static_cast<Wrap>(in.plain<std::uint8_t>());
+  return textured;
+}
+
+void write_map(Writer& out, const TextureMap& map) {
+  for (const double value : map.linear.reshaped()) out.plain(value);
+  for (const double value : map.offset) out.plain(value);
+}
+
+TextureMap read_map(Reader& in) {
+  TextureMap map;
+  for (double& value : map.linear.reshaped()) value = in.plain<double>();
+  for (double& value : map.offset) value = in.plain<double>();
+  return map;
+}
+
+void write_material(Writer& out, const Material& material, const Textures& textures) {
   out.text(material.name);
   out.numbers(material.reflectance);
   out.numbers(material.exitance);
@@ -111,9 +194,10 @@ void write_material(Writer& out, const Material& material) {
   out.numbers(material.diffuse_transmittance);
   write_stated(out, material.stated_pane);
   write_stated(out, material.stated_mirror);
+  write_textured(out, material.texture, textures);
 }
 
-Material read_material(Reader& in) {
+Material read_material(Reader& in, const Textures& textures) {
   Material material;
   material.name = in.text();
   material.reflectance = in.spectrum();
@@ -124,6 +208,7 @@ Material read_material(Reader& in) {
   material.diffuse_transmittance = in.spectrum();
   material.stated_pane = read_stated(in);
   material.stated_mirror = read_stated(in);
+  material.texture = read_textured(in, textures);
   return material;
 }
 
@@ -157,8 +242,12 @@ std::string scene_bytes(const Scene& scene) {
   for (const Point& vertex : scene.vertices) out.numbers(vertex);
   out.plain(scene.polygons.size());
   for (const Polygon& polygon : scene.polygons) write_polygon(out, polygon);
+  const Textures textures = textures_of(scene);
+  write_textures(out, textures);
   out.plain(scene.materials.size());
-  for (const Material& material : scene.materials) write_material(out, material);
+  for (const Material& material : scene.materials) write_material(out, material, textures);
+  out.plain(scene.texture_maps.size());
+  for (const TextureMap& map : scene.texture_maps) write_map(out, map);
   for (const auto* texts : {&scene.groups, &scene.notes}) {
     out.plain(texts->size());
     for (const std::string& text : *texts) out.text(text);
@@ -187,8 +276,11 @@ Scene scene_from_bytes(std::string_view bytes) {
   for (Point& vertex : scene.vertices) vertex = in.point();
   scene.polygons.resize(in.count());
   for (Polygon& polygon : scene.polygons) polygon = read_polygon(in);
+  const Textures textures = read_textures(in);
   scene.materials.resize(in.count());
-  for (Material& material : scene.materials) material = read_material(in);
+  for (Material& material : scene.materials) material = read_material(in, textures);
+  scene.texture_maps.resize(in.count());
+  for (TextureMap& map : scene.texture_maps) map = read_map(in);
   for (auto* texts : {&scene.groups, &scene.notes}) {
     texts->resize(in.count());
     for (std::string& text : *texts) text = in.text();

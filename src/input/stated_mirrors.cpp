@@ -19,6 +19,7 @@ std::string note_on_mirrors(const std::vector<std::string>& mirrors, const std::
 Material as_mirror(Material material, const Spectrum& specular_reflectance, const Spectrum& left,
                    std::string statement) {
   material.stated_mirror = StatedSurface{std::move(statement), material.reflectance};
+  material.texture.reset();
   material.specular_reflectance = specular_reflectance.max(0);
   material.reflectance = left;
   return material;

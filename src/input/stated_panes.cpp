@@ -29,6 +29,7 @@ double highest_transmittance(double index) { return 2 * index / (index * index +
 
 Material as_pane(Material material, const Spectrum& transmittance, double index, std::string statement) {
   material.stated_pane = StatedSurface{std::move(statement), material.reflectance};
+  material.texture.reset();
   material.transmittance = transmittance.max(0).min(1);
   material.index = index;
   return material;

@@ -1,6 +1,7 @@
 #include "pipeline/problem_of.h"
 
 #include "mesh/other_sides.h"
+#include "pipeline/textured_patches.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
@@ -13,9 +14,11 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
   const Eigen::Index bands = number_of_bands(scene);
   const SpecularFaces specular(scene, reflections);
   RadiosityProblem problem{{Field(mesh.size(), bands)}, Field::Zero(mesh.size(), bands), exposed_area};
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    problem.scattering.reflectance.row(i) = scene.materials[mesh.material[i]].reflectance;
+  problem.scattering.reflectance = with_textures(std::move(problem.scattering.reflectance), scene, mesh);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Material& material = scene.materials[mesh.material[i]];
-    problem.scattering.reflectance.row(i) = material.reflectance;
     const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
     if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
     const double held = specular.held(mesh.polygon[i], mesh.side[i]);

@@ -157,6 +157,16 @@ Decision closure(const Request& request, bool interreflects) {
   return overruled(std::move(decision), asked);
 }
 
+Decision textures(const EffectFacts& facts) {
+  if (facts.textured == 0)
+    return {Effect::textures, false, "no material has a picture whose place on a face is known", "nothing"};
+  return {Effect::textures, true,
+          std::to_string(facts.textured) + " of " + counted(facts.materials, "material") +
+              (facts.textured == 1 ? " has a picture" : " have pictures") + "; texels differ from its mean by " +
+              number(100 * facts.texture_deviation) + " %, rms",
+          "the mean of a picture over each patch"};
+}
+
 std::string counted_specular(const EffectFacts& facts) {
   std::string list;
   if (facts.mirrors > 0) list = counted(facts.mirrors, "mirror");
@@ -215,6 +225,8 @@ bool is_there(Effect effect, const EffectFacts& facts) {
       return !facts.dark_solids.empty();
     case Effect::backs:
       return facts.turned_away > 0;
+    case Effect::textures:
+      return facts.textured > 0;
     case Effect::mirrors:
       return facts.mirrors > 0 || facts.openings > 0;
     default:
@@ -236,7 +248,8 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
                                      backs(facts, request),
                                      luminaires(facts),
                                      sun(facts),
-                                     sky(facts)};
+                                     sky(facts),
+                                     textures(facts)};
   for (Decision& decision : decisions) {
     if (is_there(decision.effect, facts)) decision = overruled(std::move(decision), request);
   }

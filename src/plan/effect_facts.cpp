@@ -1,5 +1,6 @@
 #include "plan/effect_facts.h"
 
+#include "light/texture.h"
 #include "scene/solids.h"
 #include "visibility/convex_hull.h"
 
@@ -116,6 +117,27 @@ bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
   return false;
 }
 
+// What the pictures on kept sides are like.
+EffectFacts with_texture_facts(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
+  std::vector<std::uint8_t> is_textured(scene.materials.size(), 0);
+  for (const Polygon& polygon : scene.polygons) {
+    const auto p = static_cast<std::size_t>(&polygon - scene.polygons.data());
+    for (const Side side : {Side::front, Side::back}) {
+      const bool takes_part = (side == Side::front ? kept.front : kept.back)[p] != 0;
+      if (takes_part && texture_map_on(scene, polygon, side)) is_textured[material_on(polygon, side)] = 1;
+    }
+  }
+  for (std::size_t m = 0; m < is_textured.size(); ++m) {
+    if (is_textured[m] == 0) continue;
+    const TextureRange range = range_of(*scene.materials[m].texture);
+    ++facts.textured;
+    facts.texture_deviation = std::max(facts.texture_deviation, range.deviation);
+    facts.highest_reflectance = std::max(facts.highest_reflectance, range.highest_reflectance);
+    facts.grey = facts.grey && range.grey;
+  }
+  return facts;
+}
+
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
@@ -151,6 +173,9 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
   facts.lamp_colour = common_colour(spectra);
   facts.dark_bands = bands_without_light(spectra, facts.bands);
+
+  facts.materials = in_use.size();
+  facts = with_texture_facts(std::move(facts), scene, kept);
 
   facts.dark_solids = kept.dark_solids;
   facts.unreached = kept.unreached;

@@ -31,6 +31,9 @@ struct EffectFacts {
   std::size_t sheets = 0;             ///< translucent polygons
   std::size_t mirrors = 0;            ///< polygons of which a side is a mirror
   std::size_t coloured_specular = 0;  ///< materials whose transmittance or specular reflectance differs by band
+  std::size_t textured = 0;           ///< materials of kept sides that have pictures there
+  double texture_deviation = 0;       ///< TextureRange::deviation, the largest of these
+  std::size_t materials = 0;          ///< of kept sides
   std::size_t gloss = 0;              ///< materials that a file says are partly mirrors
   std::size_t glass = 0;              ///< materials that a file says are transparent, taken for opaque
 };

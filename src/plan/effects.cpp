@@ -15,7 +15,7 @@ const char* word_for(const Decision& decision) {
 std::vector<Effect> simulated_effects() {
   return {Effect::occlusion, Effect::interreflection, Effect::colour, Effect::reach,
           Effect::backs,     Effect::luminaires,      Effect::sun,    Effect::sky,
-          Effect::mirrors,   Effect::closure};
+          Effect::textures,  Effect::mirrors,         Effect::closure};
 }
 
 const char* name_of(Effect effect) {
@@ -38,6 +38,8 @@ const char* name_of(Effect effect) {
       return "sky";
     case Effect::closure:
       return "closure";
+    case Effect::textures:
+      return "textures";
     case Effect::mirrors:
       return "mirrors";
     case Effect::bands_of_panes:

@@ -37,6 +37,9 @@ Scene with_spectra(Scene scene, const Change& change) {
     for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.specular_reflectance,
                         &material.diffuse_transmittance, &material.exitance})
       apply(*s);
+    if (material.texture) {
+      for (Spectrum& spectrum : material.texture->of_primaries) apply(spectrum);
+    }
   }
   for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
   if (scene.sun) apply(scene.sun->normal_irradiance);
@@ -73,6 +76,9 @@ Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
   if (left_out(Effect::luminaires)) scene.luminaires.clear();
   if (left_out(Effect::sun)) scene.sun.reset();
   if (left_out(Effect::sky)) scene.sky.reset();
+  if (is_skipped_by_force(plan, Effect::textures)) {
+    for (Material& material : scene.materials) material.texture.reset();
+  }
   return is_skipped_by_force(plan, Effect::colour) ? without_colour(std::move(scene)) : scene;
 }
 

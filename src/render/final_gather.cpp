@@ -280,7 +280,7 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
     // L = (E + rho H + t H_behind) / pi
     const double share = seen.share / std::numbers::pi;
     all.radiance.row(ray) += share * solved_.exitance.row(patch);
-    add(seen, patch, share * solved_.reflectance.row(patch));
+    add(seen, patch, share * reflectance_at(solved_, patch, seen.point));
     if (const auto other = behind(patch)) add(seen, *other, share * solved_.transmittance.row(patch));
   }
 

@@ -1,6 +1,7 @@
 #include "render/gathered_light.h"
 
 #include "base/sampling.h"
+#include "light/texture.h"
 #include "render/hemisphere.h"
 #include "render/pixel_samples.h"
 #include "render/sky_samples.h"
@@ -26,6 +27,15 @@ constexpr int samples_of_mirrored = 8;
 constexpr std::uint32_t rays_of_bounce = 2;
 
 }  // namespace
+
+Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point) {
+  if (!light.scene) return light.reflectance.row(patch);
+  const Polygon& polygon = light.scene->polygons[light.mesh.polygon[patch]];
+  const TextureMap* map = texture_map_on(*light.scene, polygon, light.mesh.side[patch]);
+  if (!map) return light.reflectance.row(patch);
+  const TexturedReflectance& texture = *light.scene->materials[light.mesh.material[patch]].texture;
+  return reflectance_at(texture, map->linear * point + map->offset).min(1);
+}
 
 // Where a ray ends on a patch; none where it finds nothing.
 struct GatheredLight::Stop {
@@ -112,7 +122,7 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
   for (std::size_t n = 0; n < near.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
     found.row(static_cast<Eigen::Index>(near[n])) =
-        solved_.reflectance.row(*stops[near[n]].patch) * (direct.row(row) + onward.row(row));
+        reflectance_at(solved_, *stops[near[n]].patch, stops[near[n]].point) * (direct.row(row) + onward.row(row));
   }
   return found;
 }

@@ -24,7 +24,11 @@ struct SolvedLight {
   std::vector<PatchIndex> other_side{};  ///< as Scattering has it
   Field transmittance{};
   Eigen::VectorXd luminous_weights;  ///< per band
+  const Scene* scene = nullptr;      ///< whose pictures show; none: patches have one reflectance each
 };
+
+/// The reflectance at a point of a patch: that of the texel where a picture is on it, else the patch's.
+Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point);
 
 /// A place of a patch.
 struct PatchPoint {

@@ -48,11 +48,34 @@ Loops loops_of(const Scene& scene) {
   return loops;
 }
 
+// How far apart two polygons of one picture may have a point in it: a hundredth of a texel of most pictures, and more
+// than six digits of coordinates leave open.
+constexpr double same_texture_place = 1e-5;
+
+// True when one side of two polygons lies in the picture of its material as if both were one.
+bool continue_picture(const Scene& scene, const Polygon& a, const Polygon& b, Side side) {
+  const TextureMap* one = texture_map_on(scene, a, side);
+  const TextureMap* other = texture_map_on(scene, b, side);
+  if (!one || !other) return one == other;
+  for (const Polygon* polygon : {&a, &b}) {
+    for (const std::uint32_t corner : polygon->corners) {
+      const Point& at = scene.vertices[corner];
+      if (!((one->linear * at + one->offset - other->linear * at - other->offset).norm() <= same_texture_place))
+        return false;
+    }
+  }
+  return true;
+}
+
+bool continue_pictures(const Scene& scene, const Polygon& a, const Polygon& b) {
+  return continue_picture(scene, a, b, Side::front) && continue_picture(scene, a, b, Side::back);
+}
+
 bool are_alike(const Scene& scene, const std::vector<Vector>& normals, PolygonIndex p, PolygonIndex q) {
   const Polygon& a = scene.polygons[p];
   const Polygon& b = scene.polygons[q];
   return p != q && a.material == b.material && a.back_material == b.back_material && a.group == b.group &&
-         a.file == b.file && (normals[p] - normals[q]).norm() <= same_direction;
+         a.file == b.file && (normals[p] - normals[q]).norm() <= same_direction && continue_pictures(scene, a, b);
 }
 
 // Finds the edges that two alike polygons of one plane share, and no third one.
@@ -167,6 +190,10 @@ std::optional<Polygon> joined(const Scene& scene, const Loops& loops, const std:
   const auto is_quadrilateral = [&scene](PolygonIndex p) { return scene.polygons[p].corners.size() == 4; };
   if (std::all_of(members.begin(), members.end(), is_quadrilateral)) return std::nullopt;
   Polygon whole = scene.polygons[members.front()];
+  // Differences of neighbours add up.
+  if (!std::all_of(members.begin(), members.end(),
+                   [&](PolygonIndex p) { return continue_pictures(scene, whole, scene.polygons[p]); }))
+    return std::nullopt;
   whole.corners = corners_of(loops, members, scene);
   if (whole.corners.empty()) return std::nullopt;
   double area = 0;

@@ -149,6 +149,7 @@ MaterialIndex material_of_box(Scene& scene, const std::vector<PolygonIndex>& she
   Material mean = scene.materials[first];
   mean.name = "mean of " + group_name(scene, scene.polygons[shell.front()].group);
   mean.reflectance = reflected / area;
+  mean.texture.reset();
   scene.materials.push_back(std::move(mean));
   return static_cast<MaterialIndex>(scene.materials.size() - 1);
 }
@@ -163,6 +164,7 @@ std::vector<Polygon> box_faces(Scene& scene, const std::vector<PolygonIndex>& sh
   Polygon face = scene.polygons[shell.front()];
   face.material = material_of_box(scene, shell);
   face.back_material.reset();
+  face.texture_map = no_texture_map;
   std::vector<Polygon> faces;
   for (const auto& side : sides) {
     face.corners.clear();

@@ -184,6 +184,7 @@ Scene merge_coincident(Scene scene) {
     if (!pair.same_front && !first.back_material) {
       two_sided.push_back(problem_face(scene, second));
       first.back_material = second.material;
+      first.back_texture_map = second.texture_map;
       continue;
     }
     const Side side = pair.same_front ? Side::front : Side::back;

@@ -186,6 +186,13 @@ MaterialIndex material_on(const Polygon& polygon, Side side) {
   return side == Side::back ? polygon.back_material.value_or(polygon.material) : polygon.material;
 }
 
+const TextureMap* texture_map_on(const Scene& scene, const Polygon& polygon, Side side) {
+  if (!scene.materials[material_on(polygon, side)].texture) return nullptr;
+  const bool is_own_back = side == Side::back && polygon.back_material;
+  const std::uint32_t map = is_own_back ? polygon.back_texture_map : polygon.texture_map;
+  return map == no_texture_map ? nullptr : &scene.texture_maps[map];
+}
+
 bool emits(const Scene& scene, PolygonIndex polygon, Side side) {
   const Polygon& face = scene.polygons[polygon];
   if (side == Side::back && !face.back_material) return false;

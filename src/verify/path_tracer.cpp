@@ -255,7 +255,7 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
 // met, or on the other side of a sheet, from where light comes through.
 std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& throughput, const PathSeed& path) const {
   const Surface& there = surfaces.at(hit.polygon, hit.side);
-  const Spectrum reflected = throughput * there.reflectance;
+  const Spectrum reflected = throughput * reflectance_at(there, hit.point);
   const Spectrum through = throughput * there.scattered_through;
   const double survival = std::min((reflected + through).maxCoeff(), highest_survival);
   const double drawn = uniform({path.seed, path.path});

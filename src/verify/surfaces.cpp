@@ -1,5 +1,6 @@
 #include "verify/surfaces.h"
 
+#include "light/texture.h"
 #include "scene/transmittance.h"
 
 #include <algorithm>
@@ -35,6 +36,10 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
   surface.kept = (is_front ? kept.front : kept.back)[index] != 0;
   surface.normal = is_front ? front_normal(scene, index) : Vector(-front_normal(scene, index));
   surface.reflectance = material.reflectance;
+  if (const TextureMap* map = texture_map_on(scene, polygon, side)) {
+    surface.texture = material.texture;
+    surface.texture_map = *map;
+  }
   surface.panes = panes.panes[of_material];
   surface.held = panes.held[of_material];
   if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
@@ -53,6 +58,11 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
 }
 
 }  // namespace
+
+Spectrum reflectance_at(const Surface& surface, const Point& point) {
+  if (!surface.texture) return surface.reflectance;
+  return reflectance_at(*surface.texture, surface.texture_map.linear * point + surface.texture_map.offset).min(1);
+}
 
 Spectrum transmittance(const Surface& surface, double cosine) {
   if (surface.panes.empty()) return Spectrum::Zero(surface.reflectance.size());

@@ -8,15 +8,18 @@
 #include "scene/specular_faces.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
 
 /// What one side of a polygon is to light.
 struct Surface {
-  bool kept = false;  ///< false: it absorbs all light and emits none
-  Vector normal;      ///< unit, out of this side
-  Spectrum reflectance;
+  bool kept = false;     ///< false: it absorbs all light and emits none
+  Vector normal;         ///< unit, out of this side
+  Spectrum reflectance;  ///< the mean where there is a texture
+  std::optional<TexturedReflectance> texture;
+  TextureMap texture_map;   ///< where there is one
   std::vector<Pane> panes;  ///< per band; none of an opaque side
   Spectrum held;            ///< of a clear one: the share of light from all directions alike that is kept, per band
   Spectrum mirrored;  ///< the share of light that is reflected as by a mirror at all angles; 0 of a clear one, and
@@ -25,6 +28,9 @@ struct Surface {
   Spectrum scattered_through;  ///< the share of light that is scattered out of the other side; 0 unless both are kept
   Spectrum exitance;           ///< W/m^2; 0 for a side that does not emit
 };
+
+/// The reflectance at one of its points.
+Spectrum reflectance_at(const Surface& surface, const Point& point);
 
 /// The share that a side lets straight through at an angle to its normal with this cosine, per band.
 Spectrum transmittance(const Surface& surface, double cosine);

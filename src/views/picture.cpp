@@ -142,7 +142,8 @@ SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const
           .reflectance = problem.scattering.reflectance,
           .other_side = problem.scattering.other_side,
           .transmittance = problem.scattering.transmittance,
-          .luminous_weights = weights};
+          .luminous_weights = weights,
+          .scene = &scene};
 }
 
 // As it is shown on a display.

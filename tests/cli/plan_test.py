@@ -6,7 +6,7 @@ from support import MATERIALS, ROOM, ToolTest, content
 
 GOOD, USAGE, INPUT = 0, 1, 2
 
-EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "mirrors",
+EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "textures", "mirrors",
            "closure"]
 
 

@@ -2,9 +2,12 @@
 
 #include "patchlight/light/spectrum.h"
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -18,6 +21,29 @@ inline constexpr double usual_index = 1.52;
 struct StatedSurface {
   std::string by;             ///< the statement, for messages: "d 0.3"
   Spectrum matt_reflectance;  ///< what the surface reflects diffusely if it is taken for opaque and matt
+};
+
+/// A picture on surfaces, as wide and as high as 1 in its coordinates: u runs from its left to its right, v from its
+/// top to its bottom.
+struct Texture {
+  std::uint32_t width = 0;  ///< texels, 1 or more
+  std::uint32_t height = 0;
+  std::vector<std::array<float, 3>> texels;  ///< linear RGB with Rec. 709 primaries, row by row from the top
+};
+
+/// What stands beyond the edges of a picture.
+enum class Wrap : std::uint8_t {
+  repeat,  ///< the picture again
+  mirror,  ///< the picture mirrored, and so on by turns
+  clamp    ///< the texels of the edge
+};
+
+/// A reflectance that follows a picture: the sum of a texel's red, green and blue times what each of the three stands
+/// for.
+struct TexturedReflectance {
+  std::shared_ptr<const Texture> texture;
+  std::array<Spectrum, 3> of_primaries;  ///< the reflectance where the picture is 1 in red, in green and in blue alone
+  std::array<Wrap, 2> wrap{};            ///< beyond u and beyond v of 0 to 1
 };
 
 /// A surface that scatters diffusely (Lambertian), and may let light through or reflect it as a mirror besides; all
@@ -36,7 +62,9 @@ struct Material {
                                      ///< its other side, evenly; empty or 0: none
   std::optional<StatedSurface> stated_pane{};    ///< where a model file makes it a pane, and no setting has another say
   std::optional<StatedSurface> stated_mirror{};  ///< the same of a mirror
-  bool second_face = false;                      ///< made up, clear in full: that of the second faces of solid panes
+  std::optional<TexturedReflectance>
+      texture{};             ///< where a polygon has a TextureMap: what `reflectance` is the mean of
+  bool second_face = false;  ///< made up, clear in full: that of the second faces of solid panes
 };
 
 }  // namespace patchlight

@@ -16,6 +16,7 @@ enum class Effect : std::uint8_t {
   luminaires,       ///< lamps that are no polygons
   sun,
   sky,
+  textures,        ///< pictures on surfaces: a reflectance for each patch, else one mean for each picture
   mirrors,         ///< light that mirrors and clear faces reflect without scattering it
   closure,         ///< correction of form factors so that rows sum up to what is seen
   bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors: by rows

@@ -28,6 +28,15 @@ enum class Side : std::uint8_t { front, back };
 /// "front" or "back".
 const char* name_of(Side side);
 
+/// Where points lie in the picture of a material: (u, v) = linear * x + offset, x in metres.
+struct TextureMap {
+  Eigen::Matrix<double, 2, 3> linear;  ///< 1/m
+  Eigen::Vector2d offset;
+};
+
+/// Stands for "no place in the picture is known".
+inline constexpr std::uint32_t no_texture_map = ~std::uint32_t{0};
+
 /// A planar polygon of the model, not necessarily convex; a hole is joined to the outline by a seam that is walked
 /// along both ways.
 struct Polygon {
@@ -37,7 +46,9 @@ struct Polygon {
   std::uint32_t line = 0;   ///< in the model file, from 1; 0 if unknown
   std::uint32_t file = 0;   ///< index into Scene::files
   std::uint32_t face = 0;   ///< number of its face in the model's files, from 0; given by read_scene()
-  std::optional<MaterialIndex> back_material{};  ///< of its back side, when that is a face of its own
+  std::optional<MaterialIndex> back_material{};     ///< of its back side, when that is a face of its own
+  std::uint32_t texture_map = no_texture_map;       ///< index into Scene::texture_maps
+  std::uint32_t back_texture_map = no_texture_map;  ///< that of the back material
 };
 
 /// A room that a model names, as IfcSpace does: a body of air.
@@ -92,6 +103,7 @@ struct Scene {
   std::vector<Polygon> polygons;
   std::size_t faces = 0;  ///< that the files have; read_scene() may cut and join them
   std::vector<Material> materials;
+  std::vector<TextureMap> texture_maps;       ///< of polygons whose materials have pictures
   Bands bands;                                ///< what the bands of all spectra stand for; empty: bands_of() tells
   std::vector<std::string> groups;            ///< names of objects and groups
   std::string file;                           ///< the model file's name, for messages
@@ -129,6 +141,10 @@ Vector front_normal(const Scene& scene, PolygonIndex polygon);
 
 /// The material of one side of a polygon.
 MaterialIndex material_on(const Polygon& polygon, Side side);
+
+/// Where points of one side of a polygon lie in the picture of its material; null when that has no picture or the place
+/// is not known: then the reflectance of the material holds.
+const TextureMap* texture_map_on(const Scene& scene, const Polygon& polygon, Side side);
 
 /// True when this side of the polygon emits in any band: the front side with the polygon's material, the back side only
 /// with a material of its own.

@@ -275,7 +275,7 @@ TEST_F(Formats, GltfTexturesAreReplacedByTheirMean) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)" + std::string(image) + "\"}]}";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.4, 0.2, 0.1), 1e-12)) << scene.materials[0].reflectance;
-  EXPECT_TRUE(any_contains(scene.notes, "mean colour: wall"));
+  EXPECT_TRUE(any_contains(scene.notes, "no good place in their picture, whose mean counts: 12"));
 }
 
 TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {

@@ -4,6 +4,7 @@
 #include "patchlight/input/read_scene.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -38,6 +39,43 @@ inline std::string two_pixels() {
   for (std::size_t k = 0; k < hexadecimal.size(); k += 2)
     bytes += static_cast<char>(std::stoi(hexadecimal.substr(k, 2), nullptr, 16));
   return bytes;
+}
+
+/// A PNG of 8 bits per channel, its pixels as red, green and blue, row by row, in sRGB. PNG specification, sections 5
+/// and 10, with blocks that are stored (RFC 1951, section 3.2.4).
+inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& pixels) {
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFFU);
+    return bytes;
+  };
+  const auto chunk = [&](const std::string& name_and_bytes) {
+    std::uint32_t crc = ~0U;
+    for (const char byte : name_and_bytes) {
+      crc ^= static_cast<unsigned char>(byte);
+      for (int bit = 0; bit < 8; ++bit) crc = crc >> 1U ^ (0xEDB88320U & (0U - (crc & 1U)));
+    }
+    return number(static_cast<std::uint32_t>(name_and_bytes.size() - 4)) + name_and_bytes + number(~crc);
+  };
+  std::string rows;
+  for (std::uint32_t row = 0; row < height; ++row)
+    rows += std::string(1, '\0') + pixels.substr(std::size_t{3} * row * width, std::size_t{3} * width);
+  std::uint32_t low = 1;
+  std::uint32_t high = 0;
+  for (const char byte : rows) {
+    low = (low + static_cast<unsigned char>(byte)) % 65521U;
+    high = (high + low) % 65521U;
+  }
+  const auto size = static_cast<std::uint32_t>(rows.size());  // at most 65535
+  std::string stored = "\x78\x01\x01";
+  for (const std::uint32_t value : {size, ~size}) {
+    stored += static_cast<char>(value & 0xFFU);
+    stored += static_cast<char>(value >> 8U & 0xFFU);
+  }
+  stored += rows + number(high << 16U | low);
+  const std::string form("\x08\x02\0\0\0", 5);
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + number(width) + number(height) + form) + chunk("IDAT" + stored) +
+         chunk("IEND");
 }
 
 /// A test with a folder of its own for small model files; it is removed afterwards.
