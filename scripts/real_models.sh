@@ -96,7 +96,7 @@ for name in "${names[@]}"; do
       ;;
     honeybee)
       files=("$models/honeybee-rooms/model_radiance_grid_views.hbjson")
-      options=(--sky overcast:10000lx --patches 6000 --points-output "$out/honeybee.csv")
+      options=(--sky overcast:10000lx --patches 6000 --points-output "$out/honeybee.csv" --points-output "$out/honeybee.svg" --map daylight-factor)
       ;;
     kitchen)
       # Nothing in it emits: three spheres in the middle of the room.
@@ -153,7 +153,7 @@ target = [4.5, 0, 1.3]
 field_of_view = 60
 END
       files=("$out/openroom.toml")
-      options=(--patches 8000 --points-output "$out/openroom.csv")
+      options=(--patches 8000 --points-output "$out/openroom.csv" --points-output "$out/openroom.svg" --map daylight-factor)
       ;;
     office)
       # Its files are in feet.
@@ -191,7 +191,7 @@ target = [1.3, -16.3, 0.6]
 field_of_view = 75
 END
       files=("$out/duplex-daylight.toml")
-      options=(--patches 20000 --points-output "$out/duplex-daylight.csv")
+      options=(--patches 20000 --points-output "$out/duplex-daylight.csv" --points-output "$out/duplex-daylight.svg")
       ;;
     ies)
       cat >"$out/ies.toml" <<END
@@ -221,10 +221,6 @@ END
     --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
   cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in
-    openroom | honeybee) python3 scripts/sensor_map.py "$out/$name.csv" "$out/$name.svg" ;;
-    duplex-daylight)
-      python3 scripts/sensor_map.py "$out/duplex-daylight.csv" "$out/duplex-daylight.svg" --column E_v_lx
-      ;;
     ies) check_flux "$out/ies.json" ;;
   esac
 done

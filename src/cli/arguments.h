@@ -7,6 +7,7 @@
 
 #include "archive/form_factor_files.h"
 #include "cli/messages.h"
+#include "output/write_sensor_map.h"
 #include "study/compare.h"
 #include "study/study.h"
 #include "study/verify.h"
@@ -56,8 +57,10 @@ struct SolveArguments {
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
   std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts; empty: none
 
-  std::filesystem::path points;  ///< input: where irradiance is wanted, besides the scene's sensors
+  std::filesystem::path points;            ///< input: where irradiance is wanted, besides the scene's sensors
+  std::optional<double> ambient_distance;  ///< m; none: results have no ambient occlusion
   std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; none: default_points_output
+  MapOptions map;                                     ///< of those that are .svg or .png
   std::filesystem::path default_points_output;        ///< .csv, where sensors are but no output for them is named
 
   bool solver_given = false;  ///< Request::solver has what was asked for
@@ -78,11 +81,13 @@ struct PlanArguments {
 struct CheckArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
-  std::optional<Sides> sides;      ///< whose number is wanted, if any
-  std::filesystem::path problems;  ///< .vtp
-  std::filesystem::path json;      ///< .json
-  bool json_on_stdout = false;     ///< instead of the text
-  bool all = false;                ///< lists everything, not what fits on a screen
+  std::optional<Sides> sides;              ///< whose number is wanted, if any
+  std::filesystem::path problems;          ///< .vtp
+  std::filesystem::path picture;           ///< .png
+  std::optional<double> ambient_distance;  ///< m, of the picture
+  std::filesystem::path json;              ///< .json
+  bool json_on_stdout = false;             ///< instead of the text
+  bool all = false;                        ///< lists everything, not what fits on a screen
 };
 
 /// What `patchlight new` is asked to do.
@@ -153,7 +158,9 @@ struct RenderArguments {
   std::filesystem::path solution;  ///< input: .vtp
   std::filesystem::path page;      ///< .html; empty when it is not wanted
   PictureSettings picture;
-  int threads = 0;  ///< 0: all processors
+  std::filesystem::path observers;   ///< .csv; empty: not wanted
+  std::filesystem::path difference;  ///< input: another solution, .vtp; empty: none
+  int threads = 0;                   ///< 0: all processors
   bool quiet = false;
   std::string command_line;  ///< for the record
 };

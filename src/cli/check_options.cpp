@@ -7,6 +7,7 @@
 #include "cli/parse_value.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ constexpr int most_models = 1'000'000;
 struct CheckOptions {
   ModelOptions model;
   std::optional<Sides> sides;
-  std::string problems, json;
+  std::string problems, json, picture;
+  std::optional<double> ambient_distance;
   bool wants_json = false;
   bool all = false;
 };
@@ -58,6 +60,13 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
           "--vtk", [&to](const std::string& text) { to.problems = text; },
           "the model with its bad faces marked, for ParaView (.vtp):\ncell array problem_kind")
       ->option_text("FILE");
+  add(command, "--picture", "FILE",
+      "a picture of the model as it is, without light (.png, .hdr): its\ncolors, darker where faces are near to each "
+      "other",
+      [&to](const std::string& text) { to.picture = text; });
+  add(command, "--ambient-occlusion", "LENGTH",
+      "how near, with its unit, as in 2m; default: a tenth of the model's\nmean extent",
+      [&to](const std::string& text) { to.ambient_distance = length("--ambient-occlusion", text); });
   return options;
 }
 
@@ -74,8 +83,15 @@ CheckArguments finish_check(const CheckOptions& options) {
   if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp") {
     throw UsageError("--vtk: found '" + options.problems + "'; expected a name that ends in .vtp");
   }
-  require_distinct({{"--json", arguments.json}, {"--vtk", arguments.problems}});
-  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}}, arguments.models);
+  arguments.picture = options.picture;
+  arguments.ambient_distance = options.ambient_distance;
+  if (!options.picture.empty() && arguments.picture.extension() != ".png" && arguments.picture.extension() != ".hdr")
+    throw UsageError("--picture: found '" + options.picture + "'; expected a name that ends in .png or .hdr");
+  if (options.ambient_distance && options.picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
+  const std::vector<OutputFile> outputs = {
+      {"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture}};
+  require_distinct(outputs);
+  require_not_read(outputs, arguments.models);
   return arguments;
 }
 

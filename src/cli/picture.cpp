@@ -4,6 +4,7 @@
 #include "patchlight/output/write_image.h"
 
 #include "output/write_picture.h"
+#include "render/lens.h"
 
 #include <string>
 
@@ -44,7 +45,7 @@ Picture make_picture(const PictureSettings& settings, const Scene& scene, const 
 }
 
 void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {
-  write_picture(file, picture, scene.up, bands_of(scene));
+  write_picture(file, picture, picture_up(picture.camera, scene.up, scene.north), bands_of(scene));
 }
 
 void write_error_map(const std::filesystem::path& file, const Picture& picture) { write_picture_errors(file, picture); }

@@ -92,6 +92,15 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
 }
 
+// "room.png" of the view "desk": "room.desk.png", with what file names do not like as "_".
+std::filesystem::path with_view(const std::filesystem::path& file, const std::string& view) {
+  if (file.empty()) return file;
+  std::string name = view;
+  std::replace_if(
+      name.begin(), name.end(), [](char letter) { return letter == '/' || letter == '\\' || letter == ':'; }, '_');
+  return file.parent_path() / (file.stem().string() + '.' + name + file.extension().string());
+}
+
 }  // namespace
 
 void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality usual) {
@@ -148,8 +157,26 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
   return settings;
 }
 
+std::vector<PictureSettings> single_pictures(const PictureSettings& settings) {
+  if (settings.views.size() < 2) return {settings};
+  std::vector<PictureSettings> all;
+  for (const std::string& view : settings.views) {
+    PictureSettings one = settings;
+    one.views = {view};
+    one.file = with_view(settings.file, view);
+    one.error_map = with_view(settings.error_map, view);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 std::vector<OutputFile> picture_files(const PictureSettings& settings, const std::string& file_option) {
-  return {{file_option, settings.file}, {"--picture-error-map", settings.error_map}};
+  std::vector<OutputFile> files;
+  for (const PictureSettings& one : single_pictures(settings)) {
+    files.push_back({file_option, one.file});
+    files.push_back({"--picture-error-map", one.error_map});
+  }
+  return files;
 }
 
 }  // namespace patchlight::cli

@@ -34,6 +34,9 @@ void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality 
 /// other.
 PictureSettings picture_settings(const PictureGiven& given, const std::string& file_option, PictureQuality usual);
 
+/// One picture for each view: of several, each with its view in its files' names, "room.desk.png" for "room.png".
+std::vector<PictureSettings> single_pictures(const PictureSettings& settings);
+
 /// The files of pictures, with the options that ask for them.
 std::vector<OutputFile> picture_files(const PictureSettings& settings, const std::string& file_option);
 

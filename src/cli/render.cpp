@@ -10,45 +10,24 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/picture.h"
+#include "cli/picture_options.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/whole_file.h"
+#include "output/write_observers.h"
+#include "output/write_picture.h"
 #include "page/write_page.h"
 #include "render/tone_map.h"
 #include "scene/limits.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <string>
+#include <optional>
 #include <utility>
 #include <vector>
 
 namespace patchlight::cli {
 namespace {
-
-// "room.png" of the view "desk": "room.desk.png", with what file names do not like as "_".
-std::filesystem::path with_view(const std::filesystem::path& file, const std::string& view) {
-  if (file.empty()) return file;
-  std::string name = view;
-  std::replace_if(
-      name.begin(), name.end(), [](char letter) { return letter == '/' || letter == '\\' || letter == ':'; }, '_');
-  return file.parent_path() / (file.stem().string() + '.' + name + file.extension().string());
-}
-
-// The pictures that are wanted, one view each.
-std::vector<PictureSettings> wanted_pictures(const PictureSettings& settings) {
-  if (settings.views.size() < 2) return {settings};
-  std::vector<PictureSettings> all;
-  for (const std::string& view : settings.views) {
-    PictureSettings one = settings;
-    one.views = {view};
-    one.file = with_view(settings.file, view);
-    one.error_map = with_view(settings.error_map, view);
-    all.push_back(std::move(one));
-  }
-  return all;
-}
 
 void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& scene) {
   const Reach reach = reach_of(scene);
@@ -58,6 +37,19 @@ void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& 
     require_in_reach(reach, camera->eye, "--camera", "the eye");
     require_in_reach(reach, camera->target, "--camera", "the target");
   }
+}
+
+// The cameras that are asked for, else all of the scene.
+std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, const Scene& scene) {
+  if (wanted.front().views.empty() && !wanted.front().camera && !scene.cameras.empty()) return scene.cameras;
+  std::vector<Camera> cameras;
+  for (const PictureSettings& one : wanted) {
+    const std::optional<Camera> camera = camera_for(one, scene);
+    if (!camera)
+      throw InputError("--observers", "the scene has no [[camera]]; expected one, or --camera EYE TARGET FOV");
+    cameras.push_back(*camera);
+  }
+  return cameras;
 }
 
 void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
@@ -76,9 +68,10 @@ void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene
 
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse what cannot be written, or would be lost
-  const std::vector<PictureSettings> wanted = wanted_pictures(arguments.picture);
+  const std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
+  if (!arguments.observers.empty()) check_writable(arguments.observers);
   for (const PictureSettings& one : wanted) {
-    check_writable(one.file);
+    if (!one.file.empty()) check_writable(one.file);
     if (!one.error_map.empty()) check_writable(one.error_map);
   }
   if (!arguments.page.empty()) check_writable(arguments.page);
@@ -91,25 +84,41 @@ ExitCode render(const RenderArguments& arguments) {
   check_limits(scene);
   require_cameras(wanted, scene);
   const Simulation simulation = read_solution(arguments.solution, scene);
+  std::optional<Simulation> other;
+  if (!arguments.difference.empty()) other = read_solution(arguments.difference, scene);
 
-  // 3. Take the pictures, and write each as soon as it is there
-  keep_what_is_there();
+  // 3. Take the pictures, and write each as soon as it is there; the first Ctrl-C ends with the one at hand
   std::vector<std::filesystem::path> written;
-  bool unfinished = false;
+  if (!arguments.observers.empty()) {
+    const auto readings = read_observers(scene, simulation, observers_of(wanted, scene), observer);
+    const WritingGuard guard;
+    write_observers(arguments.observers, readings);
+    written.push_back(arguments.observers);
+  }
   std::vector<Picture> taken;
+  bool stopped = false, unfinished = false;
   for (const PictureSettings& one : wanted) {
-    if (!may_write_what_is_there() || unfinished) break;
+    if (one.file.empty()) break;
+    keep_what_is_there();
     Picture picture = make_picture(one, scene, simulation, observer);
-    unfinished = picture.unfinished;
+    std::optional<Picture> of_other;
+    if (other) of_other = make_picture(one, scene, *other, observer);
+    stopped = interrupted();
+    unfinished = picture.unfinished || (of_other && of_other->unfinished);
     if (!may_write_what_is_there()) throw Cancelled();
     const WritingGuard guard;
-    write_picture_file(one.file, picture, scene);
+    if (of_other)
+      write_difference(one.file, picture, *of_other, bands_of(scene));
+    else
+      write_picture_file(one.file, picture, scene);
     written.push_back(one.file);
     if (!one.error_map.empty()) {
       write_error_map(one.error_map, picture);
       written.push_back(one.error_map);
     }
+    stopped = stopped || interrupted();
     if (!arguments.page.empty()) taken.push_back(std::move(picture));
+    if (stopped) break;
   }
   if (!taken.empty()) {
     const WritingGuard guard;
@@ -118,8 +127,9 @@ ExitCode render(const RenderArguments& arguments) {
   }
   line.hide();
   if (!arguments.quiet) std::cout << files_line(written) << std::flush;
-  if (!unfinished) return good;
-  print_message("warning", "interrupted; the last picture is unfinished, with larger errors than asked for");
+  if (!stopped) return good;
+  print_message("warning", unfinished ? "interrupted; the last picture is unfinished, with larger errors than asked for"
+                                      : "interrupted; what is written is finished");
   return interrupted_run;
 }
 

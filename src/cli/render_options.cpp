@@ -16,7 +16,7 @@ namespace patchlight::cli {
 struct RenderOptionsGiven {
   ModelOptions model;
   PictureGiven picture;
-  std::string solution, page;
+  std::string solution, observers, difference, page;
   int threads = 0;
   bool quiet = false;
 };
@@ -39,6 +39,21 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
         to.picture.file = text;
       });
   add_picture_options(command, to.picture, PictureQuality::final);
+  add(command, "--difference", "FILE",
+      "another solution of this model, as with other patches (.vtp):\nboth beside each other, and by how much their "
+      "luminances differ\nin false colors",
+      [&to](const std::string& text) {
+        if (!text.ends_with(".vtp")) throw refusal("--difference", text, "a name that ends in .vtp");
+        to.difference = text;
+      });
+  add(command, "--observers", "FILE",
+      "vertical and cylindrical illuminance, background luminance and\nUGR at the cameras of the scene file, or at "
+      "those "
+      "of --view (.csv)",
+      [&to](const std::string& text) {
+        if (!text.ends_with(".csv")) throw refusal("--observers", text, "a name that ends in .csv");
+        to.observers = text;
+      });
   add_page_option(command, to.page);
   command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
@@ -52,21 +67,34 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
     throw UsageError("render: found no model; expected: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
   if (options.solution.empty())
     throw UsageError("render: found no solution; expected --solution RESULT.vtp, which patchlight solve has written");
-  if (options.picture.file.empty()) throw UsageError("render: nothing would be written; expected -o VIEW.png");
+  if (options.picture.file.empty() && options.observers.empty())
+    throw UsageError("render: nothing would be written; expected -o VIEW.png");
+  if (options.picture.file.empty() && !options.page.empty())
+    throw UsageError("--html shows the pictures of patchlight render; expected -o VIEW.png");
+  if (!options.difference.empty() && (!options.picture.file.ends_with(".png") || options.picture.colors))
+    throw UsageError("--difference is written as a picture in natural colors; expected -o FILE.png");
   RenderArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.solution = options.solution;
   arguments.page = options.page;
-  arguments.picture = picture_settings(options.picture, "-o", PictureQuality::final);
+  arguments.observers = options.observers;
+  arguments.difference = options.difference;
+  PictureGiven given = options.picture;
+  // Without a picture the views are those of observers.
+  if (given.file.empty()) given.views.clear();
+  arguments.picture = picture_settings(given, "-o", PictureQuality::final);
+  arguments.picture.views = options.picture.views;
   arguments.threads = options.threads;
   arguments.quiet = options.quiet;
   std::vector<std::filesystem::path> read = arguments.models;
   read.push_back(arguments.solution);
-  std::vector<OutputFile> files = picture_files(arguments.picture, "-o");
-  files.push_back({"--html", arguments.page});
-  require_distinct(files);
-  require_not_read(files, read);
+  if (!arguments.difference.empty()) read.push_back(arguments.difference);
+  std::vector<OutputFile> outputs = picture_files(arguments.picture, "-o");
+  outputs.push_back({"--observers", arguments.observers});
+  outputs.push_back({"--html", arguments.page});
+  require_distinct(outputs);
+  require_not_read(outputs, read);
   return arguments;
 }
 

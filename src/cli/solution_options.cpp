@@ -44,6 +44,25 @@ bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& op
          std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
 }
 
+std::vector<std::string> readings_extensions() {
+  std::vector<std::string> all = points_extensions();
+  all.insert(all.end(), {".svg", ".png"});
+  return all;
+}
+
+std::array<double, 2> range_of_map(const std::string& text) {
+  const auto any = [](double) { return true; };
+  const std::string expected = "two numbers, the lower first, as in 0,500";
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw refusal("--map-range", text, expected);
+  const std::array<double, 2> range = {number("--map-range", text.substr(0, comma), expected, any),
+                                       number("--map-range", text.substr(comma + 1), expected, any)};
+  if (!(range[0] < range[1])) throw refusal("--map-range", text, expected);
+  return range;
+}
+
+bool is_map(const path& file) { return file.extension() == ".svg" || file.extension() == ".png"; }
+
 void require_consistent(const std::string& command, const SolutionOptions& options) {
   if (options.results.empty() && options.series.empty() && options.picture.file.empty() && options.report.empty() &&
       options.page.empty() && options.points.empty() && options.points_outputs.empty()) {
@@ -54,7 +73,7 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
   for (const std::string& file : options.points_outputs)
-    require_extension("--points-output", file, points_extensions());
+    require_extension("--points-output", file, readings_extensions());
   if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
 }
 
@@ -87,11 +106,25 @@ void add_points_options(CLI::App& command, SolutionOptions& options) {
            "receiving side");
   command
       .add_option("--points-output", options.points_outputs,
-                  "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), or for "
-                  "ParaView (.vtp); may be repeated;\ndefault: the points file's or scene's name with "
+                  "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), for "
+                  "ParaView (.vtp), or grids as maps\n(.svg, .png); may be repeated; default: the points file's or "
+                  "scene's name with "
                   ".irradiance.csv, in\nthe folder of -o, else in the current one")
       ->allow_extra_args(false)
       ->option_text("FILE");
+  add(command, "--map", "illuminance|daylight-factor",
+      "what maps among these show, with isolines; daylight factors under\nan overcast sky; default illuminance",
+      [&options](const std::string& text) {
+        options.map.quantity = choice<MapQuantity>(
+            "--map", text,
+            {{"illuminance", MapQuantity::illuminance}, {"daylight-factor", MapQuantity::daylight_factor}});
+        options.map_given = "--map";
+      });
+  add(command, "--map-range", "LOWER,UPPER", "of the colors of maps; default: from 0 to a round number",
+      [&options](const std::string& text) {
+        options.map.range = range_of_map(text);
+        options.map_given = "--map-range";
+      });
 }
 
 }  // namespace
@@ -104,6 +137,10 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
                   "may be repeated")
       ->allow_extra_args(false)
       ->option_text("FILE");
+  add(command, "--ambient-occlusion", "LENGTH",
+      "adds to .vtp the share of the hemisphere before each patch in\nwhich nothing lies within this length, as in 2m "
+      "(array\nambient_occlusion); default: not found",
+      [&options](const std::string& text) { options.ambient_distance = length("--ambient-occlusion", text); });
   add_page_option(command, options.page);
   add_file(command, "--series", options.series,
            "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
@@ -170,6 +207,14 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   if (!arguments.points_outputs.empty() && !may_have_sensors(arguments, options)) {
     throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
   }
+  const auto is_vtk = [](const path& result) { return result.extension() == ".vtp"; };
+  if (options.ambient_distance && std::none_of(arguments.results.begin(), arguments.results.end(), is_vtk))
+    throw UsageError("--ambient-occlusion is written into results for ParaView; expected -o RESULT.vtp");
+  arguments.ambient_distance = options.ambient_distance;
+  arguments.map = options.map;
+  if (!options.map_given.empty() &&
+      std::none_of(arguments.points_outputs.begin(), arguments.points_outputs.end(), is_map))
+    throw UsageError(options.map_given + " is of maps of sensors; expected --points-output FILE.svg or FILE.png");
   arguments.discards = options.discards;
   arguments.solver_given = options.solver_given;
   if (options.quiet) arguments.verbosity = Verbosity::quiet;

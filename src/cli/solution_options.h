@@ -18,6 +18,9 @@ struct SolutionOptions {
   std::string series, report, page, points;
   PictureGiven picture;
   std::vector<std::string> points_outputs;
+  MapOptions map;
+  std::optional<double> ambient_distance;
+  std::string map_given;  // the option
   bool discards = false;
   bool quiet = false;
   bool verbose = false;

@@ -21,6 +21,7 @@
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
 #include "output/write_points.h"
+#include "output/write_sensor_map.h"
 #include "output/write_series.h"
 #include "page/write_page.h"
 #include "pipeline/stage_clock.h"
@@ -202,6 +203,16 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   return results;
 }
 
+// As a table, or as maps.
+void write_readings(const std::filesystem::path& file, const Results& results, MapOptions map) {
+  const Readings& readings = results.views.sensors.readings;
+  if (file.extension() != ".svg" && file.extension() != ".png")
+    return write_points(file, results.scene.sensors, readings);
+  map.up = results.scene.up;
+  map.north = results.scene.north;
+  write_sensor_map(file, results.scene.sensors, readings, map);
+}
+
 Page page_of_run(const Results& results, const SolvedSurface& surface) {
   const Views& views = results.views;
   Page page{.scene = results.scene, .provenance = results.provenance, .surface = &surface, .report = &results.report};
@@ -225,7 +236,7 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   using Path = std::filesystem::path;
   const WritingGuard guard;
   if (!arguments.results.empty() || !arguments.page.empty()) {
-    const SolvedSurface surface = surface_of(results.scene, results.simulation);
+    const SolvedSurface surface = surface_of(results.scene, results.simulation, arguments.ambient_distance);
     write_to(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, surface)); });
     for (const Path& file : arguments.results) {
       write_to(file, [&](const Path& to) { write_result(to, surface, results.provenance); });
@@ -237,7 +248,7 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
     write_to(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
   }
   for (const Path& file : views.points_outputs) {
-    write_to(file, [&](const Path& to) { write_points(to, results.scene.sensors, views.sensors.readings); });
+    write_to(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
   }
   write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {

@@ -23,6 +23,9 @@ constexpr std::size_t most_holes = 256;
 constexpr std::size_t most_candidates = 4096;  // the largest are looked at
 constexpr std::uint32_t seed_of_lines = 1;
 
+// What a hole adds to other openings where less than this share of its lit lines avoids them.
+constexpr double little_light = 0.05;
+
 double area_of(const std::array<Point, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return (b - a).cross(c - a).norm() / 2;
@@ -160,6 +163,25 @@ std::vector<Opening> shining_holes(const Scene& scene, const LightPaths& paths) 
   return openings;
 }
 
+// True when a light way from such an end passes one of these openings.
+bool passes(const LitEnd& end, const Point& place, const std::vector<const Opening*>& openings) {
+  return std::any_of(openings.begin(), openings.end(),
+                     [&](const Opening* opening) { return distance_to(*opening, place, -end.direction).has_value(); });
+}
+
+// Of the lit lines through a hole, the share that passes none of these openings.
+double share_apart(const Opening& hole, const LightPaths& paths, const std::vector<const Opening*>& openings) {
+  const std::vector<LitEnd> ends = lit_ends(hole, paths);
+  std::vector<Ray> rays;
+  for (const LitEnd& end : ends) rays.push_back({end.on_hole, end.direction, no_polygon});
+  const auto places = paths.first_opaque_hits(rays);
+  double apart = 0;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    if (places[k] && !passes(ends[k], places[k]->point, openings)) apart += 1 / static_cast<double>(ends.size());
+  }
+  return apart;
+}
+
 }  // namespace
 
 Point point_of(const Opening& opening, double u, double v) {
@@ -200,6 +222,19 @@ std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
     if (is_opening(scene, p)) openings.push_back(opening_at(scene, p));
   }
   return openings;
+}
+
+std::vector<Opening> openings_apart(const std::vector<Opening>& openings, const LightPaths& paths) {
+  std::vector<const Opening*> kept;
+  for (const Opening& opening : openings) {
+    if (opening.polygon != no_polygon) kept.push_back(&opening);
+  }
+  for (const Opening& opening : openings) {
+    if (opening.polygon == no_polygon && share_apart(opening, paths, kept) > little_light) kept.push_back(&opening);
+  }
+  std::vector<Opening> apart;
+  for (const Opening* opening : kept) apart.push_back(*opening);
+  return apart;
 }
 
 }  // namespace patchlight

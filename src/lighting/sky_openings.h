@@ -33,6 +33,10 @@ inline constexpr double much_sky = 0.25;
 /// accuracy alone.
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths);
 
+/// All clear faces of these, and the holes through which light gets in that passes no opening kept before: gaps between
+/// furniture behind a window, and the other holes of its frame, say nothing more of the sky.
+std::vector<Opening> openings_apart(const std::vector<Opening>& openings, const LightPaths& paths);
+
 /// Uniformly distributed over an opening for (u, v) of the unit square.
 Point point_of(const Opening& opening, double u, double v);
 

@@ -4,6 +4,7 @@
 #include "patchlight/output/write_image.h"
 
 #include "base/shortest.h"
+#include "light/photometry.h"
 #include "output/write_exr.h"
 #include "output/write_hdr.h"
 #include "render/tone_map.h"
@@ -41,6 +42,26 @@ void write_picture(const std::filesystem::path& file, const Picture& picture, co
     return write_png(file, with_legend(picture.image, 0, *picture.brightest, "luminance, cd/m^2"), texts);
   texts.push_back({"Exposure", shortest(picture.exposure) + " per W/(m^2 sr)"});
   write_png(file, picture.image, texts);
+}
+
+void write_difference(const std::filesystem::path& file, const Picture& first, const Picture& second,
+                      const Bands& bands) {
+  const Image& a = first.radiance;
+  const Image& b = second.radiance;
+  Eigen::VectorXd difference(a.pixels.rows());
+  for (Eigen::Index k = 0; k < difference.size(); ++k)
+    difference[k] = std::abs(luminance(a.pixels.row(k), bands) - luminance(b.pixels.row(k), bands));
+  const double end = end_of_errors(difference);
+  DisplayImage whole{3 * a.width, a.height, {}};
+  const auto exposed = tone_map(b.pixels, first.exposure, bands);
+  const auto colours = false_color(difference, 0, end);
+  for (int y = 0; y < a.height; ++y) {
+    for (const auto* part : {&first.image.pixels, &exposed, &colours}) {
+      const auto row = part->begin() + static_cast<std::ptrdiff_t>(y) * a.width;
+      whole.pixels.insert(whole.pixels.end(), row, row + a.width);
+    }
+  }
+  write_png(file, with_legend(whole, 0, end, "difference, cd/m^2"));
 }
 
 void write_picture_errors(const std::filesystem::path& file, const Picture& picture) {

@@ -16,6 +16,11 @@ const std::vector<std::string>& picture_extensions();
 /// luminance, errors, and what each pixel shows in layers (.exr). docs/formats.md. \throws OutputError.
 void write_picture(const std::filesystem::path& file, const Picture& picture, const Vector& up, const Bands& bands);
 
+/// Writes two pictures of one size beside each other, exposed as the first, and in false colours by how much their
+/// luminances differ (.png). \throws OutputError.
+void write_difference(const std::filesystem::path& file, const Picture& first, const Picture& second,
+                      const Bands& bands);
+
 /// Writes the standard errors of the pixels of a final picture in false colours (.png). \throws OutputError.
 void write_picture_errors(const std::filesystem::path& file, const Picture& picture);
 

@@ -101,12 +101,15 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   };
   add_known("row_sum", simulation.transport.row_sum);
   add_known("raw_row_sum", simulation.transport.raw_row_sum);
+  add_known("ambient_occlusion", surface.ambient_occlusion);
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
   // What a viewer shows first.
   cell_data.SetActiveScalars("luminance");
   vtkPointData& point_data = *polygons.GetPointData();
   point_data.AddArray(floats("radiance_smooth", surface.radiance_at_vertices));
   point_data.AddArray(colours("rgb_smooth", tone_map(surface.radiance_at_vertices, exposure, bands)));
+  if (surface.ambient_occlusion_at_vertices.size() > 0)
+    point_data.AddArray(numbers<vtkFloatArray>("ambient_occlusion", surface.ambient_occlusion_at_vertices));
 }
 
 template <class Value>

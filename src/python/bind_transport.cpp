@@ -68,6 +68,17 @@ py::array factors(const TransportProblem& self, const std::array<PatchIndex, 2>&
   return array_of(self.transport->form_factors({from[0], from[1]}, {to[0], to[1]}).array());
 }
 
+py::array factors_of_sensors(const TransportProblem& self) {
+  const InterruptFlag flag;
+  const Observer observer = InterruptFlag::observer(py::none());
+  Field found;
+  {
+    const py::gil_scoped_release others;
+    found = sensor_factors(self, observer);
+  }
+  return array_of(std::move(found));
+}
+
 py::list history_of(const Solution& solution) {
   py::list rows;
   for (const Iteration& iteration : solution.history) {
@@ -143,7 +154,10 @@ void bind_transport(py::module_& module) {
                               {static_cast<py::ssize_t>(side.size())}, self);
           },
           "0 for patches on the front of their polygons")
-      .def_readonly("emits_from_back", &TransportProblem::emits_from_back)
+      .def_property_readonly("emits_from_back",
+                             [](const TransportProblem& self) { return self.plan.sides.emit_from_back; })
+      .def("sensor_factors", &factors_of_sensors,
+           "The irradiance of each of the scene's sensors (row) by a radiosity of 1 of each patch.")
       .def("apply", &applied, "H = F B for radiosities B, patches x columns", py::arg("radiosity"))
       .def("form_factors", &factors, "F_ij from patches [begin, end) to patches [begin, end)", py::arg("begin_end"),
            py::arg("to"))

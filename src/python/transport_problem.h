@@ -12,12 +12,17 @@ struct TransportProblem {
   std::shared_ptr<const Scene> scene;
   PatchMesh mesh;
   RadiosityProblem problem;
-  bool emits_from_back = false;
+  Plan plan;
+  std::shared_ptr<const Tracing> tracing;
   std::shared_ptr<const RowTransport> transport;
 };
 
+/// Per sensor of the scene (row) and patch the irradiance by a radiosity of 1 of that patch: its form factor with what
+/// stands between, as sensors gather it. Not a number for sensors inside walls. \throws Cancelled.
+Field sensor_factors(const TransportProblem& problem, const Observer& observer);
+
 /// Traces and closes form factors, and keeps them. \throws InputError, MemoryError, Cancelled.
-TransportProblem transport_problem(std::shared_ptr<const Scene> scene, const Request& request,
+TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer);
 
 }  // namespace patchlight

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "render/pixel_samples.h"
+#include "render/pixel_statistics.h"
 #include "render/seen.h"
 
 #include <algorithm>
@@ -20,9 +21,9 @@
 namespace patchlight {
 namespace {
 
-constexpr int gather_tile_edge = 32;           // pixels
-constexpr std::uint32_t samples_of_block = 2;  // samples whose mean tells the variance
-constexpr std::uint32_t first_blocks = 2;
+constexpr int gather_tile_edge = 32;  // pixels
+constexpr std::uint32_t first_samples = 4;
+constexpr std::uint32_t next_samples = 16;   // at most, before the number of all is chosen
 constexpr std::uint32_t rays_to_lights = 4;  // of each sample
 
 // Records are wanted at every so many pixels, first far from each other; where the weights around are less than enough.
@@ -36,17 +37,6 @@ constexpr double most_pixels = 64;
 
 // Points without a record take so many rays of their own.
 constexpr int rays_without_record = 64;
-
-// What is shown as dark as this share of the luminance of bright_share of the pixels may have that much's error.
-constexpr double dark = 0.05;
-constexpr double bright_share = 0.9;
-
-// Of a pixel so far.
-struct Pixel {
-  std::uint32_t blocks = 0;
-  double first = 0, second = 0;  // sums of the blocks' luminances and of their squares
-  double deviation = 0;          // sum over samples of what records may be off
-};
 
 struct PixelTile {
   int left, top, right, bottom;
@@ -87,8 +77,8 @@ class FinalGather {
               const FinalGatherOptions& options);
 
   void place_records(const Observer& observer);
-  void take_samples(const std::vector<std::uint32_t>& blocks, const Observer& observer);
-  std::vector<std::uint32_t> wanted_blocks() const;
+  void take_samples(const std::vector<std::uint32_t>& counts, const Observer& observer);
+  std::vector<std::uint32_t> wanted(std::uint32_t most) const;
   void see_layers();
   Image image() const;
 
@@ -100,10 +90,9 @@ class FinalGather {
   };
   std::vector<Candidate> candidates_in_row(int y, int stride) const;
   std::vector<Candidate> apart(const std::vector<Candidate>& all) const;
-  EyeSamples eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& blocks) const;
+  EyeSamples eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& counts) const;
   Brought brought(const EyeSamples& samples) const;
   Spectrum gathered(const PatchPoint& at, const EyeSample& sample, double& deviation) const;
-  Eigen::VectorXd pooled_variances() const;
   bool is_plain(PatchIndex patch) const;
   std::optional<PatchIndex> behind(PatchIndex patch) const;
   Eigen::Index index(int x, int y) const { return static_cast<Eigen::Index>(y) * options_.width + x; }
@@ -113,9 +102,11 @@ class FinalGather {
   const Lens& lens_;
   const FinalGatherOptions& options_;
   GatheredLight gather_;
+  std::vector<SeenSphere> spheres_;
   IrradianceCache cache_;
   std::vector<PixelTile> tiles_;
-  std::vector<Pixel> pixels_;
+  std::vector<PixelSamples> pixels_;
+  Eigen::VectorXd deviations_;  // sums over samples of what records may be off
   Image sums_;
 };
 
@@ -126,6 +117,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
       lens_(lens),
       options_(options),
       gather_(solved),
+      spheres_(spheres_of(solved.lights.lighting.luminaires)),
       cache_(solved.luminous_weights) {
   for (int top = 0; top < options.height; top += gather_tile_edge)
     for (int left = 0; left < options.width; left += gather_tile_edge)
@@ -133,6 +125,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
                         std::min(top + gather_tile_edge, options.height)});
   const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;
   pixels_.resize(static_cast<std::size_t>(count));
+  deviations_ = Eigen::VectorXd::Zero(count);
   sums_ = {options.width, options.height, Field::Zero(count, solved.exitance.cols()), Eigen::VectorXd::Zero(count)};
   sums_.patch.assign(static_cast<std::size_t>(count), -1);
   sums_.depth = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity());
@@ -163,7 +156,7 @@ std::vector<FinalGather::Candidate> FinalGather::candidates_in_row(int y, int st
     if (cache_.weight_at(at.point, solved_.mesh.normal[at.patch]) < enough_weight)
       wanted.push_back({at, false, lens_.pixel_width(distance)});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays, spheres_)) {
     if (!seen.patch || !is_plain(*seen.patch)) continue;
     add({seen.point, *seen.patch}, seen.distance);
     if (const auto other = behind(*seen.patch)) add({seen.point, *other}, seen.distance);
@@ -208,14 +201,13 @@ void FinalGather::place_records(const Observer& observer) {
   }
 }
 
-EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& blocks) const {
+EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& counts) const {
   EyeSamples samples;
   for (int y = tile.top; y < tile.bottom; ++y) {
     for (int x = tile.left; x < tile.right; ++x) {
       const Eigen::Index pixel = index(x, y);
-      const std::uint32_t begin = pixels_[static_cast<std::size_t>(pixel)].blocks * samples_of_block;
-      const std::uint32_t end = begin + blocks[static_cast<std::size_t>(pixel)] * samples_of_block;
-      for (std::uint32_t k = begin; k < end; ++k) {
+      const std::uint32_t end = counts[static_cast<std::size_t>(pixel)];
+      for (std::uint32_t k = pixels_[static_cast<std::size_t>(pixel)].count(); k < end; ++k) {
         const auto u = pixel_sample(k, hash({options_.seed, static_cast<std::uint64_t>(pixel), 1}));
         const auto ray = lens_.ray(x + 0.5 + tent(u[0]), y + 0.5 + tent(u[1]));
         samples.all.push_back({pixel, k});
@@ -269,9 +261,13 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
     const SurfacePoint at{seen.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
     points.push_back({at, sample.index, hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), 3}), aim});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays, spheres_)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
     if (seen.outlook) all.outlook[ray] += seen.share;
+    if (seen.sphere != nullptr) {
+      all.radiance.row(ray) += seen.share * seen.sphere->radiance;
+      continue;
+    }
     if (!seen.patch) {
       if (options_.surroundings) all.radiance.row(ray) += seen.share * options_.surroundings(seen.direction);
       continue;
@@ -301,75 +297,28 @@ Brought FinalGather::brought(const EyeSamples& samples) const {
   return all;
 }
 
-void FinalGather::take_samples(const std::vector<std::uint32_t>& blocks, const Observer& observer) {
+// Samples up to a count of each pixel.
+void FinalGather::take_samples(const std::vector<std::uint32_t>& counts, const Observer& observer) {
   parallel_for(tiles_.size(), Stage::render, observer, [&](std::size_t t) {
-    const EyeSamples samples = eye_samples(tiles_[t], blocks);
+    const EyeSamples samples = eye_samples(tiles_[t], counts);
     if (samples.all.empty()) return;
     const Brought found = brought(samples);
-    for (std::size_t k = 0; k < samples.all.size(); k += samples_of_block) {
+    for (std::size_t k = 0; k < samples.all.size(); ++k) {
       const Eigen::Index at = samples.all[k].pixel;
-      const auto first = static_cast<Eigen::Index>(k);
-      const Spectrum sum = found.radiance.middleRows(first, samples_of_block).colwise().sum();
-      Pixel& pixel = pixels_[static_cast<std::size_t>(at)];
-      const double value = (sum.matrix() * solved_.luminous_weights).value() / samples_of_block;
-      ++pixel.blocks;
-      pixel.first += value;
-      pixel.second += value * value;
-      pixel.deviation += found.deviation.segment(first, samples_of_block).sum();
-      sums_.pixels.row(at) += sum;
-      sums_.outlook[at] += found.outlook.segment(first, samples_of_block).sum();
+      const auto row = static_cast<Eigen::Index>(k);
+      PixelSamples& pixel = pixels_[static_cast<std::size_t>(at)];
+      pixel.extend(counts[static_cast<std::size_t>(at)]);
+      pixel.add((found.radiance.row(row).matrix() * solved_.luminous_weights).value());
+      deviations_[at] += found.deviation[row];
+      sums_.pixels.row(at) += found.radiance.row(row);
+      sums_.outlook[at] += found.outlook[row];
     }
   });
 }
 
-// Of blocks: that of a pixel and those around, as that of few of them is small by chance.
-Eigen::VectorXd FinalGather::pooled_variances() const {
-  Eigen::VectorXd own(static_cast<Eigen::Index>(pixels_.size()));
-  for (std::size_t k = 0; k < pixels_.size(); ++k) {
-    const Pixel& pixel = pixels_[k];
-    const double mean = pixel.first / pixel.blocks;
-    own[static_cast<Eigen::Index>(k)] =
-        std::max(0.0, pixel.second / pixel.blocks - mean * mean) * pixel.blocks / (pixel.blocks - 1.0);
-  }
-  Eigen::VectorXd pooled(own.size());
-  for (int y = 0; y < options_.height; ++y) {
-    for (int x = 0; x < options_.width; ++x) {
-      double sum = 0;
-      int count = 0;
-      for (int v = std::max(0, y - 1); v <= std::min(options_.height - 1, y + 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(options_.width - 1, x + 1); ++u, ++count)
-          sum += own[index(u, v)];
-      pooled[index(x, y)] = sum / count;
-    }
-  }
-  return pooled;
-}
-
-// More blocks for each pixel, so that their variance leaves the wanted error; what records are off they do not mend.
-std::vector<std::uint32_t> FinalGather::wanted_blocks() const {
-  const Eigen::VectorXd variances = pooled_variances();
-  std::vector<double> values;
-  for (const Pixel& pixel : pixels_) {
-    if (pixel.first > 0) values.push_back(pixel.first / pixel.blocks);
-  }
-  double least = 0;
-  if (!values.empty()) {
-    const auto bright =
-        values.begin() + static_cast<std::ptrdiff_t>(bright_share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), bright, values.end());
-    least = dark * *bright;
-  }
-  const auto most = static_cast<std::uint32_t>(options_.most_samples) / samples_of_block;
-  std::vector<std::uint32_t> more(pixels_.size());
-  for (std::size_t k = 0; k < pixels_.size(); ++k) {
-    const Pixel& pixel = pixels_[k];
-    const double allowed = options_.error * std::max(least, pixel.first / pixel.blocks);
-    const double variance = variances[static_cast<Eigen::Index>(k)];
-    if (!(variance > 0) || pixel.blocks >= most || variance <= allowed * allowed * pixel.blocks) continue;
-    const double wanted = std::min<double>(most, std::ceil(variance / (allowed * allowed)));
-    more[k] = std::min(most, std::bit_ceil(static_cast<std::uint32_t>(wanted))) - pixel.blocks;
-  }
-  return more;
+std::vector<std::uint32_t> FinalGather::wanted(std::uint32_t most) const {
+  const auto limit = std::min(most, static_cast<std::uint32_t>(options_.most_samples));
+  return wanted_samples(pixels_, options_.width, options_.error, limit);
 }
 
 // What the middle of each pixel shows.
@@ -386,7 +335,7 @@ void FinalGather::see_layers() {
         at.push_back(index(x, y));
       }
     }
-    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays)) {
+    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays, spheres_)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;
@@ -399,14 +348,13 @@ void FinalGather::see_layers() {
 
 Image FinalGather::image() const {
   Image image = sums_;
-  const Eigen::VectorXd variances = pooled_variances();
+  const Eigen::VectorXd variances = pooled_variances(pixels_, options_.width);
   image.error = Eigen::VectorXd(variances.size());
   for (Eigen::Index k = 0; k < variances.size(); ++k) {
-    const Pixel& pixel = pixels_[static_cast<std::size_t>(k)];
-    const double samples = pixel.blocks * samples_of_block;
+    const double samples = pixels_[static_cast<std::size_t>(k)].count();
     image.pixels.row(k) /= samples;
     image.outlook[k] /= samples;
-    image.error[k] = std::hypot(std::sqrt(variances[k] / pixel.blocks), pixel.deviation / samples);
+    image.error[k] = std::hypot(std::sqrt(variances[k]), deviations_[k] / samples);
   }
   return image;
 }
@@ -420,14 +368,14 @@ GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radianc
   gather.place_records(part_of(observer, 0, 0.4));
   // 2. Some samples of all pixels
   const std::vector<std::uint32_t> first(
-      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), first_blocks);
+      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), first_samples);
   gather.take_samples(first, part_of(observer, 0.4, 0.6));
   gather.see_layers();
-  // 3. More where they differ; twice, as few samples tell little of how many are wanted
+  // 3. More where they differ; twice, as few samples tell little of how many are wanted, and nothing of what more gain
   bool unfinished = false;
   try {
-    gather.take_samples(gather.wanted_blocks(), part_of(observer, 0.6, 0.9));
-    gather.take_samples(gather.wanted_blocks(), part_of(observer, 0.9, 1));
+    gather.take_samples(gather.wanted(next_samples), part_of(observer, 0.6, 0.75));
+    gather.take_samples(gather.wanted(static_cast<std::uint32_t>(options.most_samples)), part_of(observer, 0.75, 1));
   } catch (const Cancelled&) {
     unfinished = true;
   }

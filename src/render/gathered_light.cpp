@@ -4,6 +4,7 @@
 #include "light/texture.h"
 #include "render/hemisphere.h"
 #include "render/pixel_samples.h"
+#include "render/sky_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,7 @@ SkyAim GatheredLight::aim_at(PatchIndex patch) const {
       },
       mesh.side[patch],
       {corners.points.begin(), corners.points.begin() + corners.count}};
-  return sky_aim(solved_.lights.lighting, receiver);
+  return aim_at_few(sky_aim(solved_.lights.lighting, receiver), solved_.lights.lighting.openings);
 }
 
 std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const {

@@ -47,6 +47,11 @@ double pixel_scale(const Camera& camera, int height) {
 
 }  // namespace
 
+Vector picture_up(const Camera& camera, const Vector& up, const Vector& north) {
+  const Vector sight = (camera.target - camera.eye).normalized();
+  return sight.cross(up).norm() > 1e-9 ? up : north;
+}
+
 Lens::Lens(const Camera& camera, const Vector& up, int width, int height)
     : projection_(camera.projection),
       width_(width),
@@ -56,7 +61,7 @@ Lens::Lens(const Camera& camera, const Vector& up, int width, int height)
       half_angle_(camera.vertical_field_of_view * std::numbers::pi / 360) {
   require_view(camera);
   forward_ = (camera.target - camera.eye).normalized();
-  // Looking straight up or down, any direction may be upward in the picture.
+  // Where the camera looks along `up`, any direction may be upward in the picture.
   right_ = forward_.cross(up.normalized());
   if (!(right_.norm() > 1e-9)) right_ = forward_.unitOrthogonal();
   right_.normalize();

@@ -8,6 +8,9 @@
 
 namespace patchlight {
 
+/// What is upward in a picture: `up`, or where that is the way the camera looks, `north`, as in plans.
+Vector picture_up(const Camera& camera, const Vector& up, const Vector& north);
+
 /// The rays of a camera's picture.
 class Lens {
  public:

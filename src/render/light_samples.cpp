@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
 #include "render/pixel_samples.h"
+#include "render/sky_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@ constexpr std::size_t few_lights = 4;
 constexpr std::uint32_t rays_of_lamp = 2;
 
 // Seeds of what one point asks for.
-enum Purpose : std::uint32_t { choice_of_lamp = 11, place_on_lamp, choice_of_luminaire, place_on_luminaire, to_sky };
+enum Purpose : std::uint32_t { choice_of_lamp = 11, place_on_lamp, choice_of_luminaire, place_on_luminaire };
 
 // A ray to a place on a light. What arrives is a constant plus `light` times the share that gets through.
 struct LightRay {
@@ -198,14 +199,7 @@ Field light_samples(const Lights& lights, std::span<const LitPoint> points, std:
   for (std::size_t k = 0; k < all.single.size(); ++k)
     row(all.single[k].point) += all.single[k].light * through.row(static_cast<Eigen::Index>(all.to_lamps.size() + k));
 
-  if (!lighting.sky) return irradiance;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (points[k].aim == nullptr) continue;
-    std::vector<std::array<double, 4>> samples;
-    for (std::uint32_t s = 0; s < rays; ++s) samples.push_back(sample_of(points[k], to_sky, s, rays));
-    const Receiver receiver{[&](double, double) { return points[k].at; }, Side::front, {}};
-    row(k) += sky_irradiance(lighting, receiver, *points[k].aim, samples);
-  }
+  if (lighting.sky) irradiance += sky_samples(lighting, points, rays);
   return irradiance;
 }
 

@@ -76,7 +76,7 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const Tile& tile = tiles[index];
     const auto [rays, pixels] = camera_rays(lens, options, tile);
-    for (const SeenPatch& seen : seen_by(occluder, lookup, rays)) {
+    for (const SeenPatch& seen : seen_by(occluder, lookup, rays, options.spheres)) {
       const int pixel = static_cast<int>(pixels[seen.ray]);
       const Eigen::Index x = tile.left + pixel % tile.width();
       const Eigen::Index y = tile.top + pixel / tile.width();
@@ -84,6 +84,8 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
       if (seen.outlook) image.outlook[y * options.width + x] += share;
       if (seen.patch) {
         image.pixels.row(y * options.width + x) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
+      } else if (seen.sphere != nullptr) {
+        image.pixels.row(y * options.width + x) += seen.sphere->radiance * share;
       } else if (options.surroundings) {
         image.pixels.row(y * options.width + x) += options.surroundings(seen.direction) * share;
       }

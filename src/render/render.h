@@ -6,10 +6,12 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "render/seen.h"
 #include "render/smooth.h"
 #include "visibility/occluder.h"
 
 #include <functional>
+#include <vector>
 
 namespace patchlight {
 
@@ -19,6 +21,7 @@ struct RenderOptions {
   int height = 800;
   int rays_per_pixel_edge = 3;                               ///< squared per pixel, box filter
   std::function<Spectrum(const Vector&)> surroundings = {};  ///< radiance where nothing is met; none: black
+  std::vector<SeenSphere> spheres = {};
 };
 
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, from the smoothed

@@ -1,8 +1,11 @@
 #include "render/seen.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <utility>
+#include <variant>
 
 namespace patchlight {
 namespace {
@@ -29,9 +32,39 @@ struct UnderWay {
   }
 };
 
+struct MetSphere {
+  const SeenSphere* sphere = nullptr;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+// The nearest one on the way of a ray.
+MetSphere met_by(const Ray& ray, const std::vector<SeenSphere>& spheres) {
+  MetSphere met;
+  for (const SeenSphere& sphere : spheres) {
+    // |o + t d - c| = r
+    const Vector way = sphere.centre - ray.origin;
+    const double nearest = way.dot(ray.direction);
+    const double root = sphere.radius * sphere.radius - (way - nearest * ray.direction).squaredNorm();
+    if (!(root > 0)) continue;
+    const double distance = nearest - std::sqrt(root);
+    if (distance > 0 && distance < met.distance) met = {&sphere, distance};
+  }
+  return met;
+}
+
 }  // namespace
 
-std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays) {
+std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires) {
+  std::vector<SeenSphere> spheres;
+  for (const Luminaire& luminaire : luminaires) {
+    const auto* const lamp = std::get_if<SphericalLamp>(&luminaire.light);
+    if (lamp != nullptr) spheres.push_back({luminaire.position, lamp->radius, lamp->exitance / std::numbers::pi});
+  }
+  return spheres;
+}
+
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
+                               const std::vector<SeenSphere>& spheres) {
   std::vector<SeenPatch> seen;
   UnderWay now;
   for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1, 0, false);
@@ -43,6 +76,12 @@ std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& look
       const std::size_t begun = now.of_ray[k];
       const double share = now.shares[k];
       const bool through = now.is_through[k] != 0;
+      if (const MetSphere met = met_by(now.rays[k], spheres); met.sphere && (!hit || met.distance < hit->distance)) {
+        const Point place = now.rays[k].origin + met.distance * now.rays[k].direction;
+        seen.push_back(
+            {begun, {}, place, now.rays[k].direction, share, through, now.gone[k] + met.distance, met.sphere});
+        continue;
+      }
       if (!hit) {
         seen.push_back({begun, {}, {}, now.rays[k].direction, share, true, std::numeric_limits<double>::infinity()});
         continue;

@@ -95,4 +95,32 @@ std::vector<std::array<std::uint8_t, 3>> false_color(const Eigen::VectorXd& valu
   return colours;
 }
 
+DisplayImage with_isolines(DisplayImage image, const Eigen::VectorXd& values, const std::vector<double>& levels) {
+  const auto index = [&](int x, int y) { return static_cast<Eigen::Index>(y) * image.width + x; };
+  Eigen::VectorXd smooth(values.size());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      double sum = 0;
+      int count = 0;
+      for (int v = std::max(0, y - 2); v <= std::min(image.height - 1, y + 2); ++v)
+        for (int u = std::max(0, x - 2); u <= std::min(image.width - 1, x + 2); ++u, ++count)
+          sum += values[index(u, v)];
+      smooth[index(x, y)] = sum / count;
+    }
+  }
+  const auto level_of = [&](double value) { return std::upper_bound(levels.begin(), levels.end(), value); };
+  const auto crosses = [&](Eigen::Index a, Eigen::Index b) {
+    const double lower = std::min(smooth[a], smooth[b]), upper = std::max(smooth[a], smooth[b]);
+    return upper < 4.0 / 3 * lower && level_of(lower) != level_of(upper);
+  };
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const bool is_on = (x + 1 < image.width && crosses(index(x, y), index(x + 1, y))) ||
+                         (y + 1 < image.height && crosses(index(x, y), index(x, y + 1)));
+      if (is_on) image.pixels[static_cast<std::size_t>(index(x, y))] = {0, 0, 0};
+    }
+  }
+  return image;
+}
+
 }  // namespace patchlight

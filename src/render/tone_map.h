@@ -22,6 +22,10 @@ double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight, co
 /// adds its colour (Band::rgb).
 std::vector<std::array<std::uint8_t, 3>> tone_map(const FieldView& radiance, double exposure, const Bands& bands);
 
+/// The image with black pixels where the values of its pixels, smoothed over 5 by 5, cross one of some levels; not
+/// where they jump by more than a third, at edges of things.
+DisplayImage with_isolines(DisplayImage image, const Eigen::VectorXd& values, const std::vector<double>& levels);
+
 /// False colours of one value per row, from blue (lower) over green and yellow to red (upper).
 std::vector<std::array<std::uint8_t, 3>> false_color(const Eigen::VectorXd& values, double lower, double upper);
 

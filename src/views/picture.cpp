@@ -5,6 +5,7 @@
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky.h"
+#include "lighting/sky_openings.h"
 #include "pipeline/lamps_apart.h"
 #include "plan/planned_scene.h"
 #include "render/final_gather.h"
@@ -157,6 +158,9 @@ Picture shown(GatheredImage taken, const Camera& camera, PictureColors colors, c
     const Eigen::VectorXd values = pixel_luminance(image, bands);
     picture.brightest = end_of_scale(values.cwiseProduct(weight_of_pixels(image)));
     picture.image.pixels = false_color(values, 0, *picture.brightest);
+    // At the numbers of the legend
+    const double step = *picture.brightest / 4;
+    picture.image = with_isolines(std::move(picture.image), values, {step, 2 * step, 3 * step});
   }
   picture.radiance = std::move(taken.image);
   return picture;
@@ -178,15 +182,17 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                      const Observer& observer) {
   const Occluder& occluder = simulation.tracing->all_faces(scene);
   const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
+  const Vector up = picture_up(camera, scene.up, scene.north);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
   const auto surroundings = surroundings_of(seen);
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
-    const Lighting lighting = lighting_of(seen, *simulation.tracing);
+    Lighting lighting = lighting_of(seen, *simulation.tracing);
+    lighting.openings = openings_apart(lighting.openings, lighting.paths);
     const SolvedLight light = solved_light(seen, simulation, lighting);
-    const Lens lens(camera, scene.up, options.width, options.height);
+    const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
                          {.width = options.width,
                           .height = options.height,
@@ -196,8 +202,11 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                           .surroundings = surroundings},
                          observer);
   } else {
-    const RenderOptions fineness{.width = options.width, .height = options.height, .surroundings = surroundings};
-    taken.image = render(simulation.mesh, radiance, occluder, camera, scene.up, fineness, observer);
+    const RenderOptions fineness{.width = options.width,
+                                 .height = options.height,
+                                 .surroundings = surroundings,
+                                 .spheres = spheres_of(seen.luminaires)};
+    taken.image = render(simulation.mesh, radiance, occluder, camera, up, fineness, observer);
   }
   return shown(std::move(taken), camera, options.colors, bands_of(scene));
 }

@@ -1,5 +1,6 @@
 #include "patchlight/views/views.h"
 
+#include "render/ambient_occlusion.h"
 #include "render/smooth.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
@@ -8,10 +9,19 @@
 
 namespace patchlight {
 
-SolvedSurface surface_of(const Scene& scene, const Simulation& simulation) {
+SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
+                         const std::optional<double>& ambient_distance) {
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
   const Occluder& occluder = simulation.tracing->all_faces(scene);
-  return {scene, simulation, smooth(simulation.mesh, radiance, simulation.problem.area, occluder).at_vertices};
+  const PatchMesh& mesh = simulation.mesh;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  SolvedSurface surface{scene, simulation, smooth(mesh, radiance, area, occluder).at_vertices};
+  if (ambient_distance) {
+    surface.ambient_occlusion = ambient_occlusion(mesh, occluder, *ambient_distance);
+    surface.ambient_occlusion_at_vertices =
+        smooth(mesh, Field(surface.ambient_occlusion.array()), area, occluder).at_vertices.col(0).matrix();
+  }
+  return surface;
 }
 
 }  // namespace patchlight

@@ -4,7 +4,10 @@
 #include "patchlight/views/views.h"
 
 #include "base/parallel.h"
+#include "form_factor/point_polygon.h"
 #include "light/photometry.h"
+#include "render/spherical_triangle.h"
+#include "support/daylight_office.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "verify/path_tracer.h"
@@ -166,6 +169,247 @@ TEST(FinalPicture, AgreesWithPathTracing) {
   const PathEstimate paths = trace_irradiance(scene, simulation.plan.sides, {&receiver, 1}, {.paths = 1 << 18});
   const double expected = 0.5 / pi * paths.irradiance(0, 0);
   EXPECT_NEAR(picture.radiance.pixels.col(0).mean(), expected, 0.01 * expected);
+}
+
+// A level square of a floor at z = 0, from just above it.
+Camera above_floor(const Point& middle, double edge) {
+  Camera camera{middle + Vector(0, 0, 0.05), middle};
+  camera.projection = Projection::orthographic;
+  camera.height = edge;
+  return camera;
+}
+
+// The irradiance of a floor of reflectance 0.5 by what its pixels show, against that of a function of the place. Pixels
+// count as their errors say: on the mean the squares of differences over squares of errors are 1.
+template <class Irradiance>
+void expect_irradiance(const Picture& picture, const Irradiance& irradiance) {
+  const Image& image = picture.radiance;
+  const double step = picture.camera.height / image.height;
+  double found = 0, expected = 0, square = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      // y is up in pictures from above, x to the right.
+      const Point place =
+          picture.camera.target + step * Vector(x + 0.5 - 0.5 * image.width, 0.5 * image.height - y - 0.5, 0);
+      const double wanted = 0.5 / pi * irradiance(place);
+      const Eigen::Index k = static_cast<Eigen::Index>(y) * image.width + x;
+      const double value = image.pixels(k, 0);
+      found += value;
+      expected += wanted;
+      const double error = image.error[k] / luminous_efficacy + 1e-3 * wanted;
+      square += std::pow((value - wanted) / error, 2) / static_cast<double>(image.pixels.rows());
+    }
+  }
+  EXPECT_NEAR(found, expected, 0.003 * expected);
+  // Errors are pooled from a few samples of a pixel and its neighbours.
+  EXPECT_LT(square, 2);
+}
+
+// Seen from above, a floor of 4 x 4 m around the origin.
+Scene lonely_floor() {
+  Scene scene = empty_scene({grey(0.5), grey(0, 10), grey(0)});
+  return with_quad(std::move(scene), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
+}
+
+TEST(FinalPicture, OfManyLampsHasTheirClosedForm) {
+  Scene scene = lonely_floor();
+  std::vector<Quad> lamps;
+  for (int k = 0; k < 9; ++k) {
+    const Point corner(k % 3 - 1.2, k / 3 - 1.1, 1 + 0.1 * k);
+    lamps.push_back({corner, corner + Vector(0, 0.3, 0), corner + Vector(0.4, 0.3, 0), corner + Vector(0.4, 0, 0)});
+    scene = with_quad(std::move(scene), lamps.back(), 1);
+  }
+  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
+  expect_irradiance(picture, [&](const Point& place) {
+    double sum = 0;
+    for (const Quad& lamp : lamps) sum += 10 * point_to_polygon(place, Vector::UnitZ(), lamp);
+    return sum;
+  });
+}
+
+TEST(FinalPicture, OfManyLuminairesHasTheirClosedForm) {
+  Scene scene = lonely_floor();
+  for (int k = 0; k < 6; ++k) {
+    Luminaire luminaire;
+    luminaire.position = Point(std::cos(k), std::sin(k), 0.8 + 0.2 * k);
+    luminaire.light = PointLight{Spectrum::Constant(1, 1 + k)};
+    scene.luminaires.push_back(luminaire);
+  }
+  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
+  // I cos / r^2 of each
+  expect_irradiance(picture, [&](const Point& place) {
+    double sum = 0;
+    for (int k = 0; k < 6; ++k) {
+      const Vector way = scene.luminaires[static_cast<std::size_t>(k)].position - place;
+      sum += (1 + k) * way.z() / std::pow(way.norm(), 3);
+    }
+    return sum;
+  });
+}
+
+TEST(FinalPicture, ShowsShadowsOfTheSunAtTheirPlaces) {
+  Scene scene = lonely_floor();
+  scene = with_quad(std::move(scene),
+                    {Point(-0.5, -0.5, 1), Point(0.5, -0.5, 1), Point(0.5, 0.5, 1), Point(-0.5, 0.5, 1)}, 2);
+  const Vector to_sun = Vector(1, 0.5, 2).normalized();
+  scene.sun = Sun{to_sun, Spectrum::Constant(1, 40)};
+  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({-0.4, 0, 0}, 1.6), 80));
+  const double step = 1.6 / 80;
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 80; ++x) {
+      // Where the ray to the sun is as high as the square, how far outside of it that is.
+      const Point place(-0.4 + step * (x + 0.5 - 40), step * (39.5 - y), 0);
+      const double outside = std::max(std::abs(place.x() + 0.5), std::abs(place.y() + 0.25)) - 0.5;
+      if (std::abs(outside) < step) continue;  // a pixel that the edge crosses under its filter
+      const double expected = outside > 0 ? 0.5 / pi * 40 * to_sun.z() : 0;
+      EXPECT_NEAR(picture.radiance.pixels(y * 80 + x, 0), expected, 1e-9) << x << ' ' << y;
+    }
+  }
+}
+
+// A box of 3 x 3 x 2 m, black but for its floor, whose lid has a hole of 0.6 x 0.5 m.
+Scene box_with_hole(Quad& hole) {
+  Scene scene = empty_scene({grey(0.5), grey(0)});
+  const std::vector<Quad> faces = box_faces(Point(-1.5, -1.5, 0), Point(1.5, 1.5, 2), true);
+  for (std::size_t face = 0; face < faces.size(); ++face) {
+    if (face != 1) scene = with_quad(std::move(scene), faces[face], face == 0 ? 0 : 1);
+  }
+  hole = {Point(0.2, 0.3, 2), Point(0.2, 0.8, 2), Point(0.8, 0.8, 2), Point(0.8, 0.3, 2)};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    scene = with_quad(std::move(scene), {faces[1][k], faces[1][next], hole[next], hole[k]}, 1);
+  }
+  return scene;
+}
+
+TEST(FinalPicture, OfASkyThroughAHoleHasItsClosedForm) {
+  Quad hole;
+  Scene scene = box_with_hole(hole);
+  Sky sky;
+  sky.horizontal_irradiance = Spectrum::Constant(1, 50);
+  scene.sky = sky;
+  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 2), 48));
+  // A uniform sky of radiance L gives pi L F, and 50 W/m^2 = pi L.
+  expect_irradiance(picture, [&](const Point& place) { return 50 * point_to_polygon(place, Vector::UnitZ(), hole); });
+}
+
+TEST(FinalPicture, OfAnOfficeByDayAgreesWithPathTracing) {
+  // A square of the floor near the pane, partly in the sun, one beside the desk, and one deep in the room: each as
+  // 4 x 4 pieces whose irradiances paths tell.
+  const Scene scene = daylight_office();
+  const Simulation simulation = solved(scene, 1500);
+  for (const Point& middle : {Point(1.5, 0.8, 0), Point(2.9, 2.5, 0), Point(2, 4.5, 0)}) {
+    constexpr int pieces = 4;
+    const Picture picture = take_picture(scene, simulation, final_options(above_floor(middle, 0.4), 32, 0.01));
+    std::vector<PathReceiver> receivers;
+    for (int k = 0; k < pieces * pieces; ++k) {
+      const Point low = middle + Vector(-0.2 + 0.1 * (k % pieces), 0.1 - 0.1 * (k / pieces), 0);
+      receivers.push_back(
+          {{low, low + Vector(0.1, 0, 0), low + Vector(0.1, 0.1, 0), low + Vector(0, 0.1, 0)}, 0, Side::front});
+    }
+    const PathEstimate paths = trace_irradiance(scene, simulation.plan.sides, receivers, {.paths = 1 << 15});
+    double square = 0, allowed = 0, found = 0, expected = 0;
+    for (int k = 0; k < pieces * pieces; ++k) {
+      double value = 0;
+      for (int y = 0; y < 8; ++y) {
+        for (int x = 0; x < 8; ++x)
+          value += picture.radiance.pixels((8 * (k / pieces) + y) * 32 + 8 * (k % pieces) + x, 0) / 64;
+      }
+      const double wanted = 0.6 / pi * paths.irradiance(k, 0);
+      found += value;
+      expected += wanted;
+      square += std::pow(value - wanted, 2);
+      // The wanted error of pixels, and three times that of paths
+      allowed += std::pow(0.01 * wanted, 2) + std::pow(3 * 0.6 / pi * paths.standard_error(k, 0), 2);
+    }
+    EXPECT_NEAR(found, expected, 0.01 * expected) << middle.transpose();
+    EXPECT_LT(square, allowed) << middle.transpose();
+  }
+}
+
+TEST(FinalPicture, OfAFisheyeByDayIntegratesToTheIrradianceOfASensor) {
+  Scene scene = daylight_office();
+  const Sensor sensor{Point(2, 2, 1.4), -Vector::UnitY()};
+  scene.sensors = {{"to the pane", {sensor}}};
+  scene.sun.reset();  // its disc is smaller than a pixel
+  const Simulation simulation = solved(scene, 1500);
+  const double expected = read_sensors(scene, simulation).readings.irradiance(0, 0);
+  Camera camera{sensor.point, sensor.point + sensor.normal, 180};
+  camera.projection = Projection::hemispherical;
+  const Picture picture = take_picture(scene, simulation, final_options(camera, 200));
+  // The luminaire behind the sensor does not shine on it.
+  EXPECT_NEAR(picture.radiance.pixels.col(0).mean() * 4, expected, 0.01 * expected);
+}
+
+TEST(FinalPicture, HidesTheMeshByDay) {
+  const Scene scene = daylight_office();
+  const Camera camera{Point(3.7, 4.7, 1.6), Point(1, 1, 0.6), 60};
+  const auto picture_by = [&](std::size_t patches) {
+    return take_picture(scene, solved(scene, patches), final_options(camera, 64, 0.01));
+  };
+  const Picture coarse = picture_by(400);
+  const Picture fine = picture_by(6000);
+  // Inside; the sky would decide the mean.
+  const Eigen::ArrayXd inside = (coarse.radiance.outlook.array() < 0.01).cast<double>();
+  const Eigen::ArrayXd a = luminances(coarse).array() * inside;
+  const Eigen::ArrayXd b = luminances(fine).array() * inside;
+  EXPECT_LT(std::sqrt((a - b).square().sum() / inside.sum()), 0.02 * b.sum() / inside.sum());
+}
+
+TEST(FinalPicture, ShowsSpheresThatEmit) {
+  // At 2 m before a black wall, of radius 0.3: parallel rays see a disc of M / pi.
+  Scene scene = empty_scene({grey(0)});
+  scene = with_quad(std::move(scene), {Point(-9, 4, -9), Point(9, 4, -9), Point(9, 4, 9), Point(-9, 4, 9)});
+  Luminaire lamp;
+  lamp.position = Point(0, 2, 0);
+  lamp.light = SphericalLamp{0.3, Spectrum::Constant(1, 5)};
+  scene.luminaires = {lamp};
+  Camera camera{Point(0, 0, 0), Point(0, 1, 0)};
+  camera.projection = Projection::orthographic;
+  camera.height = 1;
+  const Simulation simulation = solved(scene, 50);
+  for (const PictureQuality quality : {PictureQuality::draft, PictureQuality::final}) {
+    PictureOptions options = final_options(camera, 64);
+    options.quality = quality;
+    const Picture picture = take_picture(scene, simulation, options);
+    EXPECT_NEAR(picture.radiance.pixels(32 * 64 + 32, 0), 5 / pi, 1e-9);
+    EXPECT_EQ(picture.radiance.pixels(0, 0), 0);
+    // Its outline, 2 pi 0.3 of 64 pixels, is resolved to less than a tenth of a pixel.
+    EXPECT_NEAR(picture.radiance.pixels.col(0).mean(), 0.09 * 5, 0.1 / 64 * 2 * pi * 0.3 * 5 / pi);
+  }
+}
+
+TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
+  // A room of 6 x 4 x 3 m with two luminous squares of 0.6 m in its ceiling, 3,000 cd/m^2 each, seen from 1.2 m. By
+  // hand: omega of each by its two triangles as seen from the eye, p at its middle by Guth's formula, and the
+  // background from the illuminance at the eye less what the squares themselves give: pi L F.
+  Scene scene = empty_scene({grey(0.6), grey(0.6, 3000 * pi / luminous_efficacy)});
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(6, 4, 3), true);
+  std::vector<Quad> squares;
+  for (const double x : {2.7, 4.4}) {
+    const Point low(x, 1.7, 2.995);
+    squares.push_back({low, low + Vector(0, 0.6, 0), low + Vector(0.6, 0.6, 0), low + Vector(0.6, 0, 0)});
+    scene = with_quad(std::move(scene), squares.back(), 1);
+  }
+  const Camera camera{Point(0.5, 2, 1.2), Point(5, 2, 1.2), 50, "desk"};
+  const Simulation simulation = solved(scene, 2000);
+  const ObserverReading found = read_observers(scene, simulation, {camera})[0];
+  EXPECT_NEAR(found.cylindrical_illuminance, found.vertical_illuminance, 0.5 * found.vertical_illuminance);
+
+  double sum = 0, from_squares = 0;
+  for (const Quad& square : squares) {
+    const double omega = SphericalTriangle(camera.eye, {square[0], square[1], square[2]}).solid_angle() +
+                         SphericalTriangle(camera.eye, {square[0], square[2], square[3]}).solid_angle();
+    const Vector way = ((square[0] + square[2]) / 2 - camera.eye).normalized();
+    // It lies straight above the line of sight: tau = 0, so p = exp(33.98e-3 sigma + 21e-5 sigma^2).
+    const double sigma = std::acos(way.x()) * 180 / pi;
+    const double p = std::exp(33.98e-3 * sigma + 21e-5 * sigma * sigma);
+    sum += 3000.0 * 3000 * omega / (p * p);
+    from_squares += pi * 3000 * point_to_polygon(camera.eye, Vector::UnitX(), square);
+  }
+  const double background = (found.vertical_illuminance - from_squares) / pi;
+  EXPECT_NEAR(found.background_luminance, background, 0.02 * background);
+  EXPECT_NEAR(*found.unified_glare_rating, 8 * std::log10(0.25 / background * sum), 0.1);
 }
 
 TEST(FinalPicture, WithoutTimeIsCancelled) {

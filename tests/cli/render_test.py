@@ -1,9 +1,41 @@
 """patchlight render: pictures of a solution on disk."""
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
 import unittest
 
-from support import ToolTest
+from support import TOOL, ToolTest
 
-GOOD, USAGE, INPUT = 0, 1, 2
+
+def radiances(data):
+    """(header, rows of (r, g, b)) of a .hdr whose scanlines have runs, by the published format: Ward 1991, Real pixels."""
+    header, rest = data.split(b"\n\n", 1)
+    size, rest = rest.split(b"\n", 1)
+    height, width = (int(word) for word in size.split()[1::2])
+    at, rows = 0, []
+    for _ in range(height):
+        assert rest[at:at + 4] == bytes([2, 2, width >> 8, width & 255])
+        at += 4
+        line = bytearray()
+        while len(line) < 4 * width:
+            count = rest[at]
+            if count > 128:
+                line += bytes([rest[at + 1]]) * (count - 128)
+                at += 2
+            else:
+                line += rest[at + 1:at + 1 + count]
+                at += 1 + count
+        for x in range(width):
+            mantissas, exponent = line[x:3 * width:width], line[3 * width + x]
+            scale = 2.0 ** (exponent - 136) if exponent else 0
+            rows.append([(m + 0.5) * scale for m in mantissas])
+    assert at == len(rest)
+    return header, rows
+
+GOOD, USAGE, INPUT, INTERRUPTED = 0, 1, 2, 130
 
 SCENE = """[[model]]
 file = "room.obj"
@@ -45,9 +77,14 @@ class RenderTest(ToolTest):
         # The file has single precision: the picture is that of the run, but for rounding to eight bits.
         self.solve("--picture", "of_run.hdr", "--quality", "final", "--size", "24x16")
         self.good("render", "room.obj", "--solution", "room.vtp", "-o", "of_file.hdr", *SMALL)
-        run, file = (self.bytes_of(name) for name in ("of_run.hdr", "of_file.hdr"))
-        self.assertEqual(run.split(b"\n\n")[0], file.split(b"\n\n")[0])
-        self.assertLess(abs(len(run) - len(file)), 0.05 * len(run))
+        (run_header, run), (file_header, file) = (radiances(self.bytes_of(name)) for name in ("of_run.hdr", "of_file.hdr"))
+        self.assertEqual(run_header, file_header)
+        self.assertEqual(len(run), 24 * 16)
+        # Rounding of radiosities to single precision moves a mantissa of eight bits by one step at most.
+        for a, b in zip(run, file):
+            for x, y in zip(a, b):
+                self.assertLessEqual(abs(x - y), 1.01 * max(a) / 128)
+        self.assertGreater(max(max(pixel) for pixel in run), 0)
 
     def test_pictures_are_the_same_on_one_thread_and_two(self):
         self.solve()
@@ -74,6 +111,46 @@ class RenderTest(ToolTest):
         self.assertIn("another scene", message)
         self.assertFalse((self.folder / "other.png").exists())
 
+    def test_observers_have_a_line_each(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "--observers", "all.csv", "-q")
+        lines = (self.folder / "all.csv").read_text().splitlines()
+        self.assertEqual([line.split(",")[0] for line in lines], ["observer", "near", "plan"])
+        self.good("render", "scene.toml", "--solution", "scene.vtp", "--observers", "one.csv", "--view", "plan", "-q")
+        self.assertEqual((self.folder / "one.csv").read_text().splitlines()[1:], lines[2:])
+
+    def test_two_solutions_stand_beside_each_other(self):
+        self.solve()
+        self.good("solve", "room.obj", "--patches", "400", "-o", "fine.vtp", "-q")
+        self.good("render", "room.obj", "--solution", "room.vtp", "--difference", "fine.vtp", "-o", "both.png", *SMALL)
+        # Width and height of a PNG stand behind its first 16 bytes.
+        width, height = struct.unpack(">2I", self.bytes_of("both.png")[16:24])
+        self.assertEqual(height, 16)
+        self.assertGreater(width, 3 * 24)
+
+    def test_after_ctrl_c_no_other_view_begins(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        ours, theirs = pty.openpty()
+        command = [TOOL, "render", "scene.toml", "--solution", "scene.vtp", "--view", "near", "--view", "plan", "-o",
+                   "room.png", "--size", "1200x1200"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
+            os.close(theirs)
+            shown = b""
+            while not re.search(rb"render [7-9]\d %", shown):  # the first samples of each pixel are there
+                shown += os.read(ours, 4096)
+            process.send_signal(signal.SIGINT)
+            while True:
+                try:
+                    if not os.read(ours, 4096):
+                        break
+                except OSError:
+                    break
+        os.close(ours)
+        self.assertEqual(process.returncode, INTERRUPTED)
+        self.assertEqual(sorted(file.name for file in self.folder.glob("*.png")), ["room.near.png"])
+
     def test_refuses_what_is_no_solution(self):
         self.write("text.vtp", "no file of VTK\n")
         self.assertIn("text.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "text.vtp", "-o", "a.png"))
@@ -86,9 +163,12 @@ class RenderTest(ToolTest):
             (["-o", "a.png", "--quality", "draft", "--picture-error", "1%"], "--picture-error"),
             (["-o", "a.hdr", "--false-color", "luminance"], "--false-color"),
             (["-o", "a.png", "--projection", "panorama"], "--projection"),
+            (["-o", "a.png", "--view", "one/two", "--view", "one:two"], "-o"),
+            (["-o", "a.png", "--view", "one", "--view", "two", "--picture-error-map", "../{}/a.png"], "--picture-error-map"),
             (["-o", "a.png", "--camera", "0,0,1", "1,0,1", "190"], "--camera"),
             ([], "-o"),
         ):
+            words = [word.format(self.folder.name) for word in words]
             message = self.refused(USAGE, "render", "room.obj", "--solution", "room.vtp", *words)
             self.assertIn(named, message)
 

@@ -29,13 +29,13 @@ class ModuleTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scene = pl.read(BOX)
-        cls.solved = pl.solve(cls.scene, patches=400)
+        cls.solved = pl.solve(cls.scene, patches=400, no_error_bars=True)
         cls.transport = pl.transport(cls.scene, patches=400)
 
     def test_has_the_bits_of_the_tool(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            subprocess.run([TOOL, "solve", BOX, "--patches", "400", "-q", "-o", folder / "tool.ply", "--report", folder / "tool.json"], check=True)
+            subprocess.run([TOOL, "solve", BOX, "--patches", "400", "--no-error-bars", "-q", "-o", folder / "tool.ply", "--report", folder / "tool.json"], check=True)
             self.solved.write(str(folder / "module.ply"))
             written, own = ((folder / f"{who}.ply").read_bytes().partition(b"end_header\n")[2] for who in ("tool", "module"))
             self.assertEqual(written, own)
@@ -76,7 +76,7 @@ class ModuleTest(unittest.TestCase):
         scene = self.scene.copy()
         lamp = next(material for material in scene.materials if max(material.exitance) > 0)
         lamp.exitance = [2 * value for value in lamp.exitance]
-        doubled = pl.solve(scene, patches=400)
+        doubled = pl.solve(scene, patches=400, no_error_bars=True)
         numpy.testing.assert_allclose(doubled.irradiance, 2 * self.solved.irradiance, rtol=1e-5)
         white = next(material for material in scene.materials if material.name == "white")
         white.reflectance = 0.5
@@ -117,7 +117,7 @@ class ModuleTest(unittest.TestCase):
                 H = apply(E + rho * H) + H_direct
             return H
 
-        own = pl.solve(self.scene, patches=400, own=jacobi)
+        own = pl.solve(self.scene, patches=400, own=jacobi, no_error_bars=True)
         ours = self.transport.solve("jacobi", tolerance=1e-12, max_iterations=40)
         self.assertEqual(ours.history[-1]["iteration"], 40)
         # The same form factors, and sums over bands together or one by one: rounding alone.
@@ -142,16 +142,45 @@ class ModuleTest(unittest.TestCase):
                 difference = (values[0] - values[1]) / (2 * step)
                 self.assertAlmostEqual(found[quantity][k, 1], difference, delta=1e-4 * abs(difference))
 
+    def test_sensitivities_of_sensors_are_those_of_differences(self):
+        with tempfile.TemporaryDirectory() as name:
+            points = pathlib.Path(name) / "desk.txt"
+            points.write_text("0.51 0.1 0.3 0 1 0\n0.28 0.3 0.05 0 0 1\n")
+            scene = pl.read(BOX, points=points)
+        t = pl.transport(scene, patches=400)
+        read = pl.solve(scene, patches=400, no_error_bars=True).sensors()
+        G = t.sensor_factors()
+        step = 1e-4
+        for k, found in enumerate(pl.sensor_sensitivities(t)):
+            # What a sensor reads is sampled with rays that follow the light: six standard errors, and both have them.
+            numpy.testing.assert_array_less(abs(found["value"] - read["irradiance"][k]), 6 * numpy.sqrt(2) * read["standard_error"][k] + 1e-12)
+            for m in range(len(scene.materials)):
+                for quantity in ("reflectance", "exitance"):
+                    values = []
+                    for sign in (1, -1):
+                        changed = scene.copy()
+                        spectrum = list(getattr(scene.materials[m], quantity))
+                        spectrum[0] += sign * step
+                        setattr(changed.materials[m], quantity, spectrum)
+                        values.append(G[k] @ self.radiosity_of(t, changed)[:, 0])
+                    difference = (values[0] - values[1]) / (2 * step)
+                    self.assertAlmostEqual(found[quantity][m, 0], difference, delta=1e-4 * abs(difference))
+
     def value_of(self, transport, scene, weights):
-        """The mean irradiance with the materials of a scene, by fixed-point iteration: no solver of ours."""
+        """The mean irradiance with the materials of a scene."""
+        B = self.radiosity_of(transport, scene)
+        return (weights[:, None] * transport.apply(B)).sum(axis=0)[1]
+
+    def radiosity_of(self, transport, scene):
+        """The radiosity with the materials of a scene, by fixed-point iteration: no solver of ours."""
         rho = numpy.array([list(material.reflectance) for material in scene.materials])[transport.material]
         before = numpy.array([list(material.exitance) for material in self.scene.materials])[transport.material]
         now = numpy.array([list(material.exitance) for material in scene.materials])[transport.material]
         E = transport.exitance + numpy.where(transport.front[:, None] == 0, now - before, 0)
-        H = numpy.zeros_like(E)
+        B = E
         for _ in range(100):
-            H = transport.apply(E + rho * H)
-        return (weights[:, None] * H).sum(axis=0)[1]
+            B = E + rho * transport.apply(B)
+        return B
 
     def test_errors_have_the_words_of_the_tool(self):
         said = subprocess.run([TOOL, "solve", BOX, "--patches", "-3", "-o", "x.ply"], capture_output=True, text=True, check=False).stderr

@@ -53,4 +53,9 @@ Field display_radiance(const Simulation& simulation);
 Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options = {},
                      const Observer& observer = {});
 
+/// A picture of a model as it is, without light: each point as bright as its reflectance times its ambient occlusion
+/// (SolvedSurface::ambient_occlusion) within a distance in metres. Of the options camera, width and height count.
+/// \throws InputError for a camera that is none.
+Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance);
+
 }  // namespace patchlight

@@ -5,6 +5,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,31 @@ SensorView read_sensors(const Scene& scene, const Simulation& simulation, const 
 struct SolvedSurface {
   const Scene& scene;
   const Simulation& simulation;
-  Field radiance_at_vertices;  ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
+  Field radiance_at_vertices;              ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
+  Eigen::VectorXd ambient_occlusion = {};  ///< per patch: the share of the hemisphere, weighted by the cosine, in which
+                                           ///< nothing lies within a distance; empty: not asked for
+  Eigen::VectorXd ambient_occlusion_at_vertices = {};  ///< smoothed
 };
 
-/// Smooths the radiance of a solution, which traces rays along the patches. `scene` is the one that was solved, and
-/// `simulation` comes from simulate().
-SolvedSurface surface_of(const Scene& scene, const Simulation& simulation);
+/// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in metres finds its
+/// ambient occlusion. `scene` is the one that was solved, and `simulation` comes from simulate().
+SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
+                         const std::optional<double>& ambient_distance = {});
+
+/// What someone sees who stands at a camera's eye and looks at its target.
+struct ObserverReading {
+  std::string name;                    ///< the camera's
+  double vertical_illuminance = 0;     ///< at the eye, on the plane across the line of sight, lx
+  double cylindrical_illuminance = 0;  ///< the mean on all upright planes at the eye, lx
+  double background_luminance = 0;     ///< of CIE 117: what all but the sources of glare gives that plane, over pi
+  double glare_solid_angle = 0;        ///< of those sources, sr
+  std::optional<double> unified_glare_rating = {};  ///< CIE 117:1995; nothing without sources or background
+};
+
+/// What observers read in a solved scene. Windows, and what is brighter than 500 cd/m^2 and four times the mean of the
+/// half space that is seen, glares. Luminaires without faces give light, and glare does not count them: they have no
+/// extent. \throws Cancelled.
+std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation& simulation,
+                                            const std::vector<Camera>& cameras, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -12,12 +12,12 @@ their units. Lengths are metres but in read(), whose `unit` is that of the model
 from patchlight import _core
 from patchlight._core import InputError, Material, OutputError, Scene, Simulation, Solution, Transport, solvers
 from patchlight.options import arguments_of
-from patchlight.transport import sensitivities
+from patchlight.transport import sensitivities, sensor_sensitivities
 from patchlight import simulation as _simulation
 
 __version__ = _core.version()
 __all__ = ["InputError", "Material", "OutputError", "Scene", "Simulation", "Solution", "Transport", "check", "plan", "read",
-           "sensitivities", "solve", "solvers", "transport"]
+           "sensitivities", "sensor_sensitivities", "solve", "solvers", "transport"]
 
 
 def read(*models, **options):

@@ -30,22 +30,41 @@ def sensitivities(transport, weights, tolerance=1e-10):
     """
     area = transport.area[:, None]
     weights = numpy.asarray(weights, dtype=float).reshape(-1, 1)
-    bands = transport.exitance.shape[1]
-    lamps = numpy.broadcast_to(weights / area, (transport.size, bands))
+    lamps = numpy.broadcast_to(weights / area, transport.exitance.shape)
     # Weights may have either sign, which the solver's bounds do not mind.
     adjoint = transport.solve("cg", tolerance=tolerance, exitance=lamps).radiosity
     solution = transport.solve("cg", tolerance=tolerance)
-    arriving = area * transport.apply(adjoint)
-    by_reflectance = arriving * solution.irradiance
-    materials = int(transport.material.max()) + 1
+    return {"value": (weights * solution.irradiance).sum(axis=0),
+            **by_material(transport, area * transport.apply(adjoint), solution.irradiance)}
 
-    def summed(values, counts=None):
-        return numpy.array([numpy.bincount(transport.material, values[:, band] * (1 if counts is None else counts), materials)
-                            for band in range(bands)]).T
+
+def sensor_sensitivities(transport, tolerance=1e-10):
+    """The same of what each sensor of the scene gets from patches, H_s = sum_i g_i B_i, by one adjoint solution for each.
+
+    Returns a list with an entry for each sensor, in the scene's order. With g the sensor's factors the adjoint
+    b = rho o g / A + rho o F b gives dH_s = A o (g / A + F b) . (dE + drho o H).
+    """
+    area, rho = transport.area[:, None], transport.reflectance
+    solution = transport.solve("cg", tolerance=tolerance)
+    entries = []
+    for factors in transport.sensor_factors():
+        factors = factors[:, None]
+        adjoint = transport.solve("cg", tolerance=tolerance, exitance=rho * factors / area).radiosity
+        entries.append({"value": (factors * solution.radiosity).sum(axis=0),
+                        **by_material(transport, factors + area * transport.apply(adjoint), solution.irradiance)})
+    return entries
+
+
+def by_material(transport, by_radiosity, irradiance):
+    """Derivatives by the exitance and the reflectance of materials (rows) per band, from those by what each patch sends
+    out: dQ = sum_i y_i (dE_i + drho_i H_i)."""
+    count = int(transport.material.max()) + 1
+
+    def summed(values):
+        return numpy.array([numpy.bincount(transport.material, band, count) for band in values.T]).T
 
     emits = numpy.ones(transport.size) if transport.emits_from_back else (transport.front == 0).astype(float)
-    return {"value": (weights * solution.irradiance).sum(axis=0), "reflectance": summed(by_reflectance),
-            "exitance": summed(arriving, emits)}
+    return {"reflectance": summed(by_radiosity * irradiance), "exitance": summed(by_radiosity * emits[:, None])}
 
 
 _core.Transport.operator = property(operator_of, doc="H = F B as a scipy.sparse.linalg.LinearOperator.")

@@ -1,0 +1,305 @@
+#include "output/write_sensor_map.h"
+
+#include "patchlight/base/error.h"
+
+#include "output/isolines.h"
+#include "output/plot_text.h"
+#include "output/plot_ticks.h"
+#include "output/write_drawing.h"
+#include "render/tone_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// All lengths in pixels.
+constexpr double map_edge = 24;
+constexpr double widest_map = 520;
+constexpr double highest_map = 420;
+constexpr double line_height = 18;
+constexpr double bar_width = 22;
+constexpr double legend_room = 150;
+constexpr double map_text = 12;
+constexpr std::size_t most_maps = 64;
+constexpr int most_levels = 9;
+
+// One grid, with its axes and what it reads.
+struct GridMap {
+  const SensorGroup* group = nullptr;
+  std::vector<std::array<Point, 4>> cells;
+  std::vector<double> values;
+  Vector right, above;                              // unit
+  double left = 0, top = 0, width = 0, height = 0;  // along these, metres
+};
+
+// Where things stand in the file.
+struct Placed {
+  double x = 0, y = 0, scale = 1;  // of the map's upper left corner; pixels per metre
+};
+
+Vector right_of(const Vector& normal, const MapOptions& options) {
+  const bool is_level = std::abs(normal.dot(options.up)) > 0.7;
+  return (is_level ? options.north.cross(options.up) : options.up.cross(normal)).normalized();
+}
+
+// Squares around sensors whose file says nothing of cells, as wide as the two nearest are apart; none around few.
+std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sensors, const GridMap& map) {
+  constexpr std::size_t least = 4, most = 20000;
+  if (sensors.size() < least || sensors.size() > most) return {};
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    for (std::size_t other = 0; other < k; ++other) {
+      const double apart = (sensors[k].point - sensors[other].point).norm();
+      if (apart > 0) step = std::min(step, apart);
+    }
+  }
+  if (!std::isfinite(step)) return {};
+  const Vector across = step / 2 * map.right, upward = step / 2 * map.above;
+  std::vector<std::array<Point, 4>> cells;
+  for (const Sensor& sensor : sensors) {
+    const Point& at = sensor.point;
+    cells.push_back({at - across - upward, at + across - upward, at + across + upward, at - across + upward});
+  }
+  return cells;
+}
+
+GridMap grid_map(const SensorGroup& group, std::vector<double> values, const MapOptions& options) {
+  GridMap map{&group, group.cells, std::move(values), {}, {}};
+  const Vector normal = group.sensors[0].normal;
+  map.right = right_of(normal, options);
+  map.above = std::abs(normal.dot(options.up)) > 0.7 ? options.north : normal.cross(map.right).normalized();
+  if (map.cells.empty()) map.cells = squares_around(group.sensors, map);
+  double right = -std::numeric_limits<double>::infinity(), bottom = right;
+  map.left = -right;
+  map.top = -right;
+  for (const auto& cell : map.cells) {
+    for (const Point& corner : cell) {
+      map.left = std::min(map.left, corner.dot(map.right));
+      right = std::max(right, corner.dot(map.right));
+      map.top = std::min(map.top, -corner.dot(map.above));
+      bottom = std::max(bottom, -corner.dot(map.above));
+    }
+  }
+  map.width = right - map.left;
+  map.height = bottom - map.top;
+  return map;
+}
+
+std::vector<GridMap> grid_maps(std::span<const SensorGroup> groups, const Readings& readings,
+                               const MapOptions& options) {
+  std::vector<GridMap> maps;
+  std::size_t sensor = 0;
+  for (const SensorGroup& group : groups) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < group.sensors.size(); ++k, ++sensor) {
+      const bool is_inside = is_inside_wall(readings, sensor);
+      values.push_back(is_inside                                          ? std::numeric_limits<double>::quiet_NaN()
+                       : options.quantity == MapQuantity::daylight_factor ? daylight_factor(readings, sensor)
+                                                                          : sensor_value(readings, sensor).value);
+    }
+    if (group.sensors.empty() || maps.size() >= most_maps) continue;
+    GridMap map = grid_map(group, std::move(values), options);
+    if (!map.cells.empty()) maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
+AxisRange range_of(const std::vector<GridMap>& maps, const MapOptions& options) {
+  if (options.range) return {(*options.range)[0], (*options.range)[1]};
+  std::vector<double> values = {0};
+  for (const GridMap& map : maps) {
+    for (const double value : map.values)
+      if (std::isfinite(value)) values.push_back(value);
+  }
+  return axis_range(values, Scale::linear, most_levels);
+}
+
+Pixel pixel_of(const GridMap& map, const Placed& at, const Point& point) {
+  return {at.x + (point.dot(map.right) - map.left) * at.scale, at.y + (-point.dot(map.above) - map.top) * at.scale};
+}
+
+void set_colour(cairo_t* cairo, double value, const AxisRange& range) {
+  const auto colour = false_color(Eigen::VectorXd::Constant(1, value), range.lower, range.upper)[0];
+  cairo_set_source_rgb(cairo, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
+}
+
+void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const AxisRange& range) {
+  for (std::size_t k = 0; k < map.values.size(); ++k) {
+    cairo_new_path(cairo);
+    for (const Point& corner : map.cells[k]) {
+      const Pixel pixel = pixel_of(map, at, corner);
+      cairo_line_to(cairo, pixel.x, pixel.y);
+    }
+    cairo_close_path(cairo);
+    if (std::isfinite(map.values[k]))
+      set_colour(cairo, map.values[k], range);
+    else
+      cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
+    cairo_fill_preserve(cairo);
+    // Over the seam to the next cell
+    cairo_set_line_width(cairo, 0.6);
+    cairo_stroke(cairo);
+  }
+}
+
+// The lattice that the cells of a grid lie on.
+struct SensorLattice {
+  Eigen::MatrixXd values;  // NaN where there is no sensor
+  Point origin;            // of column and row 0
+  Vector step, step_of_rows;
+};
+
+SensorLattice lattice_of(const GridMap& map) {
+  const std::vector<Sensor>& sensors = map.group->sensors;
+  const auto& cell = map.cells[0];
+  SensorLattice lattice{{}, sensors[0].point, cell[1] - cell[0], cell[3] - cell[0]};
+  const auto place = [&](const Point& point) -> Eigen::Vector2d {
+    const Vector way = point - lattice.origin;
+    return {way.dot(lattice.step) / lattice.step.squaredNorm(),
+            way.dot(lattice.step_of_rows) / lattice.step_of_rows.squaredNorm()};
+  };
+  Eigen::Vector2d low(0, 0), high(0, 0);
+  for (const Sensor& sensor : sensors) {
+    low = low.cwiseMin(place(sensor.point));
+    high = high.cwiseMax(place(sensor.point));
+  }
+  const Eigen::Vector2d size = (high - low).array().round() + 1;
+  // More places than a file can show: cells of several sizes, or not in one plane
+  if (!(size.prod() < 100.0 * static_cast<double>(sensors.size()) + 1000)) return lattice;
+  lattice.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(size[1]), static_cast<Eigen::Index>(size[0]),
+                                             std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const Eigen::Vector2d at = (place(sensors[k].point) - low).array().round();
+    lattice.values(static_cast<Eigen::Index>(at[1]), static_cast<Eigen::Index>(at[0])) = map.values[k];
+  }
+  lattice.origin += low[0] * lattice.step + low[1] * lattice.step_of_rows;
+  return lattice;
+}
+
+// A label in a gap of its line.
+void draw_level(cairo_t* cairo, const Pixel& at, const Tick& tick) {
+  const double half = label_width(cairo, tick) / 2 + 2;
+  cairo_set_source_rgba(cairo, 1, 1, 1, 0.75);
+  cairo_rectangle(cairo, at.x - half, at.y - map_text / 2, 2 * half, map_text);
+  cairo_fill(cairo);
+  cairo_set_source_rgb(cairo, 0, 0, 0);
+  draw_label(cairo, at, tick, Align::centre);
+}
+
+void draw_isolines(cairo_t* cairo, const GridMap& map, const Placed& at, const std::vector<Tick>& levels) {
+  const SensorLattice lattice = lattice_of(map);
+  const auto pixel = [&](const Eigen::Vector2d& place) {
+    return pixel_of(map, at, lattice.origin + place[0] * lattice.step + place[1] * lattice.step_of_rows);
+  };
+  for (const Tick& level : levels) {
+    const std::vector<IsolinePiece> pieces = isoline(lattice.values, level.value);
+    if (pieces.empty()) continue;
+    cairo_set_source_rgb(cairo, 0, 0, 0);
+    cairo_set_line_width(cairo, 1);
+    for (const auto& [from, to] : pieces) {
+      const Pixel a = pixel(from), b = pixel(to);
+      cairo_move_to(cairo, a.x, a.y);
+      cairo_line_to(cairo, b.x, b.y);
+    }
+    cairo_stroke(cairo);
+    const auto& [from, to] = pieces[pieces.size() / 2];
+    if (!level.text.empty()) draw_level(cairo, pixel((from + to) / 2), level);
+  }
+}
+
+std::string digits(double value) {
+  const int decimals = value >= 100 ? 0 : value >= 10 ? 1 : 2;
+  std::string text = std::to_string(std::round(value * std::pow(10, decimals)) / std::pow(10, decimals));
+  const std::size_t point = text.find('.');
+  return text.substr(0, decimals == 0 ? point : point + 1 + static_cast<std::size_t>(decimals));
+}
+
+std::string told(const GridMap& map, const std::string& unit) {
+  double least = std::numeric_limits<double>::infinity(), sum = 0;
+  int count = 0;
+  for (const double value : map.values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    sum += value;
+    ++count;
+  }
+  if (count == 0) return "all inside walls";
+  const double mean = sum / count;
+  return "mean " + digits(mean) + " " + unit + ", least " + digits(least) + " " + unit + ", U0 " +
+         (mean > 0 ? digits(least / mean) : "-");
+}
+
+void draw_colours(cairo_t* cairo, double left, const AxisRange& range, const std::string& title) {
+  const double top = map_edge + 2 * line_height, height = highest_map - 2 * line_height;
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  draw_text(cairo, {left, map_edge + line_height / 2}, title, Align::left);
+  constexpr int steps = 128;
+  for (int k = 0; k < steps; ++k) {
+    set_colour(cairo, range.upper - (k + 0.5) / steps * (range.upper - range.lower), range);
+    cairo_rectangle(cairo, left, top + k * height / steps, bar_width, height / steps + 0.5);
+    cairo_fill(cairo);
+  }
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  for (const Tick& tick : axis_ticks(range, Scale::linear, most_levels)) {
+    const double y = top + height * (1 - place_on_axis(tick.value, range, Scale::linear));
+    draw_label(cairo, {left + bar_width + 8, y}, tick, Align::left);
+  }
+}
+
+}  // namespace
+
+void write_sensor_map(const std::filesystem::path& file, std::span<const SensorGroup> groups, const Readings& readings,
+                      const MapOptions& options) {
+  const bool is_factor = options.quantity == MapQuantity::daylight_factor;
+  if (is_factor && !readings.outside_by_sky)
+    throw OutputError(file.string(),
+                      "there are no daylight factors, which are of a CIE overcast sky as the only light");
+  const std::vector<GridMap> maps = grid_maps(groups, readings, options);
+  if (maps.empty()) throw OutputError(file.string(), "a map needs a grid of sensors, and there are only single points");
+  const AxisRange range = range_of(maps, options);
+  const std::vector<Tick> levels = axis_ticks(range, Scale::linear, most_levels);
+  const std::string unit = is_factor ? "%" : sensor_unit(readings);
+  const std::string title = (is_factor              ? "daylight factor, "
+                             : readings.photometric ? "illuminance, "
+                                                    : "irradiance, ") +
+                            unit;
+  // All to one scale, two beside each other.
+  double widest = 0, highest = 0;
+  for (const GridMap& map : maps) {
+    widest = std::max(widest, map.width);
+    highest = std::max(highest, map.height);
+  }
+  const double scale = std::min(widest_map / widest, highest_map / highest);
+  const std::size_t columns = std::min<std::size_t>(2, maps.size());
+  const std::size_t rows = (maps.size() + columns - 1) / columns;
+  const double wide = std::max(widest * scale, 300.0) + map_edge;
+  const double high = highest * scale + 2 * line_height + map_edge;
+  const double legend = map_edge + static_cast<double>(columns) * wide;
+  const int width = static_cast<int>(std::ceil(legend + legend_room + map_edge));
+  const int height =
+      static_cast<int>(std::ceil(std::max(map_edge + static_cast<double>(rows) * high, highest_map + 3 * map_edge)));
+  write_drawing(file, width, height, [&](cairo_t* cairo) {
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    set_text_size(cairo, map_text);
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+      const Placed at{map_edge + static_cast<double>(k % columns) * wide,
+                      map_edge + line_height + static_cast<double>(k / columns) * high, scale};
+      draw_cells(cairo, maps[k], at, range);
+      draw_isolines(cairo, maps[k], at, levels);
+      cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+      draw_text(cairo, {at.x, at.y - line_height / 2}, fitting_text(cairo, maps[k].group->name, wide - map_edge),
+                Align::left);
+      draw_text(cairo, {at.x, at.y + maps[k].height * scale + line_height / 2}, told(maps[k], unit), Align::left);
+    }
+    draw_colours(cairo, legend, range, title);
+  });
+}
+
+}  // namespace patchlight
