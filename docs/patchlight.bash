@@ -12,6 +12,7 @@ _patchlight() {
       solve,--up) words="y z" ;;
       solve,--sides) words="auto front both" ;;
       solve,--quality) words="draft final" ;;
+      solve,--map) words="illuminance daylight-factor" ;;
       solve,--storage) words="auto tiles rays on-demand" ;;
       solve,--solver) words="jacobi gauss-seidel sor symmetric-gauss-seidel chebyshev progressive overshooting cg deflated-cg gmres bicgstab" ;;
       solve,--estimator) words="auto area point-polygon hemisphere contour" ;;
@@ -39,6 +40,7 @@ _patchlight() {
       form-factors,--estimator) words="auto area point-polygon hemisphere contour" ;;
       relight,--up) words="y z" ;;
       relight,--quality) words="draft final" ;;
+      relight,--map) words="illuminance daylight-factor" ;;
       relight,--solver) words="jacobi gauss-seidel sor symmetric-gauss-seidel chebyshev progressive overshooting cg deflated-cg gmres bicgstab" ;;
       render,--format) words="obj ply stl off dae ifc gltf glb hbjson rad xml toml" ;;
       render,--unit) words="m cm mm in ft" ;;
@@ -63,13 +65,13 @@ _patchlight() {
     esac
     if [ -z "$words" ] && [[ $current == -* ]]; then
       case $command in
-        solve) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges -o --output --html --series --report --picture --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --points --points-output --accuracy --time --interest --error-bars --no-error-bars --form-factors --on-demand --storage --rays --checkpoint --no-closure --relaxation --solver --tolerance --max-iterations --max-rows --samples --estimator --seed --force --skip --threads --memory --discard -q --quiet -v --verbose" ;;
-        check) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --all --json --vtk" ;;
+        solve) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges -o --output --ambient-occlusion --html --series --report --picture --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --points --points-output --map --map-range --accuracy --time --interest --error-bars --no-error-bars --form-factors --on-demand --storage --rays --checkpoint --no-closure --relaxation --solver --tolerance --max-iterations --max-rows --samples --estimator --seed --force --skip --threads --memory --discard -q --quiet -v --verbose" ;;
+        check) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --all --json --vtk --picture --ambient-occlusion" ;;
         new) words="-h --help --format --unit --up --confine -o --output" ;;
         plan) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges --json --accuracy --time --interest --error-bars --no-error-bars --on-demand --storage --rays --samples --estimator --seed --force --skip --threads --memory" ;;
         form-factors) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges --force --skip -o --output --matrix --by --without --raw --storage --rays --samples --estimator --seed --threads --memory -q --quiet" ;;
-        relight) words="-h --help --set --up --sky --sun --ground --weather --force --skip -o --output --html --series --report --picture --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --points --points-output --no-closure --relaxation --solver --tolerance --max-iterations --max-rows --threads --memory --discard -q --quiet -v --verbose" ;;
-        render) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --solution -o --output --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --html --threads -q --quiet" ;;
+        relight) words="-h --help --set --up --sky --sun --ground --weather --force --skip -o --output --ambient-occlusion --html --series --report --picture --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --points --points-output --map --map-range --no-closure --relaxation --solver --tolerance --max-iterations --max-rows --threads --memory --discard -q --quiet -v --verbose" ;;
+        render) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --solution -o --output --false-color --camera --projection --view --quality --size --picture-error --picture-error-map --difference --observers --html --threads -q --quiet" ;;
         compare) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges --force --skip -o --output --html --solvers --tolerance --max-iterations --no-series --no-closure --relaxation --samples --estimator --seed --threads --memory -q --quiet" ;;
         study) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --force --skip -o --output --html --sizes --tolerance --no-adaptive --no-estimators --samples --estimator --seed --threads --memory -q --quiet" ;;
         verify) words="-h --help --format --unit --up --confine --set --only --leave-out --detail --keep-faces --sky --sun --ground --weather --sides --max-edge --patches --no-contact-lines --graded-edges --force --skip --paths --checked --bar --json --accuracy --time --interest --samples --estimator --seed --on-demand --storage --rays --threads --memory" ;;

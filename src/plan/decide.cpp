@@ -162,8 +162,9 @@ Decision textures(const EffectFacts& facts) {
     return {Effect::textures, false, "no material has a picture whose place on a face is known", "nothing"};
   return {Effect::textures, true,
           std::to_string(facts.textured) + " of " + counted(facts.materials, "material") +
-              (facts.textured == 1 ? " has a picture" : " have pictures") + "; texels differ from its mean by " +
-              number(100 * facts.texture_deviation) + " %, rms",
+              (facts.textured == 1 ? " has a picture" : " have pictures") +
+              "; texels differ from the mean of their picture by up to " + number(100 * facts.texture_deviation) +
+              " %, rms",
           "the mean of a picture over each patch"};
 }
 
