@@ -81,11 +81,13 @@ void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.vertices, b.vertices);
   ASSERT_EQ(a.polygons.size(), b.polygons.size());
   for (std::size_t p = 0; p < a.polygons.size(); ++p) {
-    const auto& [corners, material, group, line, file, face, back_material] = a.polygons[p];
+    const auto& [corners, material, group, line, file, face, back_material, texture_map, back_texture_map] =
+        a.polygons[p];
     const Polygon& other = b.polygons[p];
     EXPECT_EQ(corners, other.corners);
     EXPECT_EQ(std::tie(material, group, line), std::tie(other.material, other.group, other.line));
     EXPECT_EQ(std::tie(file, face, back_material), std::tie(other.file, other.face, other.back_material));
+    EXPECT_EQ(std::tie(texture_map, back_texture_map), std::tie(other.texture_map, other.back_texture_map));
   }
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (std::size_t m = 0; m < a.materials.size(); ++m) {
