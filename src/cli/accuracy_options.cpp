@@ -38,7 +38,8 @@ void add_accuracy_options(CLI::App& command, Request& request) {
       "patches, where they take\nless than half of the run");
   command
       .add_flag_callback(
-          "--no-error-bars", [&request] { request.accuracy.cheap_error_bars = false; }, "none of pairs by default")
+          "--no-error-bars", [&request] { request.accuracy.cheap_error_bars = false; },
+          "no error bars with pairs; rows of rays always have them")
       ->excludes(bars);
 }
 

@@ -71,12 +71,13 @@ std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& stat
   return corners;
 }
 
-// A vt statement; not a number where it has fewer than two numbers.
+// A vt statement, v being 0 where it has one number; not a number where it has none.
 Eigen::Vector2d picture_point(const std::vector<std::string_view>& statement) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d point(unknown, unknown);
   for (std::size_t k = 0; k < 2 && k + 1 < statement.size(); ++k)
     point[static_cast<Eigen::Index>(k)] = finite_number(statement[k + 1]).value_or(unknown);
+  if (statement.size() == 2) point[1] = 0;
   return point;
 }
 

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "output/isolines.h"
+#include "output/map_axes.h"
 #include "output/plot_text.h"
 #include "output/plot_ticks.h"
 #include "output/write_drawing.h"
@@ -43,11 +44,6 @@ struct Placed {
   double x = 0, y = 0, scale = 1;  // of the map's upper left corner; pixels per metre
 };
 
-Vector right_of(const Vector& normal, const MapOptions& options) {
-  const bool is_level = std::abs(normal.dot(options.up)) > 0.7;
-  return (is_level ? options.north.cross(options.up) : options.up.cross(normal)).normalized();
-}
-
 // Squares around sensors whose file says nothing of cells, as wide as the two nearest are apart; none around few.
 std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sensors, const GridMap& map) {
   constexpr std::size_t least = 4, most = 20000;
@@ -71,9 +67,9 @@ std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sens
 
 GridMap grid_map(const SensorGroup& group, std::vector<double> values, const MapOptions& options) {
   GridMap map{&group, group.cells, std::move(values), {}, {}};
-  const Vector normal = group.sensors[0].normal;
-  map.right = right_of(normal, options);
-  map.above = std::abs(normal.dot(options.up)) > 0.7 ? options.north : normal.cross(map.right).normalized();
+  const MapAxes axes = map_axes(group.sensors[0].normal, options.up, options.north);
+  map.right = axes.right;
+  map.above = axes.above;
   if (map.cells.empty()) map.cells = squares_around(group.sensors, map);
   double right = -std::numeric_limits<double>::infinity(), bottom = right;
   map.left = -right;

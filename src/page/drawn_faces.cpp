@@ -51,7 +51,9 @@ std::vector<DrawnSide> all_sides(const SolvedSurface& surface) {
 
 // Those with the least to lose for each face that is saved become whole first; then the smallest are left out.
 std::vector<DrawnSide> thinned(std::vector<DrawnSide> sides, std::size_t faces, std::size_t most) {
-  std::stable_sort(sides.begin(), sides.end(), [](const DrawnSide& a, const DrawnSide& b) {
+  const auto rest =
+      std::stable_partition(sides.begin(), sides.end(), [](const DrawnSide& side) { return side.saving() > 0; });
+  std::stable_sort(sides.begin(), rest, [](const DrawnSide& a, const DrawnSide& b) {
     return a.scatter * static_cast<double>(b.saving()) < b.scatter * static_cast<double>(a.saving());
   });
   for (DrawnSide& side : sides) {

@@ -1,5 +1,7 @@
 #include "page/sensor_maps.h"
 
+#include "output/json_array.h"
+#include "output/map_axes.h"
 #include "page/packed.h"
 
 #include <vector>
@@ -21,19 +23,20 @@ Json cells_of_grid(const SensorGroup& group) {
   return packed_array<float>(corners, 12);
 }
 
-Json sensor_map(const SensorGroup& group, const Readings& readings, std::size_t first) {
-  std::vector<float> places, normals, values, errors, factors;
+Json sensor_map(const Scene& scene, const SensorGroup& group, const Readings& readings, std::size_t first) {
+  std::vector<float> places, values, errors, factors;
   for (std::size_t k = 0; k < group.sensors.size(); ++k) {
     const SensorValue value = sensor_value(readings, first + k);
     append_place(places, group.sensors[k].point);
-    append_place(normals, group.sensors[k].normal);
     values.push_back(static_cast<float>(value.value));
     errors.push_back(static_cast<float>(value.standard_error));
     if (readings.outside_by_sky) factors.push_back(static_cast<float>(daylight_factor(readings, first + k)));
   }
   Json part{{"name", group.name}, {"unit", sensor_unit(readings)}};
+  const MapAxes axes = map_axes(group.sensors[0].normal, scene.up, scene.north);
+  part["right"] = json_array(axes.right);
+  part["above"] = json_array(axes.above);
   part["places"] = packed_array<float>(places, 3);
-  part["normals"] = packed_array<float>(normals, 3);
   part["values"] = packed_array<float>(values, 1);
   part["standard_errors"] = packed_array<float>(errors, 1);
   if (readings.outside_by_sky) part["daylight_factors"] = packed_array<float>(factors, 1);
@@ -43,11 +46,12 @@ Json sensor_map(const SensorGroup& group, const Readings& readings, std::size_t 
 
 }  // namespace
 
-Json sensor_maps(std::span<const SensorGroup> groups, const Readings& readings) {
+Json sensor_maps(const Scene& scene, const Readings& readings) {
   Json maps = Json::array();
   std::size_t first = 0;
-  for (const SensorGroup& group : groups) {
-    maps.push_back(sensor_map(group, readings, first));
+  for (const SensorGroup& group : scene.sensors) {
+    if (group.sensors.empty()) continue;
+    maps.push_back(sensor_map(scene, group, readings, first));
     first += group.sensors.size();
   }
   return maps;

@@ -1,15 +1,14 @@
 #pragma once
 
 #include "patchlight/gather/readings.h"
-#include "patchlight/scene/sensor.h"
+#include "patchlight/scene/scene.h"
 
 #include <nlohmann/json.hpp>
-#include <span>
 
 namespace patchlight {
 
-/// Per group of sensors its name, unit, places, values, standard errors, daylight factors where there are any, and of a
-/// grid the cells.
-nlohmann::ordered_json sensor_maps(std::span<const SensorGroup> groups, const Readings& readings);
+/// Per group of sensors its name, unit, the axes of its map (map_axes()), places, values, standard errors, daylight
+/// factors where there are any, and of a grid the cells.
+nlohmann::ordered_json sensor_maps(const Scene& scene, const Readings& readings);
 
 }  // namespace patchlight

@@ -80,7 +80,7 @@ Json data_of(const Page& page) {
   data["scene_notes"] = page.scene.notes;
   data["problems"] = problems_part(page.scene);
   if (page.report != nullptr) data["report"] = report_json(*page.report, page.provenance);
-  if (page.readings != nullptr) data["sensors"] = sensor_maps(page.scene.sensors, *page.readings);
+  if (page.readings != nullptr) data["sensors"] = sensor_maps(page.scene, *page.readings);
   data["pictures"] = Json::array();
   for (const Picture* picture : page.pictures) data["pictures"].push_back(picture_part(*picture));
   if (page.comparison != nullptr) data["comparison"] = comparison_json(page.scene, *page.comparison, page.provenance);

@@ -70,8 +70,12 @@ constexpr std::size_t most_patches_with_cheap_bars = 5000;
 ChosenStorage with_cheap_bars(ChosenStorage chosen, const Given& given, const StoredLight& light) {
   const bool is_cheap = chosen.request.assembly.storage == Storage::tiles && light.is_reflected &&
                         light.patches <= most_patches_with_cheap_bars;
-  if (chosen.request.accuracy.cheap_error_bars && is_cheap && !part_without_error_bars(chosen.request, given))
-    chosen.request.accuracy.error_bars = true;
+  if (!chosen.request.accuracy.cheap_error_bars || !is_cheap || part_without_error_bars(chosen.request, given))
+    return chosen;
+  AccuracyOptions with_bars = chosen.request.accuracy;
+  with_bars.error_bars = true;
+  const double bytes = memory_needed(light.patches, chosen.request.assembly, with_bars);
+  if (bytes <= usable_memory(chosen.request.resources)) chosen.request.accuracy = with_bars;
   return chosen;
 }
 

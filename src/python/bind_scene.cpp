@@ -52,6 +52,8 @@ void bind_spectrum(py::class_<Material>& type, const char* name, Spectrum Materi
       name, [member](const Material& material) { return numbers_of(material.*member); },
       [member](Material& material, const py::object& numbers) {
         material.*member = spectrum_of(numbers, material.reflectance.size());
+        // What is stated takes the place of a picture, as with --set.
+        if (member != &Material::exitance) material.texture.reset();
       },
       text);
 }
@@ -90,7 +92,9 @@ py::list problems_of(const Scene& scene) {
   return list;
 }
 
-std::string plan_of(const Scene& scene, const cli::SolveArguments& arguments) {
+std::string plan_of(const Scene& of, const cli::SolveArguments& arguments) {
+  // Other threads may change materials from here on.
+  const Scene scene = of;
   const py::gil_scoped_release others;
   const ThreadLimit limit(arguments.request.resources.threads);
   check(arguments.request, scene);

@@ -16,6 +16,7 @@
 #include "python/solved_scene.h"
 #include "render/tone_map.h"
 
+#include <memory>
 #include <pybind11/stl.h>
 
 namespace patchlight {
@@ -25,6 +26,12 @@ namespace py = pybind11;
 
 using SolvedPointer = std::shared_ptr<SolvedScene>;
 
+// Takes back what was lent.
+struct LentUntilTheEnd {
+  std::shared_ptr<const RowTransport*> lent;
+  ~LentUntilTheEnd() { *lent = nullptr; }
+};
+
 // A function of Python in place of the solver: it gets H = F B as a function, and E, rho and H_direct, and returns H.
 SolveWith solve_by(const py::object& own) {
   return [&own](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&, const Observer&) {
@@ -32,8 +39,14 @@ SolveWith solve_by(const py::object& own) {
     const Eigen::Index size = problem.exitance.rows();
     {
       const py::gil_scoped_acquire lock;
-      const auto apply = py::cpp_function(
-          [&](const NumbersIn& radiosity) { return array_of(transport.apply(field_of(radiosity, size))); });
+      // The function may outlive the transport.
+      const auto lent = std::make_shared<const RowTransport*>(&transport);
+      const LentUntilTheEnd end{lent};
+      const auto apply = py::cpp_function([lent, size](const NumbersIn& radiosity) {
+        if (*lent == nullptr)
+          throw InputError("apply", "found a call after the solver has ended; expected calls before it returns");
+        return array_of((*lent)->apply(field_of(radiosity, size)));
+      });
       const Field direct =
           problem.direct_irradiance.size() > 0 ? problem.direct_irradiance : Field::Zero(size, problem.exitance.cols());
       solution.irradiance = field_of(

@@ -20,8 +20,8 @@ bool is_main_thread() {
 }  // namespace
 
 InterruptFlag::InterruptFlag() {
-  asked_to_stop = false;
   if (!is_main_thread()) return;
+  asked_to_stop = false;
   before_ = std::signal(SIGINT, ask_to_stop);
   installed_ = true;
 }

@@ -5,12 +5,14 @@ usage: module_test.py TOOL MESHES, with the module's folder in PYTHONPATH. Ends 
 import _thread
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 import unittest
+import zlib
 
 try:
     import numpy
@@ -55,6 +57,36 @@ class ModuleTest(unittest.TestCase):
         radiosity, sum_then = solved.radiosity, solved.radiosity.sum()
         del solved
         self.assertEqual(radiosity.sum(), sum_then)
+
+    def test_a_stated_reflectance_takes_the_place_of_a_picture(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            pixels = b"\0" + bytes([255, 0, 0]) + bytes([0, 0, 255])
+            (folder / "two.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 1, 8, 2, 0, 0, 0)) +
+                                             chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
+            (folder / "a.mtl").write_text("newmtl floor\nKd .5 .5 .5\nmap_Kd two.png\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n")
+            (folder / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                          "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl floor\nf 1/1 2/2 3/3 4/4\nusemtl lamp\nf 8 7 6 5\n")
+            scene = pl.read(folder / "a.obj")
+        floor = next(material for material in scene.materials if material.name == "floor")
+        on_floor = lambda solved: solved.reflectance[solved.exitance.sum(axis=1) == 0]
+        self.assertGreater(numpy.ptp(on_floor(pl.solve(scene, patches=100)), axis=0).max(), 0.1)
+        floor.reflectance = 0.25
+        self.assertTrue((on_floor(pl.solve(scene, patches=100)) == 0.25).all())
+
+    def test_what_is_lent_to_a_solver_ends_with_it(self):
+        kept = []
+
+        def solver(apply, exitance, reflectance, direct):
+            kept.append(apply)
+            return apply(exitance)
+
+        pl.solve(self.scene, own=solver, patches=60)
+        with self.assertRaisesRegex(pl.InputError, "after the solver has ended"):
+            kept[0](numpy.zeros((60, 3)))
 
     def test_arrays_fit_the_equations(self):
         s = self.solved

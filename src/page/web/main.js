@@ -45,7 +45,7 @@ async function writeTables(show) {
   section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
   if (report) {
     section("accuracy", "What accuracy cost", ...accuracyParts(report));
-    if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch(() => []) : []));
+    if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch((fault) => [element("p", {}, "The maps cannot be drawn: " + fault.message)]) : []));
     section("materials", "Materials", materialsTable(report));
     section("energy", "Energy balance", energyTable(report.energy_balance));
     section("convergence", "Convergence", ...convergenceParts(report.solution));

@@ -1,9 +1,6 @@
 // Maps of grids of sensors: cells in false colours with contour lines through the places of the sensors.
-function planeOf(places, normals, count) {
-  const normal = new THREE.Vector3(normals[0], normals[1], normals[2]).normalize();
-  const right = Math.abs(normal.z) > 0.7 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3().crossVectors(new THREE.Vector3(0, 0, 1), normal);
-  right.addScaledVector(normal, -right.dot(normal)).normalize();
-  const upward = new THREE.Vector3().crossVectors(normal, right);
+function planeOf(axes) {
+  const right = new THREE.Vector3(...axes.right), upward = new THREE.Vector3(...axes.above);
   return (numbers, k) => {
     const place = new THREE.Vector3(numbers[k], numbers[k + 1], numbers[k + 2]);
     return [place.dot(right), place.dot(upward)];
@@ -45,9 +42,9 @@ function contour(lattice, points, values, level) {
   return pieces;
 }
 
-function sensorMap(name, unit, group, values) {
+function sensorMap(name, unit, axes, group, values) {
   const count = values.length;
-  const project = planeOf(group.places, group.normals, count);
+  const project = planeOf(axes);
   const points = Array.from({length: count}, (_, k) => project(group.places, 3 * k));
   const outlines = Array.from({length: count}, (_, k) => [0, 1, 2, 3].map((corner) => project(group.cells, 12 * k + 3 * corner)));
   const all = outlines.flat();
@@ -57,9 +54,10 @@ function sensorMap(name, unit, group, values) {
   const width = (high[0] - low[0]) * scaleFactor, height = (high[1] - low[1]) * scaleFactor;
   const to = ([x, y]) => [((x - low[0]) * scaleFactor).toFixed(1), (height - (y - low[1]) * scaleFactor).toFixed(1)];
   const known = Array.from(values).filter((value) => Number.isFinite(value));
-  const top = known.length > 0 && Math.max(...known) > 0 ? roundedUp(Math.max(...known)) : 1;
+  const least = known.reduce((a, b) => Math.min(a, b), Infinity), most = known.reduce((a, b) => Math.max(a, b), -Infinity);
+  const top = most > 0 ? roundedUp(most) : 1;
   const scale = {low: 0, high: top, logarithmic: false};
-  const label = `Map of ${name}, ${unit}: from ${shown(Math.min(...known))} to ${shown(Math.max(...known))}`;
+  const label = `Map of ${name}, ${unit}: from ${shown(least)} to ${shown(most)}`;
   const drawn = svg("svg", {viewBox: `0 0 ${(width + 90).toFixed(0)} ${(height + 10).toFixed(0)}`, width: (width + 90).toFixed(0), height: (height + 10).toFixed(0), role: "img", "aria-label": label});
   outlines.forEach((outline, k) => {
     const colour = "rgb(" + falseColour(shareOf(values[k], scale)).join(",") + ")";
@@ -87,9 +85,9 @@ async function sensorMaps(groups) {
   const maps = [];
   for (const group of groups) {
     if (!group.cells) continue;
-    const arrays = await unpackedAll({places: group.places, normals: group.normals, cells: group.cells, values: group.values, ...(group.daylight_factors ? {factors: group.daylight_factors} : {})});
-    maps.push(sensorMap(group.name, group.unit, arrays, arrays.values));
-    if (arrays.factors) maps.push(sensorMap(group.name + ", daylight factor", "%", arrays, arrays.factors));
+    const arrays = await unpackedAll({places: group.places, cells: group.cells, values: group.values, ...(group.daylight_factors ? {factors: group.daylight_factors} : {})});
+    maps.push(sensorMap(group.name, group.unit, group, arrays, arrays.values));
+    if (arrays.factors) maps.push(sensorMap(group.name + ", daylight factor", "%", group, arrays, arrays.factors));
   }
   return maps;
 }

@@ -40,7 +40,7 @@ def cells(self):
 def shown_in_notebook(self):
     """The page in a frame of its own."""
     page = html.escape(self.page().decode("utf-8"), quote=True)
-    return f'<iframe srcdoc="{page}" width="100%" height="700" style="border: 0" title="The solved scene"></iframe>'
+    return f'<iframe srcdoc="{page}" sandbox="allow-scripts" width="100%" height="700" style="border: 0" title="The solved scene"></iframe>'
 
 
 def described(self):
