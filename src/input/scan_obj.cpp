@@ -142,7 +142,8 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
         scan.short_faces.push_back(line.number);
         continue;
       }
-      scan = with_face(std::move(scan), {line.number, material, {}, scan.places.size()}, corners);
+      const std::size_t first_place = scan.places.size();
+      scan = with_face(std::move(scan), {line.number, material, {}, first_place}, corners);
       for (std::size_t k = 1; k < statement.size(); ++k)
         scan.places.push_back(place_of(statement[k], scan.picture_points.size()));
     } else if (keyword == "vt") {

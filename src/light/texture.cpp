@@ -113,11 +113,10 @@ Rgb TextureMeans::sum_to(double x, std::size_t row) const {
 
 // The integral over y, from one end of an edge to the other, of that of the colour along x from `base`. Between lines
 // of texels the latter is linear in x, so its value in the middle is exact.
-Rgb TextureMeans::outline_integral(Eigen::Vector2d from, const Eigen::Vector2d& to, double base) const {
+Rgb TextureMeans::outline_integral(const Eigen::Vector2d& begin, const Eigen::Vector2d& to, double base) const {
   Rgb sum{};
-  const Eigen::Vector2d step = to - from;
+  const Eigen::Vector2d step = to - begin;
   if (step.y() == 0) return sum;
-  const Eigen::Vector2d begin = from;
   Eigen::Vector2d next_line;  // whole numbers of texels
   for (int axis = 0; axis < 2; ++axis)
     next_line[axis] = step[axis] > 0 ? std::floor(begin[axis]) + 1 : std::ceil(begin[axis]) - 1;

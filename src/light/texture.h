@@ -43,7 +43,7 @@ class TextureMeans {
 
  private:
   Rgb sum_to(double x, std::size_t row) const;
-  Rgb outline_integral(Eigen::Vector2d from, const Eigen::Vector2d& to, double base) const;
+  Rgb outline_integral(const Eigen::Vector2d& begin, const Eigen::Vector2d& to, double base) const;
 
   TexturedReflectance textured_;
   std::vector<Rgb> sums_;  // at row * (width + 1) + column: of all texels of the row left of that column

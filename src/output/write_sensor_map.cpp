@@ -285,8 +285,9 @@ void write_sensor_map(const std::filesystem::path& file, std::span<const SensorG
     cairo_paint(cairo);
     set_text_size(cairo, map_text);
     for (std::size_t k = 0; k < maps.size(); ++k) {
+      const std::size_t row = k / columns;
       const Placed at{map_edge + static_cast<double>(k % columns) * wide,
-                      map_edge + line_height + static_cast<double>(k / columns) * high, scale};
+                      map_edge + line_height + static_cast<double>(row) * high, scale};
       draw_cells(cairo, maps[k], at, range);
       draw_isolines(cairo, maps[k], at, levels);
       cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);

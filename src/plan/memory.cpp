@@ -53,7 +53,7 @@ double bytes_of_a_patch(const AssemblyOptions& assembly, const AccuracyOptions& 
 }
 
 LightInMemory light_in_memory(const Plan& plan) {
-  return {simulates(plan.decisions, Effect::colour), simulates(plan.decisions, Effect::mirrors)};
+  return {simulates(plan, Effect::colour), simulates(plan, Effect::mirrors)};
 }
 
 double installed_bytes() {

@@ -92,9 +92,8 @@ py::list problems_of(const Scene& scene) {
   return list;
 }
 
-std::string plan_of(const Scene& of, const cli::SolveArguments& arguments) {
-  // Other threads may change materials from here on.
-  const Scene scene = of;
+// By value: other threads may change materials meanwhile.
+std::string plan_of(Scene scene, const cli::SolveArguments& arguments) {  // NOLINT(performance-unnecessary-value-param)
   const py::gil_scoped_release others;
   const ThreadLimit limit(arguments.request.resources.threads);
   check(arguments.request, scene);

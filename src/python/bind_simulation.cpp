@@ -70,7 +70,7 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
                      const py::object& progress) {
   const InterruptFlag flag;
   const Observer observer = InterruptFlag::observer(progress);
-  const auto result = std::make_shared<SolvedScene>();
+  auto result = std::make_shared<SolvedScene>();
   // What is changed of the scene later does not change this.
   result->scene = std::make_shared<const Scene>(*scene);
   result->request = arguments.request;
