@@ -125,6 +125,10 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   require_not_read(outputs, input.scene.inputs);
   require_not_read(outputs, given_files(arguments));
   check_limits(input.scene);
+  if (arguments.map.quantity == MapQuantity::daylight_factor && !has_daylight_factors(input.scene))
+    throw InputError("--map",
+                     "found daylight-factor, which is of a CIE overcast sky as the only light; expected one, as "
+                     "in --sky overcast:10000lx, or --map illuminance");
   if (const std::optional<Camera> camera = camera_for(arguments.picture, input.scene)) {
     const Reach reach = reach_of(input.scene);
     require_in_reach(reach, camera->eye, "--camera", "the eye");

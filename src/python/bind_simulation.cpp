@@ -57,6 +57,8 @@ SolveWith solve_by(const py::object& own) {
       throw InputError("own solver", "found " + std::to_string(solution.irradiance.cols()) +
                                          " columns; expected one for each of " +
                                          std::to_string(problem.exitance.cols()) + " bands");
+    if (!solution.irradiance.allFinite())
+      throw InputError("own solver", "found irradiances that are no finite numbers; expected a number for each patch");
     solution.radiosity = radiosity_from(problem, solution.irradiance);
     solution.direct_irradiance = transport.apply(problem.exitance);
     if (problem.direct_irradiance.size() > 0) solution.direct_irradiance += problem.direct_irradiance;
@@ -73,6 +75,7 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
   auto result = std::make_shared<SolvedScene>();
   // What is changed of the scene later does not change this.
   result->scene = std::make_shared<const Scene>(*scene);
+  check(*result->scene);
   result->request = arguments.request;
   result->command_line = arguments.command_line;
   Steps with;

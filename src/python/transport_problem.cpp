@@ -35,6 +35,7 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
 TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer) {
   // 1. The form factors as they are found: a run closes them
+  check(*scene);
   Request raw = request;
   raw.assembly.close = false;
   std::erase(raw.effects.force, Effect::closure);

@@ -140,6 +140,8 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
 
 }  // namespace
 
+bool has_daylight_factors(const Scene& scene) { return only_overcast_sky(scene).has_value(); }
+
 SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
   const std::vector<SensorPlace> places =
       place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));

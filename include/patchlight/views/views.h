@@ -22,6 +22,9 @@ struct SensorView {
 /// Cancelled.
 SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer = {});
 
+/// True when sensors have daylight factors: all light comes from a CIE overcast sky.
+bool has_daylight_factors(const Scene& scene);
+
 /// The surface of a solved scene, ready to be written. It refers to its scene and simulation, which must outlive it.
 struct SolvedSurface {
   const Scene& scene;
