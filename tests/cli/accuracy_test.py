@@ -144,10 +144,11 @@ class AccuracyTest(ToolTest):
         self.assertEqual(self.solve("-o", "a.ply", "--accuracy", "0.5", "--patches", "100", "-q").stderr, "")
 
     def test_without_bars_it_is_said_what_is_not_known(self):
-        for words, how in (((), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
+        for words, how in ((("--no-error-bars",), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
             done = self.solve("-o", "a.ply", "--patches", "100", *words)
             self.assertIn(f"errors from the size of the patches and from form factors: not known{how}", done.stdout)
-        self.assertNotIn("not known", self.solve("-o", "a.ply", "--patches", "100", "--error-bars").stdout)
+        for words in ((), ("--error-bars",)):
+            self.assertNotIn("not known", self.solve("-o", "a.ply", "--patches", "100", *words).stdout)
 
     def test_options_that_leave_no_error_bars_are_refused(self):
         for asked in (("--accuracy", "1%"), ("--time", "1s"), ("--error-bars",)):
@@ -187,7 +188,7 @@ class AccuracyTest(ToolTest):
             self.assertIn(f'Name="unit_{array}"'.encode(), written)
 
     def test_without_them_nothing_is_stated(self):
-        report, done = self.report("--patches", 200, "-o", "a.vtp")
+        report, done = self.report("--patches", 200, "--no-error-bars", "-o", "a.vtp")
         self.assertEqual((report["relative_error"], report["accuracy"]), (None, []))
         self.assertNotIn("error of the patches' means", done.stdout)
         written = (self.folder / "a.vtp").read_bytes()
