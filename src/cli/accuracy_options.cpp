@@ -39,8 +39,9 @@ void add_accuracy_options(CLI::App& command, Request& request) {
   command
       .add_flag_callback(
           "--no-error-bars", [&request] { request.accuracy.cheap_error_bars = false; },
-          "no error bars with pairs; rows of rays always have them")
-      ->excludes(bars);
+          "no error bars with pairs; rows of rays always have them; default: cheap\nones")
+      ->excludes(bars)
+      ->option_text(" ");
 }
 
 std::optional<std::string> note_on_accuracy(const Request& request) {

@@ -8,7 +8,7 @@ namespace patchlight::cli {
 void add_page_option(CLI::App& command, std::string& page) {
   add(command, "--html", "FILE",
       "one page for any browser, which needs no other file: the model\nto turn around, values, tables, pictures "
-      "(.html)",
+      "(.html); default: none",
       [&page](const std::string& text) {
         if (std::filesystem::path(text).extension() != ".html")
           throw refusal("--html", text, "a name that ends in .html");
