@@ -23,7 +23,7 @@ class FormatsTest(ToolTest):
 
     def test_standard_errors_of_sensors_say_where_they_guess(self):
         self.write("spots.txt", "0 0 0 0 0 1\n")
-        for options, guesses in (([], True), (["--error-bars"], False)):
+        for options, guesses in ((["--no-error-bars"], True), ([], False)):
             words = ["solve", "room.obj", "--patches", "100", "-o", "out.vtp", "--points", "spots.txt", *options]
             done = self.run_tool(*words)
             self.assertEqual(done.returncode, 0, done.stderr)
