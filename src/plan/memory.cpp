@@ -27,11 +27,12 @@ constexpr double bytes_per_patch = 1500;
 constexpr double bytes_of_ray_rows = 180;          // per patch of what rows all have, and for one band of light
 constexpr double bytes_in_colour = 1100;           // and for two more
 constexpr double bytes_of_ray = 4;                 // and for each of its rays
-constexpr double bytes_of_specular_ray = 16;       // which stop at mirrors and clear faces, too
+constexpr double bytes_of_specular_ray = 32;       // which stop at mirrors and clear faces, twice in the mean
 constexpr double bytes_kept = 600;                 // per patch of a solution that is kept in case the run is stopped
 constexpr double bytes_of_next_mesh = 1000;        // per patch where rows of rays are refined
 constexpr double bytes_of_coarse_transport = 300;  // per patch, what progressive refinement has learned from rows
 constexpr double bytes_of_program = 50e6;
+constexpr double bytes_per_polygon = 1500;  // of the scene, and of what finds them along a ray
 
 // Share of the machine's memory that may be taken when nothing is said.
 constexpr double usable_share = 0.8;
@@ -56,6 +57,8 @@ LightInMemory light_in_memory(const Plan& plan) {
   return {simulates(plan, Effect::colour), simulates(plan, Effect::mirrors)};
 }
 
+double bytes_of_polygons(const Plan& plan) { return bytes_per_polygon * static_cast<double>(plan.sides.front.size()); }
+
 double installed_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
@@ -76,7 +79,7 @@ double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const
 }
 
 double memory_needed(std::size_t patches, const Plan& plan) {
-  return memory_needed(patches, plan.assembly, plan.accuracy, light_in_memory(plan));
+  return memory_needed(patches, plan.assembly, plan.accuracy, light_in_memory(plan)) + bytes_of_polygons(plan);
 }
 
 bool may_keep_solution(std::size_t patches, const Plan& plan) {
@@ -87,7 +90,7 @@ double usable_memory(const Resources& resources) { return resources.memory.value
 
 // The number of patches for which memory_needed() is usable.
 double patches_that_fit(const Plan& plan) {
-  const double left = std::max(0.0, usable_memory(plan.resources) - bytes_of_program);
+  const double left = std::max(0.0, usable_memory(plan.resources) - bytes_of_program - bytes_of_polygons(plan));
   const double of_a_patch = bytes_of_a_patch(plan.assembly, plan.accuracy, light_in_memory(plan));
   const double of_a_pair = bytes_of_a_pair(plan.assembly, plan.accuracy);
   if (of_a_pair == 0) return std::max(1.0, left / of_a_patch);
