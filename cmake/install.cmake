@@ -3,10 +3,24 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+set(CPACK_PACKAGE_CONTACT "the patchlight authors <patchlight@localhost>")
+
+# As Debian wants manuals and changelogs: compressed, without name and time of the file.
+function(patchlight_compress from to)
+  execute_process(COMMAND gzip -9nc ${from} OUTPUT_FILE ${to} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# SOURCE_DATE_EPOCH gives the same bytes again.
+string(TIMESTAMP patchlight_packed "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(cmake/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
+patchlight_compress(${PROJECT_BINARY_DIR}/changelog ${PROJECT_BINARY_DIR}/changelog.gz)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/patchlight.1)
+patchlight_compress(${PROJECT_SOURCE_DIR}/docs/patchlight.1 ${PROJECT_BINARY_DIR}/patchlight.1.gz)
+
 set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
 install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
 install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
-install(FILES docs/patchlight.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+install(FILES ${PROJECT_BINARY_DIR}/patchlight.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
 install(TARGETS patchlight_core patchlight_io EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
 install(EXPORT patchlightTargets NAMESPACE patchlight:: DESTINATION ${patchlight_config_folder} COMPONENT library)
@@ -16,18 +30,23 @@ configure_package_config_file(cmake/patchlightConfig.cmake.in ${PROJECT_BINARY_D
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/patchlightConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/patchlightConfig.cmake ${PROJECT_BINARY_DIR}/patchlightConfigVersion.cmake
         DESTINATION ${patchlight_config_folder} COMPONENT library)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight RENAME copyright COMPONENT tool)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpatchlight-dev RENAME copyright COMPONENT library)
+foreach(package_of_component patchlight:tool libpatchlight-dev:library python3-patchlight:python)
+  string(REGEX MATCH "^(.*):(.*)$" both ${package_of_component})
+  set(documents ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_1})
+  if(CMAKE_MATCH_2 STREQUAL python AND NOT PATCHLIGHT_PYTHON)
+    continue()
+  endif()
+  install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT ${CMAKE_MATCH_2})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents} COMPONENT ${CMAKE_MATCH_2})
+endforeach()
 
 if(PATCHLIGHT_PYTHON)
   set(patchlight_python_destination lib/python3/dist-packages/patchlight)
   install(TARGETS patchlight_python LIBRARY DESTINATION ${patchlight_python_destination} COMPONENT python)
   install(DIRECTORY src/python/patchlight/ DESTINATION ${patchlight_python_destination} COMPONENT python FILES_MATCHING PATTERN *.py)
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-patchlight RENAME copyright COMPONENT python)
 endif()
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_CONTACT "the patchlight authors <patchlight@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL tool library)
@@ -35,15 +54,24 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME patchlight)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOL_DESCRIPTION "The tool: it reads models of rooms and buildings, finds form factors
+between their patches, solves for the light that goes back and forth, by
+day too, and says how far each value may be off. Results are values for
+ParaView, pictures, pages for the browser, lightmaps and maps of sensors.")
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is linked with
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and what CMake needs to find it:
+scenes, form factors, solvers, error bars and what is seen of a solution.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libstb-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
 if(PATCHLIGHT_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-patchlight)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The module for Python: scenes to read and to change, solutions as numpy
+arrays, form factors as a scipy operator, the solvers one by one, reports
+and pages for the browser.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy")

@@ -3,7 +3,8 @@
 
 usage: scripts/check_page.py TOOL FOLDER    writes pages, results and screenshots into FOLDER
 A page must open without a message on its console; of five patches clicked the values are those of the .vtp of the same
-run, and the place clicked lies on the patch. Names that are HTML stay text. Without Chromium it says so and ends well,
+run, and the place clicked lies on the patch. Names that are HTML stay text, panes let see what is behind them, the
+legend's range by day is of the inside, and no note stands there twice. Without Chromium it says so and ends well,
 unless CI is set.
 """
 import json
@@ -25,27 +26,36 @@ LUMINOUS = (179 * 0.2126, 179 * 0.7152, 179 * 0.0722)  # lm/W times the weights 
 
 # Clicks places of the canvas until five patches are found, and leaves what the page tells in place of all else.
 CLICKS = """<script>
+const data = JSON.parse(document.getElementById("data").textContent);
 setTimeout(() => {
-  const canvas = document.getElementById("canvas"), found = {};
+  const canvas = document.getElementById("canvas"), found = {}, panes = [], hasPane = data.model.materials.includes("glass");
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const drawn = copy.getContext("2d", {willReadFrequently: true});
+  if (canvas.clientWidth > 0) drawn.drawImage(canvas, 0, 0);
   const choose = (name) => {
     const select = document.getElementById("quantity");
     if (![...select.options].some((option) => option.value === name)) return;
     select.value = name;
     select.dispatchEvent(new Event("change"));
   };
-  for (let k = 0; k < 400 && Object.keys(found).length < 5 && canvas.clientWidth > 0; ++k) {
+  for (let k = 0; k < 400 && (hasPane || Object.keys(found).length < 5) && canvas.clientWidth > 0; ++k) {
     const box = canvas.getBoundingClientRect();
     const at = {clientX: box.left + box.width * (0.05 + 0.9 * ((k * 0.618034) % 1)), clientY: box.top + box.height * (0.05 + 0.9 * ((k * 0.754878) % 1)), bubbles: true};
     canvas.dispatchEvent(new MouseEvent("click", at));
     const told = {};
     for (const value of document.querySelectorAll("#values dd")) told[value.dataset.name] = value.dataset.value;
-    if (told.patch !== undefined) found[told.patch] = told;
+    if (told.patch !== undefined && Object.keys(found).length < 5) found[told.patch] = told;
+    if (told.material === "glass")
+      panes.push(Math.min(...drawn.getImageData((at.clientX - box.left) * copy.width / box.width, (at.clientY - box.top) * copy.height / box.height, 1, 1).data.slice(0, 3)));
   }
   choose("luminance");
   const facts = {state: document.documentElement.dataset.state, patches: Object.values(found), bold: document.querySelectorAll("b, blink").length, injected: window.injected === true,
     title: document.title, lost: document.getElementById("lost").textContent, headings: [...document.querySelectorAll("h2")].map((heading) => heading.textContent),
     unlabelled: [...document.querySelectorAll("input, select")].filter((control) => control.labels.length === 0).length, options: document.getElementById("quantity").options.length,
-    ticks: document.getElementById("ticks").textContent};
+    ticks: document.getElementById("ticks").textContent, panes, extremes: document.getElementById("extremes").textContent, top: Number(document.getElementById("high").value),
+    notes: [...document.querySelectorAll("#notes p, #notes li")].map((note) => note.firstChild.textContent.replace(/^(remark|warning|error): /, "").trim()),
+    looks: data.model.looks.map((look) => look.name)};
   const pre = document.createElement("pre");
   pre.id = "check";
   pre.textContent = JSON.stringify(facts);
@@ -112,6 +122,18 @@ def faults_of_patch(told, points, corners, cells):
             yield f"patch {patch}: {name} is {found} on the page, {list(values)} in the .vtp"
 
 
+def faults_of_glass(facts, cells):
+    """A room by day with one pane: what is seen of it, and what the range of luminances goes by."""
+    if not facts["panes"] or min(facts["panes"]) < 64:
+        yield f"the pane is not seen through: its pixels are {facts['panes']} of 255"
+    if facts["looks"] != ["natural, exposed for the inside", "natural, exposed for the outside"]:
+        yield f"there are the looks {facts['looks']}"
+    # The outside is lit by the whole sky, and far brighter.
+    brightest = max(luminance[0] for luminance in cells["luminance"])
+    if " inside" not in facts["extremes"] or not facts["top"] < brightest / 2:
+        yield f"the range ends at {facts['top']} where {brightest} is the most of all: {facts['extremes']}"
+
+
 def check(browser, folder, name):
     """The faults of one page; prints what it saw."""
     page = folder / f"{name}.html"
@@ -128,6 +150,10 @@ def check(browser, folder, name):
         faults.append(f"found {len(facts['patches'])} patches by clicks; expected 5")
     if facts["bold"] or facts["injected"]:
         faults.append("a name became HTML")
+    if len(set(facts["notes"])) < len(facts["notes"]):
+        faults.append(f"a note stands there twice: {facts['notes']}")
+    if name == "glass":
+        faults += faults_of_glass(facts, cells)
     if facts["unlabelled"]:
         faults.append("a control has no label")
     print(f"page: {name}: {page.stat().st_size / 1e6:.2f} MB, patches "
@@ -154,6 +180,19 @@ def write_hostile(folder):
     (folder / "hostile.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def write_glass(folder):
+    """A room whose floor, walls and ceiling are closed by one pane."""
+    (folder / "glass.mtl").write_text("newmtl wall\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.2\n", encoding="utf-8")
+    corners = [(x, y, z) for z in (0, 3) for x, y in ((0, 0), (5, 0), (5, 4), (0, 4))]
+    faces = {"wall": [(4, 3, 2, 1), (5, 6, 7, 8), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8), (1, 2, 10, 9), (11, 12, 6, 5),
+                      (1, 9, 11, 5), (10, 2, 6, 12)], "glass": [(9, 10, 12, 11)]}
+    corners += [(1, 0, 1), (4, 0, 1), (1, 0, 2.5), (4, 0, 2.5)]
+    lines = ["mtllib glass.mtl"] + [f"v {x} {y} {z}" for x, y, z in corners]
+    for material, own in faces.items():
+        lines += [f"usemtl {material}"] + ["f " + " ".join(map(str, face)) for face in own]
+    (folder / "glass.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def solve(tool, folder, name, *words):
     """Solves a scene with a page and a .vtp."""
     subprocess.run([tool, "solve", *map(str, words), "--quiet", "--html", folder / f"{name}.html", "-o",
@@ -178,9 +217,11 @@ def main():
     solve(tool, folder, "two_rooms", ROOT / "meshes/two_rooms.obj", "--patches", 3000)
     solve(tool, folder, "accuracy", ROOT / "meshes/cornell_box.obj", "--sides", "front", "--accuracy", "1%")
     solve(tool, folder, "daylight", rooms, "--sky", "overcast:10000lx", "--patches", 3000)
+    write_glass(folder)
+    solve(tool, folder, "glass", folder / "glass.obj", "--up", "z", "--sky", "overcast:10000lx", "--patches", 400)
     solve(tool, folder, "hostile", folder / "hostile.obj", "--patches", 300)
     failed = False
-    for name in ("cornell_box", "two_rooms", "accuracy", "daylight", "hostile"):
+    for name in ("cornell_box", "two_rooms", "accuracy", "daylight", "glass", "hostile"):
         for fault in check(browser, folder, name):
             failed = True
             print(f"error: page: {name}: {fault}", file=sys.stderr)

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Builds the fuzzers, and lets each try to break a reader, or the mesher and the form factors, for some seconds.
 # usage: scripts/fuzz.sh SECONDS [TARGET...]    SECONDS for each target; targets: obj mtl ply stl off dae ifc hbjson rad xml
-#        gltf glb toml ies epw npy mesh
+#        gltf glb toml ies epw spd npy mesh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(obj mtl ply stl off dae ifc hbjson rad xml gltf glb toml ies epw npy mesh)
+[ ${#targets[@]} -gt 0 ] || targets=(obj mtl ply stl off dae ifc hbjson rad xml gltf glb toml ies epw spd npy mesh)
 
 clang=$(command -v clang++-14 || command -v clang++ || true)
 if [ -z "$clang" ]; then

@@ -50,7 +50,7 @@ TIMES = re.compile(r"second|_s$|rays_per_second|rate_of_rays|command_line|versio
 
 def run(tool, folder):
     """Exit codes and messages of all commands; their files are in `folder`."""
-    for file in MESHES.iterdir():
+    for file in (file for file in MESHES.iterdir() if file.is_file()):
         shutil.copy(file, folder)
     (folder / "points.txt").write_text("0.2 0.2 0.2 0 0 1\n0.4 0.3 0.1 0 0 1\n0.3 0.4 0.5 1 0 0\n")
     answers = {}

@@ -41,3 +41,6 @@
 #include "patchlight/transport/transport_operator.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
+
+/// How diffuse surfaces light each other: scenes, form factors, solvers, error bars and what is seen of a solution.
+namespace patchlight {}

@@ -49,10 +49,10 @@ struct AccuracyStep {
   double display = 0;  ///< of the radiosity at the points of patches, which are drawn with their means
   double seconds = 0;  ///< since the start
   double cpu_seconds = 0;
+  bool inside = false;  ///< of Simulation::enclosed alone, as by daylight where nothing is named as of interest
 };
 
-/// The relative errors of the patches on one side of closed shells with openings, each as a share of the light that
-/// these patches reflect.
+/// The relative errors of the patches inside, or outside, each as a share of the light that these patches reflect.
 struct SpaceErrors {
   std::string space;    ///< "inside" or "outside"
   AccuracyStep errors;  ///< with the number of patches; no seconds
@@ -73,8 +73,11 @@ struct Simulation {
   EnergyBalance balance;
   std::optional<ErrorBars> error_bars;   ///< when asked for
   std::vector<AccuracyStep> accuracy;    ///< with error bars: every mesh, the last one is this one
-  std::vector<SpaceErrors> spaces = {};  ///< with error bars, where closed shells with openings divide the patches of
-                                         ///< interest: inside and outside; else empty
+  std::vector<SpaceErrors> spaces = {};  ///< with error bars, where there is an inside and an outside among the
+                                         ///< patches: by daylight the enclosed and the others, else as closed shells
+                                         ///< with openings divide the patches of interest; else empty
+  Eigen::VectorXd enclosed = {};         ///< by daylight 1 for each patch of a space that holds what light gets in, as
+                                         ///< a room with windows, else 0; empty without sky and sun
   std::vector<StageCost> costs;
   std::vector<std::string> notes = {};  ///< of the plan, and what of the scene, when looked at, may not be as meant
   Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it

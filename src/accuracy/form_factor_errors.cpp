@@ -1,7 +1,7 @@
 #include "patchlight/accuracy/error_bars.h"
-#include "patchlight/solve/solve.h"
 
 #include "accuracy/errors.h"
+#include "accuracy/spanning_bands.h"
 #include "base/conjugate_directions.h"
 #include "mesh/means_around.h"
 #include "solve/scattering.h"
@@ -53,40 +53,77 @@ Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index col
   return column_of_each;
 }
 
-}  // namespace
+// What draws of the errors change of the light, (D + S (lambda_i + lambda_j)) B = D B + lambda o (S B) + S (lambda o
+// B), as irradiance.
+struct Draws {
+  const RowTransport& transport;
+  const RadiosityProblem& problem;
+  Field B;
+  Field drawn;   // D B, a column for each band of B and one for D 1, for one draw after the other
+  Field lambda;  // a column for each draw; none where nothing is closed
+  Field H;       // F B, the same
 
-Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance) {
-  const RadiosityProblem of_irradiance{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
-  // Few directions: by a million patches these are what takes most of the memory.
-  const SolverOptions options{.solver = usual_solver(transport, problem), .relative_error = 0.05, .restart = 8};
-  return irradiance + solve(transport, of_irradiance, options).irradiance;
+  Field of_band(Eigen::Index band) const;
+  Field of_draw(Eigen::Index draw) const;
+};
+
+// The changes of the irradiance in one band, by all draws.
+Field Draws::of_band(Eigen::Index band) const {
+  Field irradiance = column_of_draws(drawn, B.cols() + 1, band).colwise() / problem.area.array();
+  if (lambda.size() > 0) irradiance += lambda.colwise() * H.col(band) + transport.apply(lambda.colwise() * B.col(band));
+  return irradiance;
 }
+
+// The changes in all bands, by one draw.
+Field Draws::of_draw(Eigen::Index draw) const {
+  Field irradiance = drawn.middleCols(draw * (B.cols() + 1), B.cols()).colwise() / problem.area.array();
+  if (lambda.size() > 0) irradiance += H.colwise() * lambda.col(draw) + transport.apply(B.colwise() * lambda.col(draw));
+  return irradiance;
+}
+
+// The mean square of what the draws come to through all reflections. Few bands are followed one by one with all draws;
+// many by draws, as a few of them tell the others then.
+Field mean_squares(const Draws& draws_of, const SpanningBands& spanning) {
+  const RadiosityProblem& problem = draws_of.problem;
+  const Eigen::Index bands = problem.scattering.reflectance.cols();
+  Field squares = Field::Zero(problem.area.size(), bands);
+  if (spanning.spans_all()) {
+    for (Eigen::Index band = 0; band < bands; ++band) {
+      const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
+      const Field e = followed(draws_of.transport, {of_draws, {}, problem.area}, draws_of.of_band(band));
+      squares.col(band) = e.square().rowwise().sum() / draws;
+    }
+    return squares;
+  }
+  for (Eigen::Index draw = 0; draw < draws; ++draw) {
+    const Field irradiance = spanning.all_bands(draws_of.of_draw(draw));
+    squares += followed(draws_of.transport, problem, irradiance).square() / draws;
+  }
+  return squares;
+}
+
+}  // namespace
 
 Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                          const SolvedProblem& solved, const FieldView& B) {
+  constexpr double told = 1e-3;  // of the light, by few bands: less than draws are sure of by far
   const RadiosityProblem& problem = solved.problem;
-  const bool closed = solved.closed;
-  const Eigen::Index bands = B.cols();
-  const Eigen::ArrayXd A = problem.area.array();
+  const SpanningBands spanning = spanning_bands(B, problem.area, told);
   // 1. D B and D 1.
-  Field x(B.rows(), bands + 1);
-  x << B, Field::Ones(B.rows(), 1);
-  const Field drawn = random_errors({mesh, problem.area, raw.entry_errors, raw.error}, x, draws, seed);
-  const Field lambda = closed ? row_corrections(transport, problem.area, column_of_draws(drawn, bands + 1, bands))
-                              : Field::Zero(B.rows(), draws);
-  const Field H = closed ? transport.apply(B) : Field();
-
-  Field squares = Field::Zero(B.rows(), bands);
-  for (Eigen::Index band = 0; band < bands; ++band) {
-    // 2. (D + S (lambda_i + lambda_j)) B = D B + lambda o (S B) + S (lambda o B), as irradiance.
-    Field irradiance = column_of_draws(drawn, bands + 1, band).colwise() / A;
-    if (closed) irradiance += lambda.colwise() * H.col(band) + transport.apply(lambda.colwise() * B.col(band));
-    // 3. Through all reflections.
-    const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
-    const Field e = followed(transport, {of_draws, {}, problem.area}, irradiance);
-    squares.col(band) = e.square().rowwise().sum() / draws;
+  const Field light = spanning.of(B);
+  Field x(light.rows(), light.cols() + 1);
+  x << light, Field::Ones(light.rows(), 1);
+  Draws drawn{transport, problem,
+              light,     random_errors({mesh, problem.area, raw.entry_errors, raw.error}, x, draws, seed),
+              {},        {}};
+  // 2. With rows closed.
+  if (solved.closed) {
+    drawn.lambda =
+        row_corrections(transport, problem.area, column_of_draws(drawn.drawn, light.cols() + 1, light.cols()));
+    drawn.H = transport.apply(light);
   }
-  return squares.sqrt();
+  // 3. Through all reflections.
+  return mean_squares(drawn, spanning).sqrt();
 }
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,

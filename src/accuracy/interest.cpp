@@ -73,20 +73,39 @@ bool is_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, const Intere
          (group < scene.groups.size() && scene.groups[group] == interest.name);
 }
 
+// 1 for each patch of what is named, on whichever side of it. A side alone means that of everything.
+Eigen::VectorXd meant_by(const Scene& scene, const PatchMesh& mesh, const Interest& interest) {
+  if (interest.name.empty()) return Eigen::VectorXd::Ones(mesh.size());
+  const std::vector<bool> into_room = facing_into(scene, mesh, interest.name);
+  Eigen::VectorXd meant(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) meant[i] = is_of(scene, mesh, i, interest) || into_room[i];
+  return meant;
+}
+
+// By daylight there is so much more light outside that an error relative to all of it says nothing of the rooms.
+Eigen::VectorXd interest_by_default(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) {
+  for (PatchIndex i = 0; i < enclosed.size(); ++i) {
+    if (enclosed[i] == 1 && (scene.materials[mesh.material[i]].reflectance > 0).any()) return enclosed;
+  }
+  return Eigen::VectorXd::Ones(mesh.size());
+}
+
 }  // namespace
 
-Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names) {
-  if (names.empty()) return Eigen::VectorXd::Ones(mesh.size());
+Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names,
+                            const Eigen::VectorXd& enclosed) {
+  if (names.empty()) return interest_by_default(scene, mesh, enclosed);
   const std::vector<Interest> interests = interests_named(scene, names);
   const bool sides =
       std::any_of(interests.begin(), interests.end(), [](const Interest& i) { return i.is_inside.has_value(); });
   const Eigen::VectorXd within = sides ? inside_shells(scene, mesh, Dividing::all) : Eigen::VectorXd();
   Eigen::VectorXd interest = Eigen::VectorXd::Zero(mesh.size());
   for (const Interest& one : interests) {
-    const std::vector<bool> into_room = facing_into(scene, mesh, one.name);
+    const Eigen::VectorXd meant = meant_by(scene, mesh, one);
+    const bool by_shells = enclosed.size() == 0 || (sides && total(meant.cwiseProduct(within)) > 0);
+    const Eigen::VectorXd& inner = by_shells ? within : enclosed;
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
-      const bool is_meant = is_of(scene, mesh, i, one) || into_room[i];
-      if (is_meant && (!one.is_inside || *one.is_inside == (within[i] == 1))) interest[i] = 1;
+      if (meant[i] == 1 && (!one.is_inside || *one.is_inside == (inner[i] == 1))) interest[i] = 1;
     }
   }
   return interest;
@@ -105,7 +124,7 @@ void require_reflecting(const Scene& scene, const RadiosityProblem& problem, con
 void require_names(const Scene& scene, const std::vector<std::string>& names) {
   const std::set<std::string> known = names_in(scene);
   for (const std::string& name : names) {
-    if (known.contains(interest_named(name, known).name)) continue;
+    if (name == inside || name == outside || known.contains(interest_named(name, known).name)) continue;
     const std::vector<std::string> all(known.begin(), known.end());
     const std::string hint = suggestion(name, all);
     std::string message = "found no material, object, group or room '" + name + "' to be interested in";

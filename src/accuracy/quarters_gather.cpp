@@ -117,9 +117,9 @@ std::array<std::vector<Ray>, 4> Gather::hemisphere_rays(PatchIndex patch) const 
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::hemisphere));
   std::array<std::vector<Ray>, 4> rays;
   for (std::size_t q = 0; q < 4; ++q) {
-    const PatchCorners quarter = quarter_of(corners, static_cast<int>(q));
+    const QuadPoints points(quarter_of(corners, static_cast<int>(q)).points);
     for (const auto& sample : samples)
-      rays[q].push_back({square_to_quad(quarter.points, sample[0], sample[1]),
+      rays[q].push_back({points.at(sample[0], sample[1]),
                          frame * occluder_.held_direction(mesh_.polygon[patch], sample[2], sample[3]),
                          mesh_.polygon[patch]});
   }

@@ -3,6 +3,7 @@
 #include "patchlight/solve/solve.h"
 
 #include "accuracy/errors.h"
+#include "accuracy/spanning_bands.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
@@ -45,8 +46,11 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
 
 Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
                                  const Eigen::VectorXd& weight) {
+  constexpr double told = 1e-3;  // of the weights, by few bands
   const Field B = solved.solution.radiosity;
-  const Field noise = B.square() * by_variances(errors, weight_of_squares(solved, weight));
+  const Field weights = weight_of_squares(solved, weight);
+  const SpanningBands spanning = spanning_bands(weights, solved.problem.area, told);
+  const Field noise = B.square() * spanning.all_bands(by_variances(errors, spanning.of(weights)));
   return summed_by_parent(mesh, noise.rowwise().sum()).col(0).matrix();
 }
 
@@ -85,7 +89,7 @@ Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityPr
   const Field wanted = interest.array().replicate(1, problem.exitance.cols());
   const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
   const Solver solver = usual_solver(transport, problem);
-  const Solution found = solve(transport, adjoint, {.solver = solver, .relative_error = 0.05});
+  const Solution found = solve(transport, adjoint, {.solver = solver, .relative_error = 0.05, .patch_bounds = false});
   const Field psi = found.irradiance.colwise() + interest.array();
   return psi.rowwise().maxCoeff().matrix();
 }

@@ -45,6 +45,10 @@ bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
 
 }  // namespace
 
+Eigen::VectorXd inside_patches(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) {
+  return enclosed.size() > 0 ? enclosed : inside_shells(scene, mesh, Dividing::with_openings);
+}
+
 Eigen::VectorXd inside_shells(const Scene& scene, const PatchMesh& mesh, Dividing by) {
   const Shells shells = shells_of(scene);
   std::vector<Shell> dividing;

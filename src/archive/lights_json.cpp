@@ -21,6 +21,8 @@ namespace patchlight {
 namespace {
 
 constexpr std::array<const char*, 3> web_types = {"a", "b", "c"};
+constexpr std::array<const char*, 5> opening_shapes = {"box", "upright_cylinder", "cylinder_by_length",
+                                                       "cylinder_by_width", "ellipsoid"};
 
 template <std::size_t n>
 std::size_t place_in(const std::array<const char*, n>& names, const std::string& name) {
@@ -37,6 +39,7 @@ Json json_of_web(const PhotometricWeb& web) {
           {"horizontal", web.horizontal},
           {"candela", web.candela},
           {"opening", json_of(web.opening)},
+          {"opening_shape", opening_shapes[static_cast<std::size_t>(web.shape)]},
           {"lamp_lumens", web.lamp_lumens},
           {"watts", web.watts},
           {"tilt", web.tilt},
@@ -55,6 +58,8 @@ PhotometricWeb web_of(const Json& json) {
   web.horizontal = json.at("horizontal").get<std::vector<double>>();
   web.candela = json.at("candela").get<std::vector<double>>();
   web.opening = vector_of(json.at("opening"));
+  web.shape =
+      static_cast<OpeningShape>(place_in(opening_shapes, json.value("opening_shape", std::string(opening_shapes[0]))));
   web.lamp_lumens = json.at("lamp_lumens").get<double>();
   web.watts = json.at("watts").get<double>();
   web.tilt = json.at("tilt").get<std::vector<double>>();

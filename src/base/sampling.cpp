@@ -74,17 +74,23 @@ Eigen::Vector2d square_to_triangle(double u, double v) {
   return {root * (1 - v), root * v};
 }
 
-Point square_to_quad(const std::array<Point, 4>& corners, double u, double v) {
-  const auto& [p0, p1, p2, p3] = corners;
-  // Two triangles (p0, p1, p2) and (p0, p2, p3), chosen by area; u is stretched to be used again.
-  const double first_area = (p1 - p0).cross(p2 - p0).norm();
-  const double second_area = (p2 - p0).cross(p3 - p0).norm();
-  const double first_share = first_area / (first_area + second_area);
-  // A triangle has no second one, not even for u = 1, to which single precision may round.
-  const bool in_first = u < first_share || !(second_area > 0);
-  const double stretched = in_first ? u / first_share : (u - first_share) / (1 - first_share);
+Point square_to_quad(const std::array<Point, 4>& corners, double u, double v) { return QuadPoints(corners).at(u, v); }
+
+QuadPoints::QuadPoints(const std::array<Point, 4>& corners)
+    : origin_(corners[0]), edges_{corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]} {
+  const double first_area = edges_[0].cross(edges_[1]).norm();
+  const double second_area = edges_[1].cross(edges_[2]).norm();
+  first_share_ = first_area / (first_area + second_area);
+  has_second_ = second_area > 0;
+}
+
+// Two triangles, chosen by area; u is stretched to be used again. A triangle has no second one, not even for u = 1, to
+// which single precision may round.
+Point QuadPoints::at(double u, double v) const {
+  const bool in_first = u < first_share_ || !has_second_;
+  const double stretched = in_first ? u / first_share_ : (u - first_share_) / (1 - first_share_);
   const Eigen::Vector2d b = square_to_triangle(stretched, v);
-  return in_first ? p0 + b[0] * (p1 - p0) + b[1] * (p2 - p0) : p0 + b[0] * (p2 - p0) + b[1] * (p3 - p0);
+  return in_first ? origin_ + b[0] * edges_[0] + b[1] * edges_[1] : origin_ + b[0] * edges_[1] + b[1] * edges_[2];
 }
 
 Vector square_to_cosine_hemisphere(double u, double v) {

@@ -39,6 +39,19 @@ Eigen::Vector2d square_to_triangle(double u, double v);
 /// Uniformly distributed point of a planar convex quadrilateral (or of a triangle, when corners 2 and 3 coincide).
 Point square_to_quad(const std::array<Point, 4>& corners, double u, double v);
 
+/// The same for many points of one quadrilateral.
+class QuadPoints {
+ public:
+  explicit QuadPoints(const std::array<Point, 4>& corners);
+  Point at(double u, double v) const;
+
+ private:
+  Point origin_;
+  std::array<Vector, 3> edges_;  // to the other corners
+  double first_share_ = 1;       // of the area: that of the triangle of the first two edges
+  bool has_second_ = false;
+};
+
 /// Direction of the hemisphere around +z with density cos(theta) / pi.
 Vector square_to_cosine_hemisphere(double u, double v);
 

@@ -23,7 +23,7 @@ void add_refinement_options(CLI::App& command, Request& request) {
       .add_option(
           "--interest", request.accuracy.interest,
           "material, object, group or room, or a side of one, e.g. room.inside:\nthe error is that of its patches, and "
-          "refinement serves them; may be\nrepeated; default: all")
+          "refinement serves them; may be\nrepeated; default: by daylight .inside, all that is enclosed, else all")
       ->allow_extra_args(false)
       ->option_text("NAME");
 }

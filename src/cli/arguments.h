@@ -38,6 +38,13 @@ struct PictureSettings {
   PictureQuality quality = PictureQuality::draft;
   std::array<int, 2> size{800, 800};  ///< width and height, pixels
   double error = 0.01;                ///< PictureOptions::error
+  int most_samples = 64;              ///< PictureOptions::most_samples
+};
+
+/// A lightmap that is wanted.
+struct LightmapSettings {
+  std::filesystem::path folder;  ///< empty: none
+  LightmapOptions options;
 };
 
 /// What `patchlight solve` or `patchlight relight` is asked to do. A path that is empty stands for an output that is
@@ -48,11 +55,12 @@ struct SolveArguments {
   ReadOptions read;
   Request request;  ///< metres
 
-  std::vector<std::filesystem::path> results;  ///< .vtp, .ply, .glb
+  std::vector<std::filesystem::path> results;  ///< .vtp, .vtu, .ply, .glb
   std::filesystem::path series;                ///< .pvd
   std::filesystem::path report;                ///< .json
   std::filesystem::path page;                  ///< .html
   PictureSettings picture;
+  LightmapSettings lightmap;
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
   std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts; empty: none
@@ -83,7 +91,7 @@ struct CheckArguments {
   ReadOptions read;
   std::optional<Sides> sides;              ///< whose number is wanted, if any
   std::filesystem::path problems;          ///< .vtp
-  std::filesystem::path picture;           ///< .png
+  PictureSettings picture;                 ///< file, camera, views and size of it
   std::optional<double> ambient_distance;  ///< m, of the picture
   std::filesystem::path json;              ///< .json
   bool json_on_stdout = false;             ///< instead of the text
@@ -158,6 +166,7 @@ struct RenderArguments {
   std::filesystem::path solution;  ///< input: .vtp
   std::filesystem::path page;      ///< .html; empty when it is not wanted
   PictureSettings picture;
+  LightmapSettings lightmap;
   std::filesystem::path observers;   ///< .csv; empty: not wanted
   std::filesystem::path difference;  ///< input: another solution, .vtp; empty: none
   int threads = 0;                   ///< 0: all processors

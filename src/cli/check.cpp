@@ -253,22 +253,23 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   return "next: patchlight " + command + (has_more ? " and the options given here" : "") + '\n';
 }
 
-// From the first camera of the scene, if there is one.
+// From the camera that is asked for, else the first of the scene, if there is one.
 void write_model_picture(const CheckArguments& arguments, const Scene& scene) {
   const double distance = arguments.ambient_distance.value_or(bounds(scene).sizes().mean() / 10);
-  PictureOptions options;
-  if (!scene.cameras.empty()) options.camera = scene.cameras.front();
-  write_picture_file(arguments.picture, ambient_picture(scene, options, distance), scene);
+  const PictureOptions options{.camera = camera_for(arguments.picture, scene),
+                               .width = arguments.picture.size[0],
+                               .height = arguments.picture.size[1]};
+  write_picture_file(arguments.picture.file, ambient_picture(scene, options, distance), scene);
 }
 
 }  // namespace
 
 ExitCode check(const CheckArguments& arguments) {
-  for (const auto* file : {&arguments.json, &arguments.problems, &arguments.picture}) {
+  for (const auto* file : {&arguments.json, &arguments.problems, &arguments.picture.file}) {
     if (!file->empty()) check_writable(*file);
   }
   const Scene scene = read_scene(arguments.models, arguments.read);
-  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture}},
+  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture.file}},
                    scene.inputs);
   SceneReport report = survey(scene);
   if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
@@ -276,7 +277,7 @@ ExitCode check(const CheckArguments& arguments) {
   const WritingGuard guard;
   if (!arguments.json.empty()) write_survey(arguments.json, scene, report);
   if (!arguments.problems.empty()) write_problems(arguments.problems, scene, report);
-  if (!arguments.picture.empty()) write_model_picture(arguments, scene);
+  if (!arguments.picture.file.empty()) write_model_picture(arguments, scene);
   if (arguments.json_on_stdout) {
     std::cout << survey_json(scene, report) << std::flush;
   } else {

@@ -5,6 +5,7 @@
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
 #include "cli/parse_value.h"
+#include "cli/picture_options.h"
 
 #include <filesystem>
 #include <optional>
@@ -21,7 +22,8 @@ constexpr int most_models = 1'000'000;
 struct CheckOptions {
   ModelOptions model;
   std::optional<Sides> sides;
-  std::string problems, json, picture;
+  std::string problems, json;
+  PictureGiven picture;
   std::optional<double> ambient_distance;
   bool wants_json = false;
   bool all = false;
@@ -63,7 +65,8 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
   add(command, "--picture", "FILE",
       "a picture of the model as it is, without light (.png, .hdr): its\ncolors, darker where faces are near to each "
       "other",
-      [&to](const std::string& text) { to.picture = text; });
+      [&to](const std::string& text) { to.picture.file = text; });
+  add_view_options(command, to.picture);
   add(command, "--ambient-occlusion", "LENGTH",
       "how near, with its unit, as in 2m; default: a tenth of the model's\nmean extent",
       [&to](const std::string& text) { to.ambient_distance = length("--ambient-occlusion", text); });
@@ -83,13 +86,15 @@ CheckArguments finish_check(const CheckOptions& options) {
   if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp") {
     throw UsageError("--vtk: found '" + options.problems + "'; expected a name that ends in .vtp");
   }
-  arguments.picture = options.picture;
+  const std::string& picture = options.picture.file;
+  if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".hdr"))
+    throw UsageError("--picture: found '" + picture + "'; expected a name that ends in .png or .hdr");
+  arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
+  if (arguments.picture.views.size() > 1) throw UsageError("--view: found several; expected one for check --picture");
   arguments.ambient_distance = options.ambient_distance;
-  if (!options.picture.empty() && arguments.picture.extension() != ".png" && arguments.picture.extension() != ".hdr")
-    throw UsageError("--picture: found '" + options.picture + "'; expected a name that ends in .png or .hdr");
-  if (options.ambient_distance && options.picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
+  if (options.ambient_distance && picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
   const std::vector<OutputFile> outputs = {
-      {"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture}};
+      {"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture.file}};
   require_distinct(outputs);
   require_not_read(outputs, arguments.models);
   return arguments;

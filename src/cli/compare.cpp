@@ -1,5 +1,7 @@
 #include "cli/compare.h"
 
+#include "patchlight/views/picture.h"
+
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "base/rounded.h"
@@ -11,12 +13,10 @@
 #include "output/whole_file.h"
 #include "output/write_comparison.h"
 #include "page/write_page.h"
-#include "render/tone_map.h"
 
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <numbers>
 #include <sstream>
 
 namespace patchlight::cli {
@@ -97,10 +97,8 @@ ExitCode compare(const CompareArguments& arguments) {
   }
 
   // 2. Write tables, plots and series
-  const double exposure =
-      exposure_for(simulation.solution.radiosity / std::numbers::pi, simulation.problem.area, bands_of(scene));
   const WritingGuard guard;
-  const Provenance provenance{arguments.command_line, exposure, scene_hash(scene)};
+  const Provenance provenance{arguments.command_line, exposure_of(scene, simulation), scene_hash(scene)};
   write_comparison(arguments.output, scene, comparison, provenance, observer);
   if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();

@@ -16,7 +16,7 @@ namespace patchlight::cli {
 
 struct CompareCommandOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   std::string output, page;
   CompareOptions compare;
   bool quiet = false;

@@ -16,7 +16,7 @@ namespace patchlight::cli {
 
 struct FormFactorOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   std::string output;
   std::optional<MatrixFormat> format;
   std::optional<GroupBy> by;

@@ -18,11 +18,13 @@ Sides sides_named(const std::string& text) {
   return choice<Sides>("--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
 }
 
-void add_patch_options(CLI::App& command, Request& request) {
+void add_patch_options(CLI::App& command, RequestGiven& request) {
   command.option_defaults()->group("Patches");
-  add(command, "--max-edge", "LENGTH", "longest edge of a patch, in model units; default: from --patches",
+  add(command, "--max-edge", "LENGTH",
+      "longest edge of a patch, in model units or with its unit, as in\n30cm; default: from --patches",
       [&request](const std::string& text) {
-        request.mesh.max_edge = number("--max-edge", text, "a length above 0", [](double x) { return x > 0; });
+        request.max_edge_in_metres = !to_number(text);
+        request.mesh.max_edge = length("--max-edge", text);
       });
   add(command, "--patches", "N",
       "number of patches, met within 10 %; more where the model's\nmany faces take more; default " +
@@ -99,8 +101,9 @@ void add_machine_options(CLI::App& command, Request& request) {
       [&request](const std::string& text) { request.resources.memory = bytes("--memory", text); });
 }
 
-Request in_metres(Request request, double metres_per_unit) {
-  if (request.mesh.max_edge) *request.mesh.max_edge *= metres_per_unit;
+Request in_metres(const RequestGiven& given, double metres_per_unit) {
+  Request request = given;
+  if (request.mesh.max_edge && !given.max_edge_in_metres) *request.mesh.max_edge *= metres_per_unit;
   return request;
 }
 

@@ -4,8 +4,10 @@
 #include "cli/arguments.h"
 #include "cli/daylight_options.h"
 #include "cli/parse_value.h"
+#include "scene/spectral_bands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace patchlight::cli {
@@ -37,9 +39,44 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
       "tells "
       "what went;\ndefault: all stay",
       [&options](const std::string& text) { options.detail = length("--detail", text); });
+  add(command, "--maintenance-factor", "NUMBER",
+      "the share of their light when new that lamps and luminaires give,\nas 0.8 or 80%; daylight is not changed; "
+      "default: what the scene\nfile says, else 1",
+      [&options](const std::string& text) {
+        options.maintenance_factor = text.ends_with('%')
+                                         ? share("--maintenance-factor", text)
+                                         : number("--maintenance-factor", text, "a number above 0 and up to 1, as 0.8",
+                                                  [](double x) { return x > 0 && x <= 1; });
+        if (*options.maintenance_factor > 1) throw refusal("--maintenance-factor", text, "at most 100%");
+      });
+  add(command, "--bands", "N|rgb|auto",
+      "spectral bands of equal widths from 380 to 780 nm, or linear\nRGB, whatever has a spectrum; default: as the "
+      "scene file says,\nelse auto: RGB where nothing has a spectrum, or as many as\n--color-error needs",
+      [&options](const std::string& text) { options.bands = text; });
+  add(command, "--color-error", "DE", "how far colours may be off by the number of bands, CIE dE00;\ndefault 1",
+      [&options](const std::string& text) {
+        options.color_error =
+            number("--color-error", text, "a colour difference above 0", [](double value) { return value > 0; });
+      });
   command.add_flag("--keep-faces", options.keep_faces,
                    "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
                    "and share edges become one");
+}
+
+// What --bands and --color-error ask for, if they do.
+std::optional<BandsAsked> bands_asked(const ModelOptions& options) {
+  if (options.bands.empty() && !options.color_error) return std::nullopt;
+  BandsAsked asked;
+  if (options.color_error) asked.color_error = *options.color_error;
+  if (options.bands.empty() || options.bands == "auto") return asked;
+  const std::string expected = "a number of bands from 1 to 400, rgb or auto";
+  if (options.color_error) throw refusal("--bands", options.bands, "auto, or no --color-error beside it");
+  asked.rgb = options.bands == "rgb";
+  if (asked.rgb) return asked;
+  const std::optional<double> bands = to_number(options.bands);
+  if (!bands || !is_number_of_bands(*bands)) throw refusal("--bands", options.bands, expected);
+  asked.edges_nm = equal_edges(static_cast<Eigen::Index>(*bands));
+  return asked;
 }
 
 }  // namespace
@@ -99,8 +136,8 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
                   "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "
                   "specular_reflectance (as "
                   "of a\nmirror), transmittance (straight) or diffuse_transmittance (of\na translucent sheet; 0 to 1), "
-                  "exitance (W/m^2), radiance\n(W/(m^2 sr)) or index (of refraction, 1 or more, one value);\nmay be "
-                  "repeated; default: as in the model")
+                  "exitance (W/m^2), radiance\n(W/(m^2 sr)) or index (of refraction, 1 or more, one value;\n1: a "
+                  "sheet with holes, the same at all angles); may be\nrepeated; default: as in the model")
       ->allow_extra_args(false)
       ->option_text("MATERIAL.QUANTITY=R,G,B");
 }
@@ -122,9 +159,11 @@ ReadOptions read_options(const ModelOptions& options) {
   read.only = options.only;
   read.leave_out = options.leave_out;
   read.detail = options.detail;
+  read.maintenance_factor = options.maintenance_factor;
   read.keep_faces = options.keep_faces;
   read.daylight = options.daylight;
   read.settings = material_settings(options.settings);
+  read.bands = bands_asked(options);
   return read;
 }
 

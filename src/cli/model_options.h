@@ -19,8 +19,11 @@ struct ModelOptions {
   std::optional<Vector> up;
   std::vector<std::string> only, leave_out;
   double detail = 0;
+  std::optional<double> maintenance_factor;
   bool keep_faces = false;
   DaylightSetting daylight;
+  std::string bands;
+  std::optional<double> color_error;
   std::string confine;
 };
 

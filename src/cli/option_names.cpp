@@ -57,6 +57,8 @@ const std::vector<OptionName>& usual_names() {
                                                 {"accuracy.interest", "--interest"},
                                                 {"accuracy.error_bars", "--error-bars"},
                                                 {"resources.memory", "--memory"},
+                                                {"lightmap.texel", "--texel"},
+                                                {"lightmap.folder", "--lightmap"},
                                                 {"given.form_factors", "--form-factors"},
                                                 {"given.ray_rows", "--form-factors"},
                                                 {"compare.relaxation", "--relaxation"},

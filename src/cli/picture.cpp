@@ -3,9 +3,15 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_image.h"
 
+#include "base/rounded.h"
+#include "cli/picture_options.h"
 #include "output/write_picture.h"
 #include "render/lens.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace patchlight::cli {
@@ -40,8 +46,26 @@ Picture make_picture(const PictureSettings& settings, const Scene& scene, const 
                        .width = settings.size[0],
                        .height = settings.size[1],
                        .quality = settings.quality,
-                       .error = settings.error},
+                       .error = settings.error,
+                       .most_samples = settings.most_samples},
                       observer);
+}
+
+std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture) {
+  constexpr double tolerance = 1.1;
+  if (picture.unfinished || !picture.reached_error || *picture.reached_error <= tolerance * settings.error)
+    return std::nullopt;
+  const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
+  std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
+                     " (root mean square), not the " + rounded(100 * settings.error, 2) +
+                     "% asked for, as a pixel has " + std::to_string(settings.most_samples) + " samples at most; ";
+  // Errors fall with the root of the samples' number at the slowest.
+  const double times = std::pow(*picture.reached_error / settings.error, 2);
+  const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
+  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(wanted));
+  if (samples > static_cast<std::uint32_t>(settings.most_samples))
+    text += "--picture-samples " + std::to_string(samples) + " allows more, ";
+  return text + "a larger --picture-error asks for less";
 }
 
 void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace patchlight::cli {
 
@@ -17,6 +18,10 @@ std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& s
 /// The picture that is asked for. \throws Cancelled.
 Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
                      const Observer& observer);
+
+/// A sentence that tells the error of a finished picture and how to mend it, where it is more than a tenth above the
+/// one that is asked for.
+std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture);
 
 /// Writes it, with a legend where its colours are false. \throws OutputError.
 void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene);

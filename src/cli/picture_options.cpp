@@ -6,6 +6,7 @@
 #include "scene/projection.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -75,14 +76,16 @@ Camera with_projection(Camera camera, Projection projection) {
 }
 
 void require_picture_of(const PictureGiven& given, const std::string& file_option) {
-  const char* const needs = given.camera               ? "--camera"
-                            : !given.views.empty()     ? "--view"
-                            : given.colors             ? "--false-color"
-                            : given.quality            ? "--quality"
-                            : given.size               ? "--size"
-                            : given.error              ? "--picture-error"
-                            : !given.error_map.empty() ? "--picture-error-map"
-                                                       : nullptr;
+  const bool picture_alone = !given.for_observers;
+  const char* const needs = given.camera && picture_alone           ? "--camera"
+                            : !given.views.empty() && picture_alone ? "--view"
+                            : given.colors                          ? "--false-color"
+                            : given.quality                         ? "--quality"
+                            : given.size                            ? "--size"
+                            : given.error                           ? "--picture-error"
+                            : given.most_samples                    ? "--picture-samples"
+                            : !given.error_map.empty()              ? "--picture-error-map"
+                                                                    : nullptr;
   if (given.file.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs " + file_option + " FILE");
   if (given.camera && !given.views.empty())
     throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
@@ -103,12 +106,18 @@ std::filesystem::path with_view(const std::filesystem::path& file, const std::st
 
 }  // namespace
 
+void add_view_options(CLI::App& command, PictureGiven& given) {
+  add_camera_options(command, given);
+  add(command, "--size", "WIDTHxHEIGHT", "of the picture in pixels; default 800x800",
+      [&given](const std::string& text) { given.size = size_of_picture(text); });
+}
+
 void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality usual) {
   add(command, "--false-color", "luminance", "picture in false colors with a legend in cd/m^2; default: natural colors",
       [&given](const std::string& text) {
         given.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
       });
-  add_camera_options(command, given);
+  add_view_options(command, given);
   add(command, "--quality", "draft|final",
       std::string("picture of the smoothed solution, or of light that is gathered\nat each of its points; default ") +
           (usual == PictureQuality::draft ? "draft" : "final"),
@@ -116,12 +125,17 @@ void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality 
         given.quality = choice<PictureQuality>("--quality", text,
                                                {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
       });
-  add(command, "--size", "WIDTHxHEIGHT", "of the picture in pixels; default 800x800",
-      [&given](const std::string& text) { given.size = size_of_picture(text); });
   add(command, "--picture-error", "NUMBER",
       "wanted standard error of the luminance of a final picture's\npixels, relative; dark pixels are granted more; "
       "default 1%",
       [&given](const std::string& text) { given.error = relative_error("--picture-error", text); });
+  add(command, "--picture-samples", "N", "samples of a final picture's pixel at most, a power of two; default 64",
+      [&given](const std::string& text) {
+        const std::uint64_t samples =
+            whole_number("--picture-samples", text, least_picture_samples, most_picture_samples);
+        if (!std::has_single_bit(samples)) throw refusal("--picture-samples", text, "a power of two, as 128 or 256");
+        given.most_samples = static_cast<int>(samples);
+      });
   add(command, "--picture-error-map", "FILE",
       "that error of each pixel in false colors with a legend in\ncd/m^2 (.png); default: not written",
       [&given](const std::string& text) {
@@ -142,14 +156,17 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
   settings.quality = given.quality.value_or(usual);
   if (given.size) settings.size = *given.size;
   settings.error = given.error.value_or(settings.error);
+  settings.most_samples = given.most_samples.value_or(settings.most_samples);
   const auto& extensions = picture_extensions();
   if (!given.file.empty() &&
       std::find(extensions.begin(), extensions.end(), settings.file.extension()) == extensions.end())
     throw UsageError(file_option + ": found '" + given.file + "'; expected a name that ends in .png, .hdr or .exr");
   if (!given.error_map.empty() && settings.error_map.extension() != ".png")
     throw UsageError("--picture-error-map: found '" + given.error_map + "'; expected a name that ends in .png");
-  if (settings.quality == PictureQuality::draft && (given.error || !given.error_map.empty()))
-    throw UsageError(std::string(given.error ? "--picture-error" : "--picture-error-map") +
+  if (settings.quality == PictureQuality::draft && (given.error || given.most_samples || !given.error_map.empty()))
+    throw UsageError(std::string(given.error          ? "--picture-error"
+                                 : given.most_samples ? "--picture-samples"
+                                                      : "--picture-error-map") +
                      " is of final pictures; give --quality final");
   if (given.colors && settings.file.extension() != ".png")
     throw UsageError("--false-color is of pictures in PNG; found '" + given.file +

@@ -13,6 +13,7 @@
 #include "pipeline/first_mesh.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
+#include "scene/problem_face.h"
 
 #include <iomanip>
 #include <iostream>
@@ -55,6 +56,14 @@ std::string cost_lines(const ExpectedCost& cost) {
          rounded(cost.direct_light_seconds, 2) + ", closure and solution " + rounded(cost.solve_seconds, 2) + '\n';
 }
 
+// What the estimate does not hold.
+std::string further_costs(const Scene& scene, const Plan& plan) {
+  std::size_t sensors = 0;
+  for (const SensorGroup& group : scene.sensors) sensors += group.sensors.size();
+  return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
+         (sensors > 0 ? counted(sensors, "sensor") + ", " : "") + "pictures and pages, where they are asked for\n";
+}
+
 }  // namespace
 
 ExitCode plan(const PlanArguments& arguments) {
@@ -77,7 +86,7 @@ ExitCode plan(const PlanArguments& arguments) {
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
-            << lines_of(plan.decisions, true) << cost_lines(cost) << std::flush;
+            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(scene, plan) << std::flush;
   return good;
 }
 

@@ -17,7 +17,7 @@ namespace patchlight::cli {
 
 struct PlanOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   std::string json;
 };
 

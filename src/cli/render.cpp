@@ -3,26 +3,30 @@
 #include "patchlight/base/error.h"
 #include "patchlight/views/views.h"
 
+#include "accuracy/enclosed.h"
 #include "archive/read_solution.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
+#include "cli/lightmap_options.h"
 #include "cli/messages.h"
 #include "cli/picture.h"
 #include "cli/picture_options.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/whole_file.h"
+#include "output/write_lightmap.h"
 #include "output/write_observers.h"
 #include "output/write_picture.h"
 #include "page/write_page.h"
-#include "render/tone_map.h"
 #include "scene/limits.h"
+#include "visibility/tracing.h"
 
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -52,16 +56,34 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
+// With what is enclosed by day, which the file does not tell.
+Simulation stored_solution(const std::filesystem::path& file, const Scene& scene) {
+  Simulation simulation = read_solution(file, scene);
+  if (scene.sky || scene.sun)
+    simulation.enclosed = enclosed_patches(scene, simulation.tracing->all_faces(scene), simulation.mesh);
+  return simulation;
+}
+
 void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                             const std::vector<Picture>& pictures) {
   const SolvedSurface surface = surface_of(scene, simulation);
   Page page{.scene = scene,
-            .provenance = {.command_line = arguments.command_line, .scene_hash = scene_hash(scene)},
+            .provenance = {.command_line = arguments.command_line,
+                           .exposure = exposure_of(scene, simulation),
+                           .scene_hash = scene_hash(scene)},
             .surface = &surface};
-  const Eigen::VectorXd& area = simulation.problem.area;
-  page.provenance.exposure = exposure_for(display_radiance(simulation), area, bands_of(scene));
   for (const Picture& picture : pictures) page.pictures.push_back(&picture);
   write_page(arguments.page, page);
+}
+
+// Returns what is said of it.
+std::string write_lightmap_of(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
+                              const Observer& observer) {
+  const Lightmap map = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
+  const WritingGuard guard;
+  write_lightmap(arguments.lightmap.folder, scene, simulation, map,
+                 {.command_line = arguments.command_line, .scene_hash = scene_hash(scene)});
+  return lightmap_line(map, arguments.lightmap);
 }
 
 }  // namespace
@@ -75,6 +97,7 @@ ExitCode render(const RenderArguments& arguments) {
     if (!one.error_map.empty()) check_writable(one.error_map);
   }
   if (!arguments.page.empty()) check_writable(arguments.page);
+  if (!arguments.lightmap.folder.empty()) check_lightmap_writable(arguments.lightmap.folder);
 
   // 2. Read the scene and its solution
   const ThreadLimit limit(arguments.threads);
@@ -83,9 +106,9 @@ ExitCode render(const RenderArguments& arguments) {
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   check_limits(scene);
   require_cameras(wanted, scene);
-  const Simulation simulation = read_solution(arguments.solution, scene);
+  const Simulation simulation = stored_solution(arguments.solution, scene);
   std::optional<Simulation> other;
-  if (!arguments.difference.empty()) other = read_solution(arguments.difference, scene);
+  if (!arguments.difference.empty()) other = stored_solution(arguments.difference, scene);
 
   // 3. Take the pictures, and write each as soon as it is there; the first Ctrl-C ends with the one at hand
   std::vector<std::filesystem::path> written;
@@ -96,6 +119,7 @@ ExitCode render(const RenderArguments& arguments) {
     written.push_back(arguments.observers);
   }
   std::vector<Picture> taken;
+  std::vector<std::string> missed_errors;
   bool stopped = false, unfinished = false;
   for (const PictureSettings& one : wanted) {
     if (one.file.empty()) break;
@@ -116,6 +140,7 @@ ExitCode render(const RenderArguments& arguments) {
       write_error_map(one.error_map, picture);
       written.push_back(one.error_map);
     }
+    if (const auto missed = missed_error(one, picture); missed && !arguments.quiet) missed_errors.push_back(*missed);
     stopped = stopped || interrupted();
     if (!arguments.page.empty()) taken.push_back(std::move(picture));
     if (stopped) break;
@@ -125,8 +150,14 @@ ExitCode render(const RenderArguments& arguments) {
     write_page_of_pictures(arguments, scene, simulation, taken);
     written.push_back(arguments.page);
   }
+  std::string said;
+  if (!stopped && !arguments.lightmap.folder.empty()) {
+    said = write_lightmap_of(arguments, scene, simulation, observer);
+    written.push_back(arguments.lightmap.folder);
+  }
   line.hide();
-  if (!arguments.quiet) std::cout << files_line(written) << std::flush;
+  for (const std::string& missed : missed_errors) print_message("warning", missed);
+  if (!arguments.quiet) std::cout << said << files_line(written) << std::flush;
   if (!stopped) return good;
   print_message("warning", unfinished ? "interrupted; the last picture is unfinished, with larger errors than asked for"
                                       : "interrupted; what is written is finished");

@@ -2,6 +2,7 @@
 
 #include "cli/add_option.h"
 #include "cli/distinct_files.h"
+#include "cli/lightmap_options.h"
 #include "cli/model_options.h"
 #include "cli/page_option.h"
 #include "cli/parse_value.h"
@@ -12,10 +13,23 @@
 #include <vector>
 
 namespace patchlight::cli {
+namespace {
+
+void require_solution(const std::string& option, const std::string& text) {
+  if (text.ends_with(".vtu"))
+    throw refusal(
+        option, text,
+        "a name that ends in .vtp: grids (.vtu) have no facts that are texts, which pictures need; patchlight "
+        "solve writes both with -o RESULT.vtu -o RESULT.vtp");
+  if (!text.ends_with(".vtp")) throw refusal(option, text, "a name that ends in .vtp");
+}
+
+}  // namespace
 
 struct RenderOptionsGiven {
   ModelOptions model;
   PictureGiven picture;
+  LightmapGiven lightmap;
   std::string solution, observers, difference, page;
   int threads = 0;
   bool quiet = false;
@@ -28,7 +42,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
   add_model_options(command, to.model);
   add(command, "--solution", "FILE", "what patchlight solve has written for this model (.vtp)",
       [&to](const std::string& text) {
-        if (!text.ends_with(".vtp")) throw refusal("--solution", text, "a name that ends in .vtp");
+        require_solution("--solution", text);
         to.solution = text;
       });
   command.option_defaults()->group("Results and pictures");
@@ -43,17 +57,17 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
       "another solution of this model, as with other patches (.vtp):\nboth beside each other, and by how much their "
       "luminances differ\nin false colors",
       [&to](const std::string& text) {
-        if (!text.ends_with(".vtp")) throw refusal("--difference", text, "a name that ends in .vtp");
+        require_solution("--difference", text);
         to.difference = text;
       });
   add(command, "--observers", "FILE",
       "vertical and cylindrical illuminance, background luminance and\nUGR at the cameras of the scene file, or at "
-      "those "
-      "of --view (.csv)",
+      "those of\n--view or --camera (.csv)",
       [&to](const std::string& text) {
         if (!text.ends_with(".csv")) throw refusal("--observers", text, "a name that ends in .csv");
         to.observers = text;
       });
+  add_lightmap_options(command, to.lightmap);
   add_page_option(command, to.page);
   command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
@@ -67,8 +81,8 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
     throw UsageError("render: found no model; expected: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
   if (options.solution.empty())
     throw UsageError("render: found no solution; expected --solution RESULT.vtp, which patchlight solve has written");
-  if (options.picture.file.empty() && options.observers.empty())
-    throw UsageError("render: nothing would be written; expected -o VIEW.png");
+  if (options.picture.file.empty() && options.observers.empty() && options.lightmap.folder.empty())
+    throw UsageError("render: nothing would be written; expected -o VIEW.png, --observers or --lightmap");
   if (options.picture.file.empty() && !options.page.empty())
     throw UsageError("--html shows the pictures of patchlight render; expected -o VIEW.png");
   if (!options.difference.empty() && (!options.picture.file.ends_with(".png") || options.picture.colors))
@@ -80,11 +94,10 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
   arguments.page = options.page;
   arguments.observers = options.observers;
   arguments.difference = options.difference;
+  arguments.lightmap = lightmap_settings(options.lightmap);
   PictureGiven given = options.picture;
-  // Without a picture the views are those of observers.
-  if (given.file.empty()) given.views.clear();
+  given.for_observers = !options.observers.empty();
   arguments.picture = picture_settings(given, "-o", PictureQuality::final);
-  arguments.picture.views = options.picture.views;
   arguments.threads = options.threads;
   arguments.quiet = options.quiet;
   std::vector<std::filesystem::path> read = arguments.models;
@@ -93,8 +106,11 @@ RenderArguments finish_render(const RenderOptionsGiven& options) {
   std::vector<OutputFile> outputs = picture_files(arguments.picture, "-o");
   outputs.push_back({"--observers", arguments.observers});
   outputs.push_back({"--html", arguments.page});
+  require_outside_lightmap(arguments.lightmap, outputs);
+  outputs.push_back({"--lightmap", arguments.lightmap.folder});
   require_distinct(outputs);
   require_not_read(outputs, read);
+  if (!arguments.lightmap.folder.empty()) require_not_read_from({"--lightmap", arguments.lightmap.folder}, read);
   return arguments;
 }
 

@@ -3,6 +3,7 @@
 #include "patchlight/output/write_result.h"
 
 #include "cli/add_option.h"
+#include "cli/lightmap_options.h"
 #include "cli/mesh_options.h"
 #include "cli/page_option.h"
 #include "cli/parse_value.h"
@@ -65,10 +66,11 @@ bool is_map(const path& file) { return file.extension() == ".svg" || file.extens
 
 void require_consistent(const std::string& command, const SolutionOptions& options) {
   if (options.results.empty() && options.series.empty() && options.picture.file.empty() && options.report.empty() &&
-      options.page.empty() && options.points.empty() && options.points_outputs.empty()) {
+      options.page.empty() && options.lightmap.folder.empty() && options.points.empty() &&
+      options.points_outputs.empty()) {
     throw UsageError(command +
-                     ": nothing would be written; give at least one of -o, --html, --series, --picture, --report, "
-                     "--points");
+                     ": nothing would be written; give at least one of -o, --html, --series, --picture, "
+                     "--lightmap, --report, --points");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
@@ -133,8 +135,8 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
   command.option_defaults()->group("Results and pictures");
   command
       .add_option("-o,--output", options.results,
-                  "solved patches: for ParaView (.vtp), or with vertex colors for\nviewers and the web (.ply, .glb); "
-                  "may be repeated")
+                  "solved patches: for ParaView (.vtp; .vtu for tools that take\nunstructured grids alone), or with "
+                  "vertex colors for viewers and\nthe web (.ply, .glb); may be repeated")
       ->allow_extra_args(false)
       ->option_text("FILE");
   add(command, "--ambient-occlusion", "LENGTH",
@@ -149,6 +151,7 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
   add_file(command, "--picture", options.picture.file,
            "a picture of the solution (.png), or its radiances (.hdr, .exr)");
   add_picture_options(command, options.picture, PictureQuality::draft);
+  add_lightmap_options(command, options.lightmap);
   add_points_options(command, options);
 }
 
@@ -196,6 +199,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   arguments.report = options.report;
   arguments.page = options.page;
   arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
+  arguments.lightmap = lightmap_settings(options.lightmap);
   if (arguments.picture.views.size() > 1)
     throw UsageError("--view: found several; expected one, as patchlight render takes pictures of more");
   arguments.points = options.points;
@@ -207,7 +211,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   if (!arguments.points_outputs.empty() && !may_have_sensors(arguments, options)) {
     throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
   }
-  const auto is_vtk = [](const path& result) { return result.extension() == ".vtp"; };
+  const auto is_vtk = [](const path& result) { return result.extension() == ".vtp" || result.extension() == ".vtu"; };
   if (options.ambient_distance && std::none_of(arguments.results.begin(), arguments.results.end(), is_vtk))
     throw UsageError("--ambient-occlusion is written into results for ParaView; expected -o RESULT.vtp");
   arguments.ambient_distance = options.ambient_distance;
@@ -220,14 +224,17 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
   if (options.quiet) arguments.verbosity = Verbosity::quiet;
   if (options.verbose) arguments.verbosity = Verbosity::verbose;
   require_distinct(outputs_of(arguments));
+  require_outside_lightmap(arguments.lightmap, outputs_of(arguments));
   require_not_read(outputs_of(arguments), given_files(arguments));
   require_untouched_folder(arguments);
   return arguments;
 }
 
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {
-  std::vector<OutputFile> files = {
-      {"--series", arguments.series}, {"--report", arguments.report}, {"--html", arguments.page}};
+  std::vector<OutputFile> files = {{"--series", arguments.series},
+                                   {"--report", arguments.report},
+                                   {"--html", arguments.page},
+                                   {"--lightmap", arguments.lightmap.folder}};
   for (OutputFile& file : picture_files(arguments.picture, "--picture")) files.push_back(std::move(file));
   for (const path& result : arguments.results) files.push_back({"-o", result});
   for (const path& file : arguments.points_outputs) files.push_back({"--points-output", file});

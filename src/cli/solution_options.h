@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/distinct_files.h"
+#include "cli/lightmap_options.h"
 #include "cli/picture_options.h"
 
 #include <CLI/App.hpp>
@@ -17,6 +18,7 @@ struct SolutionOptions {
   std::vector<std::string> results;
   std::string series, report, page, points;
   PictureGiven picture;
+  LightmapGiven lightmap;
   std::vector<std::string> points_outputs;
   MapOptions map;
   std::optional<double> ambient_distance;
@@ -26,8 +28,8 @@ struct SolutionOptions {
   bool verbose = false;
 };
 
-/// Adds -o, --series, --report, --html, --picture with its own, --points and --points-output. What is parsed lands in
-/// `options`, which must outlive the command; so below.
+/// Adds -o, --series, --report, --html, --picture with its own, --lightmap, --texel, --points and --points-output. What
+/// is parsed lands in `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
 /// Adds --no-closure, --solver, --relaxation, --tolerance, --max-iterations and --max-rows, which land in `request`.

@@ -11,6 +11,7 @@
 #include "cli/accuracy_options.h"
 #include "cli/checkpoint.h"
 #include "cli/interrupt.h"
+#include "cli/lightmap_options.h"
 #include "cli/option_names.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -20,14 +21,15 @@
 #include "cli/summary.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
+#include "output/write_lightmap.h"
 #include "output/write_points.h"
 #include "output/write_sensor_map.h"
 #include "output/write_series.h"
 #include "page/write_page.h"
 #include "pipeline/stage_clock.h"
 #include "plan/check_request.h"
-#include "render/tone_map.h"
 #include "scene/limits.h"
+#include "scene/section.h"
 
 #include <algorithm>
 #include <deque>
@@ -46,6 +48,8 @@ struct Views {
   SensorView sensors;
   std::optional<Picture> picture;
   std::optional<Picture> page_picture;  // where a page is wanted and no picture
+  std::optional<Lightmap> lightmap;
+  std::optional<InputError> lightmap_error;
 };
 
 // All that is computed before anything is written.
@@ -104,6 +108,7 @@ class Iterates {
 void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.results) check_writable(file);
   if (!arguments.series.empty()) check_series_writable(arguments.series);
+  if (!arguments.lightmap.folder.empty()) check_lightmap_writable(arguments.lightmap.folder);
   for (const auto* file : {&arguments.report, &arguments.page, &arguments.picture.file, &arguments.picture.error_map}) {
     if (!file->empty()) check_writable(*file);
   }
@@ -124,6 +129,10 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   require_distinct(outputs);
   require_not_read(outputs, input.scene.inputs);
   require_not_read(outputs, given_files(arguments));
+  if (const OutputFile lightmap{"--lightmap", arguments.lightmap.folder}; !lightmap.file.empty()) {
+    require_not_read_from(lightmap, input.scene.inputs);
+    require_not_read_from(lightmap, given_files(arguments));
+  }
   check_limits(input.scene);
   if (arguments.map.quantity == MapQuantity::daylight_factor && !has_daylight_factors(input.scene))
     throw InputError("--map",
@@ -152,6 +161,16 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
     looking.finish(Stage::render);
   } else if (!arguments.page.empty()) {
     views.page_picture = make_picture(arguments.picture, scene, simulation, observer);
+    looking.finish(Stage::render);
+  }
+  if (!arguments.lightmap.folder.empty()) {
+    try {
+      views.lightmap = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
+    } catch (const InputError& error) {
+      views.lightmap_error = error;  // the solution is not lost for it
+    } catch (const Cancelled&) {
+      simulation.unfinished = true;
+    }
     looking.finish(Stage::render);
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
@@ -194,10 +213,9 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   if (!may_write_what_is_there()) throw Cancelled();
   results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
-  const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
-  const double exposure = exposure_for(display_radiance(simulation), area, bands_of(results.scene));
-  results.provenance = {
-      .command_line = arguments.command_line, .exposure = exposure, .scene_hash = scene_hash(results.scene)};
+  results.provenance = {.command_line = arguments.command_line,
+                        .exposure = exposure_of(results.scene, simulation),
+                        .scene_hash = scene_hash(results.scene)};
 
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
@@ -207,6 +225,12 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   return results;
 }
 
+// What the plane of a grid cuts of the model.
+std::vector<std::array<Point, 2>> section_at(const SensorGroup& group, const Scene& scene) {
+  if (group.sensors.empty()) return {};
+  return section_of(scene, group.sensors[0].point, group.sensors[0].normal);
+}
+
 // As a table, or as maps.
 void write_readings(const std::filesystem::path& file, const Results& results, MapOptions map) {
   const Readings& readings = results.views.sensors.readings;
@@ -214,6 +238,8 @@ void write_readings(const std::filesystem::path& file, const Results& results, M
     return write_points(file, results.scene.sensors, readings);
   map.up = results.scene.up;
   map.north = results.scene.north;
+  map.north_known = results.scene.sun || results.scene.sky;
+  for (const SensorGroup& group : results.scene.sensors) map.sections.push_back(section_at(group, results.scene));
   write_sensor_map(file, results.scene.sensors, readings, map);
 }
 
@@ -253,6 +279,11 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
   }
   for (const Path& file : views.points_outputs) {
     write_to(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
+  }
+  if (views.lightmap) {
+    if (interrupted()) throw Cancelled();
+    write_lightmap(arguments.lightmap.folder, results.scene, results.simulation, *views.lightmap, results.provenance);
+    written.push_back(arguments.lightmap.folder);
   }
   write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {
@@ -298,10 +329,16 @@ ExitCode solve(const SolveArguments& arguments) {
     if (const std::string note = checkpoint.note(); !note.empty()) print_message("note", note);
     for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
     for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
+    if (results.views.picture) {
+      if (const auto missed = missed_error(arguments.picture, *results.views.picture))
+        print_message("warning", *missed);
+    }
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
                          how_to_know_errors(arguments, results.report.solution.unfinished));
+    if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
     std::cout << files_line(written) << std::flush;
   }
+  if (results.views.lightmap_error) throw InputError(*results.views.lightmap_error);
   if (results.report.solution.unfinished) {
     print_message("warning", explain_unfinished(results.report));
     return interrupted_run;

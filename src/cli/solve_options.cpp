@@ -17,7 +17,7 @@ namespace patchlight::cli {
 
 struct SolveOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   SolutionOptions solution;
   std::string form_factors;
   std::string checkpoint;

@@ -13,7 +13,7 @@ namespace patchlight::cli {
 
 struct StudyCommandOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   StudyOptions study;
   std::string output, page;
   bool quiet = false;

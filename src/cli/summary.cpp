@@ -4,6 +4,7 @@
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/text_table.h"
+#include "light/colour.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +55,11 @@ std::string parts(const AccuracyStep& step) {
 std::string errors(const Report& report) {
   std::string on;
   for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
-  std::string text = "error of the patches' means" + on + " about " + parts(report.accuracy.back());
+  const AccuracyStep& step = report.accuracy.back();
+  if (step.inside) on = " inside";
+  std::string text = "error of the patches' means" + on + " about " + parts(step);
   for (const auto& [space, part] : report.spaces) {
+    if (step.inside && space == "inside") continue;
     text += "\n  " + space + ", " + std::to_string(part.patches) +
             " patches, of the light that is reflected there: " + parts(part);
   }
@@ -90,12 +94,17 @@ std::string steps_table(const std::vector<AccuracyStep>& steps) {
 std::string energy(const Report& report) {
   const EnergyBalance& balance = report.balance;
   const bool row_sums_known = report.form_factors.row_sum.has_value();
+  const bool is_spectral = are_of_wavelengths(report.scene.bands);
+  // Watts of wavelengths add up.
+  const auto in_words = [is_spectral](const Eigen::ArrayXd& values) {
+    return is_spectral ? rounded(values.sum()) : bands(values);
+  };
   std::ostringstream text;
-  text << "flux in W per band: emitted " << bands(balance.emitted)
-       << ((balance.arriving > 0).any() ? "; arriving from luminaires, sun and sky " + bands(balance.arriving) : "")
-       << "; absorbed " << bands(balance.absorbed) << "; escaped " << bands(balance.escaped) << "; lost at backs "
-       << bands(balance.lost_at_backs)
-       << (row_sums_known ? "; form factor defect " + bands(balance.defect) + "; imbalance "
+  text << (is_spectral ? "flux in W, all bands: emitted " : "flux in W per band: emitted ") << in_words(balance.emitted)
+       << ((balance.arriving > 0).any() ? "; arriving from luminaires, sun and sky " + in_words(balance.arriving) : "")
+       << "; absorbed " << in_words(balance.absorbed) << "; escaped " << in_words(balance.escaped) << "; lost at backs "
+       << in_words(balance.lost_at_backs)
+       << (row_sums_known ? "; form factor defect " + in_words(balance.defect) + "; imbalance "
                           : "; imbalance with the form factor defect ")
        << rounded(balance.imbalance, 2) << " of the flux";
   return text.str();
@@ -166,17 +175,20 @@ std::string details(const Report& report) {
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 
+std::string error_text(double error) { return std::isnan(error) ? "not known" : rounded(error, 2); }
+
 std::string sensor_lines(const Report& report, const std::string& how_to_know_errors) {
   const SensorFacts& sensors = report.sensors;
   if (sensors.groups.empty()) return {};
   const std::string in_unit = ", " + sensors.unit;
-  std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit, "max" + in_unit,
-                                "U0", "largest standard error" + in_unit}};
+  std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit,
+                                "its standard error" + in_unit, "max" + in_unit, "U0",
+                                "largest standard error" + in_unit}};
   if (sensors.daylight) rows[0].emplace_back("mean daylight factor, %");
   for (const GroupReadings& group : sensors.groups) {
     rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls), rounded(group.min),
-                    rounded(group.mean), rounded(group.max), rounded(group.uniformity),
-                    std::isnan(group.largest_standard_error) ? "not known" : rounded(group.largest_standard_error, 2)});
+                    rounded(group.mean), error_text(group.standard_error_of_mean), rounded(group.max),
+                    rounded(group.uniformity), error_text(group.largest_standard_error)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   if (!report.accuracy.empty()) return text_table(rows);

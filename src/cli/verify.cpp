@@ -154,14 +154,20 @@ std::string verdict(const Verification& verification, const std::string& granted
   return text.str();
 }
 
+std::string after_first(const Verification& verification) {
+  if (verification.first_paths == 0) return {};
+  return "with " + std::to_string(verification.first_paths) +
+         " paths each they disagreed, mostly by the noise of these: traced again with more\n";
+}
+
 // All that is said: what was checked, the patches that differ most, and the verdict at the end.
 std::string answer(const Scene& scene, const Simulation& simulation, const Verification& verification,
                    const std::optional<double>& bar, double seconds) {
   std::ostringstream text;
   text << shown_name(scene.file) << ": " << verification.patches.size() << " of " << simulation.mesh.size()
        << " patches, " << verification.paths.paths << " paths each, "
-       << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3)
-       << " s\nthose that differ most, each in its worst band, irradiance in W/m^2:\n"
+       << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3) << " s\n"
+       << after_first(verification) << "those that differ most, each in its worst band, irradiance in W/m^2:\n"
        << table(scene, simulation.mesh, verification) << sides_left_out(scene, verification)
        << verdict(verification, bars(bar, simulation), close_lamps(scene, simulation, verification.verdict));
   return text.str();

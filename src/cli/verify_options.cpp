@@ -20,7 +20,7 @@ constexpr std::size_t left_out_checked = 16;
 
 struct VerifyCommandOptions {
   ModelOptions model;
-  Request request;  // with the edge of patches in model units
+  RequestGiven request;
   VerifyOptions verify;
   std::optional<double> bar;
   std::string json;

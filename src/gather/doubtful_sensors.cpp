@@ -1,12 +1,48 @@
 #include "gather/doubtful_sensors.h"
 
+#include "base/parallel.h"
+
+#include <algorithm>
 #include <cassert>
+#include <cstdint>
+#include <numeric>
 #include <sstream>
 
 namespace patchlight {
 namespace {
 
 constexpr std::size_t most_sentences = 5;
+
+// In widths of a patch, the largest distance from its middle to a corner twice.
+constexpr double close = 1.5;
+
+// Points nearer to the plane of a patch than this share of its width lie in it.
+constexpr double in_plane = 1e-6;
+
+std::vector<PatchIndex> patches_with_pictures(const Scene& scene, const PatchMesh& mesh) {
+  std::vector<PatchIndex> found;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (!scene.materials[mesh.material[i]].texture) continue;
+    if (texture_map_on(scene, scene.polygons[mesh.polygon[i]], mesh.side[i]) != nullptr) found.push_back(i);
+  }
+  return found;
+}
+
+bool looks_at_from_close(const Sensor& sensor, const PatchMesh& mesh, PatchIndex patch) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  const std::span<const Point> points = corners;
+  const auto farthest = [&](const Point& from) {
+    double distance = 0;
+    for (const Point& corner : points) distance = std::max(distance, (corner - from).norm());
+    return distance;
+  };
+  const Point& middle = mesh.centroid[patch];
+  const double width = 2 * farthest(middle);
+  if ((sensor.point - middle).norm() > close * width) return false;
+  if (!(mesh.normal[patch].dot(sensor.point - middle) > in_plane * width)) return false;
+  return std::any_of(points.begin(), points.end(),
+                     [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) > in_plane * width; });
+}
 
 std::string sentence(const SensorGroup& group, std::size_t k, Standing standing) {
   std::ostringstream text;
@@ -40,6 +76,29 @@ std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const Se
     sentences.push_back(std::to_string(doubtful - most_sentences) + " more sensors lie inside walls or in surfaces");
   }
   return sentences;
+}
+
+std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<PatchIndex> patches = patches_with_pictures(scene, mesh);
+  if (patches.empty()) return {};
+  std::string first;
+  std::size_t count = 0;
+  for (const SensorGroup& group : scene.sensors) {
+    std::vector<std::uint8_t> is_close(group.sensors.size(), 0);
+    parallel_for(group.sensors.size(), [&](std::size_t k) {
+      is_close[k] = std::any_of(patches.begin(), patches.end(),
+                                [&](PatchIndex i) { return looks_at_from_close(group.sensors[k], mesh, i); });
+    });
+    const auto found = std::find(is_close.begin(), is_close.end(), 1);
+    if (found != is_close.end() && first.empty())
+      first = place_of(group, static_cast<std::size_t>(found - is_close.begin()));
+    count += static_cast<std::size_t>(std::accumulate(is_close.begin(), is_close.end(), 0));
+  }
+  if (count == 0) return {};
+  return {(count == 1 ? "1 sensor looks" : std::to_string(count) + " sensors look") +
+          " at patches with pictures from nearer than one and a half times these are wide (the first: " + first +
+          "): a patch sends the mean of its part of the picture, and no error bar of a sensor holds what the texels "
+          "differ. Ask for smaller patches, as by --max-edge"};
 }
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/scene.h"
 
 #include "gather/sensor_places.h"
@@ -13,5 +14,10 @@ namespace patchlight {
 /// A sentence for each sensor of the scene that does not stand free, with its file and line; at most five, and then one
 /// that counts the rest. `places` as place_sensors() gives them.
 std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const SensorPlace> places);
+
+/// A sentence where sensors look at patches with pictures from nearer than one and a half times these are wide: each
+/// patch sends them the mean of its part of the picture, and no error bar holds what the texels differ. Empty without
+/// such sensors. O(sensors x patches with pictures).
+std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const PatchMesh& mesh);
 
 }  // namespace patchlight

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
-#include "input/materials.h"
-#include "input/stated_panes.h"
+#include "input/assimp_materials.h"
+#include "input/assimp_pictures.h"
+#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,6 @@
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <map>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -28,63 +27,6 @@ void keep_importer(Assimp::Importer& importer, const std::string& extension) {
       importer.UnregisterLoader(importer.GetImporter(k));
     }
   }
-}
-
-Spectrum color(const aiMaterial& material, const char* key, double otherwise) {
-  aiColor3D found;
-  if (material.Get(key, 0, 0, found) != aiReturn_SUCCESS) return rgb(otherwise, otherwise, otherwise);
-  return rgb(found.r, found.g, found.b);
-}
-
-bool has_texture(const aiMaterial& material) {
-  for (int type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
-    if (material.GetTextureCount(static_cast<aiTextureType>(type)) > 0) return true;
-  }
-  return false;
-}
-
-double number_or(const aiMaterial& material, const char* key, double otherwise) {
-  float found = 0;
-  return material.Get(key, 0, 0, found) == aiReturn_SUCCESS ? found : otherwise;
-}
-
-// What goes through: in COLLADA by the transparent colour (opaque="RGB_ZERO"), whose luminance the opacity has already.
-Spectrum let_through(const aiMaterial& material, double opacity) {
-  const Spectrum filter = color(material, "$clr.transparent", 1).max(0);
-  const double luminance = 0.212671 * filter[0] + 0.715160 * filter[1] + 0.072169 * filter[2];
-  if ((filter == filter[0]).all() || !(luminance > 0)) return Spectrum::Constant(3, 1 - opacity);
-  return (1 - opacity) / luminance * filter;
-}
-
-Material assimp_material(const aiMaterial& read) {
-  aiString name;
-  read.Get(AI_MATKEY_NAME, name);
-  // Exitance = pi radiance for a Lambertian emitter.
-  Material material{name.C_Str(), color(read, "$clr.diffuse", 0.5), std::numbers::pi * color(read, "$clr.emissive", 0)};
-  const double opacity = number_or(read, "$mat.opacity", 1);
-  if (!(opacity >= 0 && opacity < 1)) return material;
-  return as_pane(std::move(material), let_through(read, opacity),
-                 plausible_index(number_or(read, "$mat.refracti", usual_index)), "opacity " + rounded(opacity));
-}
-
-bool is_used(const aiScene& model, unsigned int material) {
-  for (unsigned int m = 0; m < model.mNumMeshes; ++m) {
-    if (model.mMeshes[m]->mMaterialIndex == material) return true;
-  }
-  return false;
-}
-
-// The scene with the materials of the model and notes on what they have that is not simulated.
-Scene with_materials(Scene scene, const aiScene& model) {
-  std::vector<std::string> textured;
-  for (unsigned int m = 0; m < model.mNumMaterials; ++m) {
-    const aiMaterial& read = *model.mMaterials[m];
-    scene.materials.push_back(assimp_material(read));
-    if (is_used(model, m) && has_texture(read)) textured.push_back(scene.materials.back().name);
-  }
-  for (std::string& note : note_on("textures are ignored, the diffuse colour is used instead", textured))
-    scene.notes.push_back(std::move(note));
-  return scene;
 }
 
 Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
@@ -149,8 +91,8 @@ std::string inner_name(const std::string& name) {
 // Collects the faces of all nodes.
 class AssimpCollector {
  public:
-  AssimpCollector(Scene scene, const aiScene& model, bool has_seams)
-      : scene_(std::move(scene)), model_(model), has_seams_(has_seams) {}
+  AssimpCollector(Scene scene, const aiScene& model, const AssimpPictures& pictures, bool has_seams)
+      : scene_(std::move(scene)), model_(model), pictures_(pictures), mapped_(scene_.file), has_seams_(has_seams) {}
 
   void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above,
                 const std::string& storey_above) {
@@ -173,6 +115,8 @@ class AssimpCollector {
     if (other_primitives_ > 0) {
       scene_.notes.push_back("points and lines, ignored: " + std::to_string(other_primitives_));
     }
+    scene_.texture_maps = mapped_.maps();
+    for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
     return std::move(scene_);
   }
 
@@ -199,6 +143,7 @@ class AssimpCollector {
       const aiVector3D& p = mesh.mVertices[v];
       scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
     }
+    const std::vector<Eigen::Vector2d> places = places_of(mesh);
     const std::set<Seam> seams = has_seams_ ? seams_of(mesh) : std::set<Seam>();
     // A mirrored copy keeps its front where it was: the corners run the other way.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
@@ -217,12 +162,30 @@ class AssimpCollector {
       }
       polygon.material = mesh.mMaterialIndex;
       polygon.group = entry->second;
+      if (scene_.materials[polygon.material].texture) polygon.texture_map = mapped(polygon, first, places);
       scene_.polygons.push_back(std::move(polygon));
     }
   }
 
+  std::vector<Eigen::Vector2d> places_of(const aiMesh& mesh) const {
+    const auto picture = pictures_.find(mesh.mMaterialIndex);
+    return picture == pictures_.end() ? std::vector<Eigen::Vector2d>() : places_in(picture->second, mesh);
+  }
+
+  std::uint32_t mapped(const Polygon& polygon, std::uint32_t first, const std::vector<Eigen::Vector2d>& places) {
+    std::vector<Point> corners;
+    std::vector<Eigen::Vector2d> in_picture;
+    for (const std::uint32_t corner : polygon.corners) {
+      corners.push_back(scene_.vertices[corner]);
+      if (!places.empty()) in_picture.push_back(places[corner - first]);
+    }
+    return mapped_.add(corners, in_picture, 0);
+  }
+
   Scene scene_;
   const aiScene& model_;
+  const AssimpPictures& pictures_;
+  MappedFaces mapped_;
   bool has_seams_;
   std::string last_space_;  // with its identifier
   std::map<std::string, std::uint32_t> groups_;
@@ -244,12 +207,14 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, const Assi
   }
   Scene scene;
   scene.file = file;
-  scene = with_materials(std::move(scene), *model);
+  AssimpPictures pictures;
+  if (format.has_pictures) pictures = diffuse_pictures(*model, std::filesystem::path(file).parent_path());
+  scene = with_assimp_materials(std::move(scene), *model, pictures);
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() = metres_per_unit * format.turn;
-  AssimpCollector collector(std::move(scene), *model, format.has_seams);
+  AssimpCollector collector(std::move(scene), *model, pictures, format.has_seams);
   collector.add_node(*model->mRootNode, to_scene, "", "");
-  scene = with_used_materials(std::move(collector).scene());
+  scene = std::move(collector).scene();
   scene.metres_per_unit = metres_per_unit;
   return scene;
 }

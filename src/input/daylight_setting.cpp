@@ -43,10 +43,10 @@ SunEntry sun_entry(const DaylightSetting& setting) {
 }
 
 SkyEntry sky_entry(const DaylightSetting& setting) {
-  if (setting.sky != SkyKind::perez) return {*setting.sky, irradiance_for(setting.sky_illuminance), {}};
+  if (setting.sky != SkyKind::perez) return {*setting.sky, irradiance_for(setting.sky_illuminance), {}, {}};
   SolarIrradiance measured = setting.measured.value_or(SolarIrradiance{});
   measured.day_of_year = setting.sun->day_of_year;
-  return {SkyKind::perez, {}, measured};
+  return {SkyKind::perez, {}, measured, {}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/rounded.h"
 #include "input/gltf_texture.h"
 #include "input/materials.h"
+#include "input/picture_colours.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/texture_maps.h"
@@ -18,6 +19,10 @@ namespace {
 
 Spectrum color(const std::vector<double>& factor, double otherwise) {
   return factor.size() >= 3 ? rgb(factor[0], factor[1], factor[2]) : rgb(otherwise, otherwise, otherwise);
+}
+
+Spectrum color_factor(const tinygltf::Material& material) {
+  return color(material.pbrMetallicRoughness.baseColorFactor, 1);
 }
 
 // The image that a texture shows; -1 when there is none that glTF 2.0 itself defines.
@@ -54,10 +59,38 @@ double transmission(const tinygltf::Material& material) {
   return std::clamp(number_of(material, "KHR_materials_transmission", "transmissionFactor", 0), 0.0, 1.0);
 }
 
-// The share of the surface that is there: glTF 2.0 section 3.9.4.
-double coverage(const tinygltf::Material& material) {
+// The alpha of the base colour's picture; null where it is 1 all over, or unknown.
+const AlphaColours* alpha_picture(const GltfModel& gltf, const tinygltf::Material& material) {
+  const int image = image_of(gltf.model, material.pbrMetallicRoughness.baseColorTexture.index);
+  const auto found = gltf.alpha.find(image);
+  return found == gltf.alpha.end() ? nullptr : found->second.get();
+}
+
+double alpha_factor(const tinygltf::Material& material) {
   const std::vector<double>& factor = material.pbrMetallicRoughness.baseColorFactor;
-  return material.alphaMode == "BLEND" && factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1;
+  return factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1;
+}
+
+// A picture tells where the surface is: glTF 2.0 section 3.9.4.
+bool is_cut_out(const GltfModel& gltf, const tinygltf::Material& material) {
+  const bool heeds_alpha = material.alphaMode == "MASK" || material.alphaMode == "BLEND";
+  return heeds_alpha && alpha_picture(gltf, material);
+}
+
+// What is there of it, of the colour of the picture: where alpha reaches the cutoff, or the share alpha of each place.
+Coverage cut_out_coverage(const GltfModel& gltf, const tinygltf::Material& material) {
+  const double factor = alpha_factor(material);
+  const bool is_mask = material.alphaMode == "MASK";
+  return coverage_by(*alpha_picture(gltf, material), [&](double alpha) {
+    if (is_mask) return alpha * factor >= material.alphaCutoff ? 1.0 : 0.0;
+    return alpha * factor;
+  });
+}
+
+// The share of the surface that is there. A mask without a picture makes it all or nothing: it is there.
+double covered_share(const GltfModel& gltf, const tinygltf::Material& material) {
+  if (is_cut_out(gltf, material)) return cut_out_coverage(gltf, material).share;
+  return material.alphaMode == "BLEND" ? alpha_factor(material) : 1;
 }
 
 // KHR_materials_ior, which says that 1.5 holds without it.
@@ -67,19 +100,22 @@ double index_of(const tinygltf::Material& material) {
 }
 
 // "transmissionFactor 0.9", "alpha 0.3", or both.
-std::string statement_of(double transmitted, double covered) {
+std::string statement_of(double transmitted, double covered, bool by_picture) {
   const std::string factor = transmitted > 0 ? "transmissionFactor " + rounded(transmitted) : "";
-  const std::string alpha = covered < 1 ? "alpha " + rounded(covered) : "";
+  const std::string alpha =
+      covered < 1 ? (by_picture ? "alpha of its picture covers " : "alpha ") + rounded(covered) : "";
   return factor + (factor.empty() || alpha.empty() ? "" : " and ") + alpha;
 }
 
-bool is_clear(const tinygltf::Material& material) { return transmission(material) > 0 || coverage(material) < 1; }
+bool is_clear(const GltfModel& gltf, const tinygltf::Material& material) {
+  return transmission(material) > 0 || covered_share(gltf, material) < 1;
+}
 
 // A smooth metal. Both factors are 1 where they are not stated.
-bool is_mirror(const tinygltf::Material& material) {
+bool is_mirror(const GltfModel& gltf, const tinygltf::Material& material) {
   const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
   return surface.metallicFactor >= least_metallic && surface.roughnessFactor <= most_roughness &&
-         surface.metallicRoughnessTexture.index < 0 && !is_clear(material);
+         surface.metallicRoughnessTexture.index < 0 && !is_clear(gltf, material);
 }
 
 // glTF 2.0 appendix B.2: a metal reflects its base colour, and nothing diffusely.
@@ -93,15 +129,21 @@ Material with_metal(Material material, const tinygltf::Material& read) {
 
 // What is covered reflects the part of the base colour that it does not transmit, KHR_materials_transmission says, and
 // transmits the other part, but for what the surfaces of glass reflect even if it absorbs nothing.
-Material with_transparency(Material material, const tinygltf::Material& read) {
+// Holes alone have no index of refraction: through them light goes as through air.
+Material with_transparency(Material material, const GltfModel& gltf, const tinygltf::Material& read) {
   const double transmitted = transmission(read);
-  const double covered = coverage(read);
-  const double index = index_of(read);
-  const Spectrum color = material.reflectance.min(1);
+  const bool by_picture = is_cut_out(gltf, read);
+  const double covered = covered_share(gltf, read);
+  const double index = by_picture && transmitted == 0 ? 1 : index_of(read);
+  const Spectrum surface =
+      by_picture ? Spectrum(color_factor(read) * cut_out_coverage(gltf, read).colour) : material.reflectance;
+  const Spectrum color = surface.min(1);
   const Spectrum clear = (transmitted * color).min(highest_transmittance(index));
-  Material pane =
-      as_pane(std::move(material), 1 - covered + covered * clear, index, statement_of(transmitted, covered));
+  Material pane = as_pane(std::move(material), 1 - covered + covered * clear, index,
+                          statement_of(transmitted, covered, by_picture));
   pane.reflectance = covered * (1 - transmitted) * color;
+  pane.stated_pane->matt_exitance = pane.exitance;
+  pane.exitance *= covered;
   return pane;
 }
 
@@ -110,19 +152,19 @@ std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinyglt
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const auto found = gltf.textures.find(image_of(gltf.model, surface.baseColorTexture.index));
   if (found == gltf.textures.end()) return std::nullopt;
-  return TexturedReflectance{found->second, primaries_times(color(surface.baseColorFactor, 1)),
+  return TexturedReflectance{found->second, primaries_times(color_factor(read)),
                              gltf_wrap(gltf.model, surface.baseColorTexture.index)};
 }
 
 Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
-  const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
+  const int picture = read.pbrMetallicRoughness.baseColorTexture.index;
   const Spectrum radiance = emissive_strength(read) * color(read.emissiveFactor, 0);
   // Exitance = pi radiance for a Lambertian emitter.
-  Material material{read.name, with_texture(color(surface.baseColorFactor, 1), gltf, surface.baseColorTexture.index),
+  Material material{read.name, with_texture(color_factor(read), gltf, picture),
                     std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)};
   material.texture = textured(gltf, read);
-  if (is_mirror(read)) return with_metal(std::move(material), read);
-  return is_clear(read) ? with_transparency(std::move(material), read) : material;
+  if (is_mirror(gltf, read)) return with_metal(std::move(material), read);
+  return is_clear(gltf, read) ? with_transparency(std::move(material), gltf, read) : material;
 }
 
 // The two textures that count; -1 stands for none.
@@ -134,24 +176,46 @@ std::vector<int> colored_textures(const tinygltf::Material& material) {
   return textures;
 }
 
-bool is_matt_metal(const tinygltf::Material& material) {
-  return material.pbrMetallicRoughness.metallicFactor > 0 && !is_mirror(material);
+bool is_matt_metal(const GltfModel& gltf, const tinygltf::Material& material) {
+  return material.pbrMetallicRoughness.metallicFactor > 0 && !is_mirror(gltf, material);
 }
 
-// Transparent by a picture, or where one is below a threshold.
-bool has_cut_outs(const tinygltf::Material& material) {
+// Transparent by a picture of transmission, or by one that could not be read.
+bool has_unknown_holes(const GltfModel& gltf, const tinygltf::Material& material) {
   const auto found = material.extensions.find("KHR_materials_transmission");
-  const bool has_picture = found != material.extensions.end() && found->second.Has("transmissionTexture");
-  const bool is_blended = material.alphaMode == "BLEND" && material.pbrMetallicRoughness.baseColorTexture.index >= 0;
-  return material.alphaMode == "MASK" || is_blended || has_picture;
+  if (found != material.extensions.end() && found->second.Has("transmissionTexture")) return true;
+  if (material.alphaMode != "MASK" && material.alphaMode != "BLEND") return false;
+  const int picture = material.pbrMetallicRoughness.baseColorTexture.index;
+  return picture >= 0 && !texture_color(gltf, picture);
 }
 
-std::vector<std::string> names_with(const tinygltf::Model& model,
-                                    const std::function<bool(const tinygltf::Material&)>& property) {
+// Nowhere by a mask, as the factor's alpha alone says; more likely the cutoff is not meant.
+bool is_masked_away(const GltfModel& gltf, const tinygltf::Material& material) {
+  const bool is_gone = material.alphaMode == "MASK" && alpha_factor(material) < material.alphaCutoff;
+  return is_gone && !is_cut_out(gltf, material) && !has_unknown_holes(gltf, material);
+}
+
+std::string name_of_material(const tinygltf::Model& model, std::size_t m) {
+  const std::string& name = model.materials[m].name;
+  return name.empty() ? "material " + std::to_string(m) : name;
+}
+
+using GltfProperty = std::function<bool(const GltfModel&, const tinygltf::Material&)>;
+
+std::vector<std::string> names_with(const GltfModel& gltf, const GltfProperty& property) {
   std::vector<std::string> names;
-  for (std::size_t m = 0; m < model.materials.size(); ++m) {
-    const std::string& name = model.materials[m].name;
-    if (property(model.materials[m])) names.push_back(name.empty() ? "material " + std::to_string(m) : name);
+  for (std::size_t m = 0; m < gltf.model.materials.size(); ++m)
+    if (property(gltf, gltf.model.materials[m])) names.push_back(name_of_material(gltf.model, m));
+  return names;
+}
+
+// With what their pictures cover: "leaves (0.42)".
+std::vector<std::string> covered_shares(const GltfModel& gltf) {
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < gltf.model.materials.size(); ++m) {
+    const tinygltf::Material& material = gltf.model.materials[m];
+    if (!is_cut_out(gltf, material) || covered_share(gltf, material) >= 1) continue;
+    names.push_back(name_of_material(gltf.model, m) + " (" + rounded(covered_share(gltf, material)) + ")");
   }
   return names;
 }
@@ -165,37 +229,43 @@ std::vector<Material> gltf_materials(const GltfModel& gltf) {
 }
 
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
-  return counted(names_with(gltf.model, is_matt_metal).size(), names_with(gltf.model, has_cut_outs).size());
+  return counted(names_with(gltf, is_matt_metal).size(),
+                 names_with(gltf, has_unknown_holes).size() + names_with(gltf, is_masked_away).size());
 }
 
 std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
   std::vector<std::string> notes;
-  const auto note = [&](const std::string& sentence, const std::function<bool(const tinygltf::Material&)>& property) {
-    for (std::string& text : note_on(sentence, names_with(gltf.model, property))) notes.push_back(std::move(text));
+  const auto name = [&](const std::string& sentence, const std::vector<std::string>& names) {
+    for (std::string& text : note_on(sentence, names)) notes.push_back(std::move(text));
+  };
+  const auto note = [&](const std::string& sentence, const GltfProperty& property) {
+    name(sentence, names_with(gltf, property));
   };
   const auto has_texture = [&](bool is_decoded) {
-    return [&gltf, is_decoded](const tinygltf::Material& material) {
+    return [is_decoded](const GltfModel& of, const tinygltf::Material& material) {
       for (const int texture : colored_textures(material)) {
-        if (texture_color(gltf, texture).has_value() == is_decoded) return true;
+        if (texture_color(of, texture).has_value() == is_decoded) return true;
       }
       return false;
     };
   };
-  const auto is_used_whole = [&](const tinygltf::Material& material) {
-    const bool has_place = !is_clear(material) && !is_mirror(material);
-    const bool has_mean = texture_color(gltf, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
-    return (has_mean && !has_place) || texture_color(gltf, material.emissiveTexture.index).has_value();
+  const auto is_used_whole = [](const GltfModel& of, const tinygltf::Material& material) {
+    const bool has_place = !is_clear(of, material) && !is_mirror(of, material);
+    const bool has_mean = texture_color(of, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
+    return (has_mean && !has_place) || texture_color(of, material.emissiveTexture.index).has_value();
   };
   note("textures of lamps, panes and mirrors are replaced by their mean colour", is_used_whole);
   for (const auto& [image, fault] : gltf.picture_faults) {
     const tinygltf::Image& found = gltf.model.images[static_cast<std::size_t>(image)];
-    const std::string name = found.uri.empty() ? found.name : found.uri;
-    notes.push_back("image " + std::to_string(image) + (name.empty() ? "" : " (" + name.substr(0, 80) + ")") + " " +
+    const std::string& uri = found.uri.empty() ? found.name : found.uri;
+    notes.push_back("image " + std::to_string(image) + (uri.empty() ? "" : " (" + uri.substr(0, 80) + ")") + " " +
                     fault);
   }
   note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
   note("metallic surfaces are simulated as matt ones of their base colour", is_matt_metal);
-  note("transparency by textures and masks is ignored, factors alone count", has_cut_outs);
+  name(covered_note, covered_shares(gltf));
+  note("transparency by textures is ignored, factors alone count", has_unknown_holes);
+  note("masks that leave nothing of a surface are ignored: it is opaque", is_masked_away);
   return notes;
 }
 

@@ -61,13 +61,13 @@ GltfModel with_pictures(GltfModel model, Pictures pictures) {
     const DecodedPicture& picture = pictures.by_content[digest];
     if (picture.mean) model.mean_color.emplace(image, *picture.mean);
     if (picture.texture) model.textures.emplace(image, picture.texture);
+    if (picture.alpha) model.alpha.emplace(image, picture.alpha);
     if (!picture.mean) model.picture_faults.emplace(image, picture.fault);
   }
   return model;
 }
 
-// Keeps the texels that matter of PNG and JPEG, the formats of glTF 2.0; the same bytes once. A picture
-// that cannot be decoded is no reason to stop.
+// Keeps the texels that matter, of the same bytes once. A picture that cannot be decoded is no reason to stop.
 bool take_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                 void* into) {
   const std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));

@@ -11,6 +11,8 @@
 
 namespace patchlight {
 
+struct AlphaColours;
+
 /// The files that a glTF file is made of: itself, its buffers and its pictures.
 struct GltfFiles {
   std::filesystem::path confine;  ///< the folder in which they must lie; empty for any
@@ -22,8 +24,9 @@ struct GltfFiles {
 struct GltfModel {
   tinygltf::Model model;
   std::map<int, Spectrum> mean_color;  ///< linear RGB of those images that could be decoded, by index
-  std::map<int, std::shared_ptr<const Texture>> textures;  ///< those of them with more than one colour
-  std::map<int, std::string> picture_faults;               ///< why the others could not
+  std::map<int, std::shared_ptr<const Texture>> textures;    ///< those of them with more than one colour
+  std::map<int, std::shared_ptr<const AlphaColours>> alpha;  ///< those of them that are not opaque all over
+  std::map<int, std::string> picture_faults;                 ///< why the others could not
   GltfFiles files;
 };
 

@@ -8,6 +8,9 @@
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
+#include "light/colour.h"
+#include "light/photometry.h"
+#include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <numbers>
@@ -36,13 +39,20 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
                            "transmittance, diffuse_transmittance or index");
 }
 
-Spectrum comma_separated(const std::string& list, const std::string& text) {
+// A number, or a share in percent: 0.3 for 30%.
+std::optional<double> number_or_percent(const std::string& word, Quantity quantity) {
+  if (!word.ends_with('%') || !is_share(quantity)) return finite_number(word);
+  const std::optional<double> percent = finite_number(trimmed(std::string_view(word).substr(0, word.size() - 1)));
+  return percent ? std::optional<double>(*percent / 100) : std::nullopt;
+}
+
+Spectrum comma_separated(const std::string& list, const std::string& text, Quantity quantity) {
   std::vector<double> values;
   std::size_t begin = 0;
   while (begin <= list.size()) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word(trimmed(std::string_view(list).substr(begin, end - begin)));
-    const std::optional<double> value = finite_number(word);
+    const std::optional<double> value = number_or_percent(word, quantity);
     if (!value) refuse_setting(text, "'" + word + "' is not a finite number");
     values.push_back(*value);
     begin = end + 1;
@@ -62,24 +72,62 @@ Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
                                       std::to_string(bands) + " bands");
 }
 
-// A reflectance takes the place of a picture, and only opaque matt surfaces have one. What a setting makes a pane is no
-// mirror of the file's, and the other way round; one of 0 takes back the file's own.
-Material changed(Material material, const MaterialSetting& setting) {
-  const Spectrum value = spread(setting, material.reflectance.size());
+// Of light. In bands of wavelengths what is set is linear RGB, spread as colours are that are read: one number makes a
+// lamp that emits as bright as that would be in the bands there are, and leaves how its light is spread.
+Spectrum set_light(const MaterialSetting& setting, const Material& material, const Bands& bands) {
+  if (!are_of_wavelengths(bands)) return spread(setting, material.exitance.size());
+  const bool is_one = setting.value.size() == 1;
+  const Spectrum colour = is_one ? Spectrum::Constant(3, setting.value[0]) : setting.value;
+  Spectrum light = light_in_bands(bands, colour, nullptr);
+  const double found = luminance(material.exitance, bands);
+  if (is_one && found > 0) return luminance(light, bands) / found * material.exitance;
+  return light;
+}
+
+// What is known of a quantity by wavelength; null for one that has no spectrum.
+std::shared_ptr<const SampledSpectrum>* sampled_of(MaterialSpectra& spectra, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::reflectance:
+      return &spectra.reflectance;
+    case Quantity::transmittance:
+      return &spectra.transmittance;
+    case Quantity::specular_reflectance:
+      return &spectra.specular_reflectance;
+    case Quantity::diffuse_transmittance:
+      return &spectra.diffuse_transmittance;
+    case Quantity::exitance:
+    case Quantity::radiance:
+    case Quantity::light_spectrum:
+      return &spectra.light;
+    case Quantity::index:
+      return nullptr;
+  }
+  return nullptr;
+}
+
+// One number for all bands of a lamp makes it brighter or darker; else what is set takes the place of a spectrum.
+MaterialSpectra changed(MaterialSpectra spectra, const MaterialSetting& setting) {
+  const bool is_of_lamp = setting.quantity == Quantity::exitance || setting.quantity == Quantity::radiance;
+  const bool keeps_spread = is_of_lamp && setting.value.size() == 1;
+  std::shared_ptr<const SampledSpectrum>* const sampled = sampled_of(spectra, setting.quantity);
+  if (sampled && !keeps_spread) *sampled = setting.sampled;
+  return spectra;
+}
+
+// A value for each band. What a setting makes a pane is no mirror of the file's, and the other way round; one of 0
+// takes back the file's own.
+Material with_quantity(Material material, Quantity quantity, const Spectrum& value) {
   const bool is_some = (value > 0).any();
-  const bool is_of_light_sent_on = setting.quantity != Quantity::exitance && setting.quantity != Quantity::radiance;
-  if (is_of_light_sent_on && (is_some || setting.quantity == Quantity::reflectance)) material.texture.reset();
-  switch (setting.quantity) {
+  switch (quantity) {
     case Quantity::reflectance:
       material.reflectance = value;
       if (material.stated_pane) material.stated_pane->matt_reflectance = value;
       if (material.stated_mirror) material.stated_mirror->matt_reflectance = value;
       break;
     case Quantity::exitance:
-      material.exitance = value;
-      break;
     case Quantity::radiance:
-      material.exitance = std::numbers::pi * value;  // E = pi L for a Lambertian emitter
+      material.exitance = quantity == Quantity::radiance ? Spectrum(std::numbers::pi * value) : value;  // E = pi L
+      if (material.stated_pane) material.stated_pane->matt_exitance = Spectrum();
       break;
     case Quantity::transmittance:
       material = is_some ? without_stated_mirror(std::move(material)) : without_stated_pane(std::move(material));
@@ -87,7 +135,7 @@ Material changed(Material material, const MaterialSetting& setting) {
       material.transmittance = value;
       break;
     case Quantity::index:
-      material.index = setting.value[0];
+      material.index = value[0];
       break;
     case Quantity::specular_reflectance:
       material = is_some ? without_stated_pane(std::move(material)) : without_stated_mirror(std::move(material));
@@ -97,8 +145,22 @@ Material changed(Material material, const MaterialSetting& setting) {
     case Quantity::diffuse_transmittance:
       material.diffuse_transmittance = value;
       break;
+    case Quantity::light_spectrum:
+      break;
   }
   return material;
+}
+
+// A reflectance takes the place of a picture, and only opaque matt surfaces have one.
+Material changed(Material material, const MaterialSetting& setting, const Bands& bands) {
+  material.spectra = changed(std::move(material.spectra), setting);
+  if (setting.quantity == Quantity::light_spectrum) return material;
+  const bool is_of_light_sent_on = setting.quantity != Quantity::exitance && setting.quantity != Quantity::radiance;
+  const Spectrum value =
+      is_of_light_sent_on ? spread(setting, material.reflectance.size()) : set_light(setting, material, bands);
+  const bool is_some = (value > 0).any();
+  if (is_of_light_sent_on && (is_some || setting.quantity == Quantity::reflectance)) material.texture.reset();
+  return with_quantity(std::move(material), setting.quantity, value);
 }
 
 // The materials that a setting is for, of those that are in question. A pattern does not mean those that are made up.
@@ -180,7 +242,7 @@ Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
       scene = std::move(own.scene);
       meant.push_back(std::move(own.materials));
     }
-    for (const std::size_t m : meant.back()) scene.materials[m] = changed(scene.materials[m], setting);
+    for (const std::size_t m : meant.back()) scene.materials[m] = changed(scene.materials[m], setting, bands_of(scene));
   }
   for (std::size_t k = 0; k < settings.size(); ++k) require_transmittance(scene.materials, meant[k], settings[k]);
   return scene;
@@ -199,7 +261,7 @@ MaterialSetting parse_material_setting(const std::string& text) {
   MaterialSetting setting;
   setting.material = text.substr(0, dot);
   setting.quantity = quantity_named(text.substr(dot + 1, equals - dot - 1), text);
-  setting.value = comma_separated(text.substr(equals + 1), text);
+  setting.value = comma_separated(text.substr(equals + 1), text, setting.quantity);
   if ((setting.value < 0).any()) refuse_setting(text, "a value is negative; expected 0 or more");
   if (is_share(setting.quantity) && (setting.value > 1).any()) {
     refuse_setting(text, "a reflectance or transmittance is above 1; expected 0 to 1");

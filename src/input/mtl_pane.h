@@ -19,8 +19,9 @@ struct MtlTransparency {
 /// The pane that it makes of the material.
 struct MtlPane {
   Spectrum transmittance;
-  double index = 0;       ///< of refraction
-  std::string statement;  ///< "d 0.3"
+  double index = 0;                       ///< of refraction
+  std::string statement;                  ///< "d 0.3"
+  std::optional<Spectrum> reflectance{};  ///< where it has holes: what is left of the material's
 };
 
 /// The pane that a material is; nothing where it is opaque. d counts before Tr, and Tf colours what they let through.

@@ -139,7 +139,10 @@ Libraries read_libraries(const std::filesystem::path& obj, const std::vector<Obj
       std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
       const std::vector<std::filesystem::path> named = files_of(file.place, materials);
       libraries.files.insert(libraries.files.end(), named.begin(), named.end());
-      for (MtlMaterial& material : materials) material.diffuse_texture = place_of(material.diffuse_texture, file.place);
+      for (MtlMaterial& material : materials) {
+        material.diffuse_texture = place_of(material.diffuse_texture, file.place);
+        material.mask_picture = place_of(material.mask_picture, file.place);
+      }
       libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
     }
   }

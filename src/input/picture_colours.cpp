@@ -4,6 +4,7 @@
 
 #include "files/sha256.h"
 #include "input/isolated.h"
+#include "input/stb_picture.h"
 #include "input/text.h"
 #include "light/texture.h"
 
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <tiny_gltf.h>
 #include <utility>
 
 namespace patchlight {
@@ -27,31 +27,40 @@ std::array<double, 256> linear_values() {
   return values;
 }
 
-// The linear RGB of the pixels of a decoded picture. Of 16 bits the upper eight are taken.
+// The linear RGB, and the alpha as a code, of the pixels of a decoded picture.
 class Pixels {
  public:
-  explicit Pixels(const tinygltf::Image& image)
-      : image_(image),
-        value_bytes_(image.bits == 16 ? 2 : 1),
-        channels_(static_cast<std::size_t>(image.component)),
-        linear_(linear_values()) {}
+  explicit Pixels(const PicturePixels& picture) : picture_(picture), linear_(linear_values()) {}
 
-  std::array<unsigned char, 3> codes(std::size_t pixel) const {
-    std::array<unsigned char, 3> codes{};
-    // Grey alone, or grey and alpha, stands for all three.
-    for (std::size_t k = 0; k < 3; ++k)
-      codes[k] = image_.image[(pixel * channels_ + (channels_ < 3 ? 0 : k)) * value_bytes_ + value_bytes_ - 1];
-    return codes;
-  }
+  // Grey alone, or grey and alpha, stands for all three.
   Rgb operator()(std::size_t pixel) const {
-    const std::array<unsigned char, 3> of = codes(pixel);
-    return {linear_[of[0]], linear_[of[1]], linear_[of[2]]};
+    const std::size_t first = pixel * picture_.channels;
+    const std::size_t step = picture_.channels < 3 ? 0 : 1;
+    if (picture_.linear) {
+      const float* const values = picture_.linear.get() + first;
+      return {values[0], values[step], values[2 * step]};
+    }
+    const unsigned char* const codes = picture_.codes.get() + first;
+    return {linear_[codes[0]], linear_[codes[step]], linear_[codes[2 * step]]};
+  }
+  // The mean of red, green and blue as a picture of numbers has them, 0 to 1.
+  double number(std::size_t pixel) const {
+    const std::size_t first = pixel * picture_.channels;
+    const std::size_t step = picture_.channels < 3 ? 0 : 1;
+    if (picture_.linear) {
+      const Rgb values = (*this)(pixel);
+      return std::min(1.0, (values[0] + values[1] + values[2]) / 3);
+    }
+    const unsigned char* const codes = picture_.codes.get() + first;
+    return (codes[0] + codes[step] + codes[2 * step]) / (3 * 255.0);
+  }
+  std::size_t alpha(std::size_t pixel) const {
+    constexpr std::size_t opaque = 255;
+    return picture_.has_alpha ? picture_.codes[(pixel + 1) * picture_.channels - 1] : opaque;
   }
 
  private:
-  const tinygltf::Image& image_;
-  std::size_t value_bytes_;
-  std::size_t channels_;
+  const PicturePixels& picture_;
   std::array<double, 256> linear_;
 };
 
@@ -98,56 +107,44 @@ Texture means_over_parts(const Colours& colours, std::size_t width, std::size_t 
   return texture;
 }
 
-DecodedPicture picture_of(const tinygltf::Image& image, std::size_t most_texels) {
-  const auto width = static_cast<std::size_t>(image.width);
-  const auto height = static_cast<std::size_t>(image.height);
-  const Pixels pixels(image);
-  Spectrum sum = rgb(0, 0, 0);
+Rgb sum_of(const Rgb& a, const Rgb& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
+Rgb times(double factor, const Rgb& colour) { return {factor * colour[0], factor * colour[1], factor * colour[2]}; }
+
+// Null where all of the picture is opaque.
+std::shared_ptr<const AlphaColours> alpha_colours(const Pixels& pixels, std::size_t count) {
+  AlphaColours found;
+  for (std::size_t pixel = 0; pixel < count; ++pixel) {
+    const std::size_t alpha = pixels.alpha(pixel);
+    found.count[alpha] += 1;
+    found.sum[alpha] = sum_of(found.sum[alpha], pixels(pixel));
+  }
+  if (found.count.back() == count) return nullptr;
+  return std::make_shared<const AlphaColours>(found);
+}
+
+DecodedPicture picture_of(const PicturePixels& decoded, std::size_t most_texels) {
+  const std::size_t count = decoded.width * decoded.height;
+  const Pixels pixels(decoded);
+  DecodedPicture picture;
+  const Rgb first = pixels(0);
+  Rgb sum{};
   bool is_one_colour = true;
-  for (std::size_t pixel = 0; pixel < width * height; ++pixel) {
+  for (std::size_t pixel = 0; pixel < count; ++pixel) {
     const Rgb colour = pixels(pixel);
-    sum += rgb(colour[0], colour[1], colour[2]);
-    is_one_colour = is_one_colour && pixels.codes(pixel) == pixels.codes(0);
+    sum = sum_of(sum, colour);
+    is_one_colour = is_one_colour && colour == first;
+    picture.number += pixels.number(pixel);
   }
-  if (is_one_colour) {
-    const Rgb colour = pixels(0);
-    return {rgb(colour[0], colour[1], colour[2]), nullptr, {}};
-  }
-  return {sum / static_cast<double>(width * height),
-          std::make_shared<const Texture>(means_over_parts(pixels, width, height, most_texels)),
-          {}};
+  picture.number /= static_cast<double>(count);
+  if (decoded.has_alpha) picture.alpha = alpha_colours(pixels, count);
+  const Rgb mean = is_one_colour ? first : times(1 / static_cast<double>(count), sum);
+  picture.mean = rgb(mean[0], mean[1], mean[2]);
+  if (!is_one_colour)
+    picture.texture =
+        std::make_shared<const Texture>(means_over_parts(pixels, decoded.width, decoded.height, most_texels));
+  return picture;
 }
-
-// A number of two or four bytes, most significant first.
-std::uint64_t big_endian(std::string_view bytes) {
-  std::uint64_t number = 0;
-  for (const char byte : bytes) number = number << 8U | static_cast<unsigned char>(byte);
-  return number;
-}
-
-// The pixels that a PNG says it has; 0 when it is cut off. PNG specification, section 11.2.2: after the signature, the
-// length and the name of IHDR come width and height.
-std::uint64_t pixels_of_png(std::string_view bytes) {
-  if (bytes.size() < 24) return 0;
-  return big_endian(bytes.substr(16, 4)) * big_endian(bytes.substr(20, 4));
-}
-
-// The same of a JPEG. ITU T.81, annex B: segments FF, marker, length; a frame header SOF has precision, height, width.
-std::uint64_t pixels_of_jpeg(std::string_view bytes) {
-  std::size_t at = 2;
-  while (at + 9 <= bytes.size() && bytes[at] == '\xFF') {
-    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
-    const bool is_table = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
-    if (marker >= 0xC0 && marker <= 0xCF && !is_table) {
-      return big_endian(bytes.substr(at + 5, 2)) * big_endian(bytes.substr(at + 7, 2));
-    }
-    at += marker == 0xFF ? 1 : 2 + big_endian(bytes.substr(at + 2, 2));
-  }
-  return 0;
-}
-
-// A few hundred bytes can stand for very many pixels, each of which takes up to eight bytes.
-constexpr std::uint64_t most_pixels = std::uint64_t{8192} * 8192;
 
 // Files that may be read and are there, with their bytes, and the faults of the others.
 struct PictureFiles {
@@ -168,26 +165,49 @@ PictureFiles read_files(const std::vector<std::filesystem::path>& files, const s
   return read;
 }
 
+// So many texels are kept of each of so many pictures.
+std::size_t texels_of_one_of(std::size_t pictures) {
+  return std::max(std::min(most_texels_of_picture, most_texels_of_model / pictures), std::size_t{1});
+}
+
+// What a mask says, as numbers in a row, and back.
+Spectrum numbers_of_mask(const DecodedPicture& picture) {
+  if (!picture.alpha) return Spectrum::Constant(1, picture.number);
+  const Coverage coverage = coverage_by(*picture.alpha, [](double alpha) { return alpha; });
+  Spectrum numbers(4);
+  numbers << coverage.share, coverage.colour;
+  return numbers;
+}
+
+PictureMask mask_from(const Spectrum& numbers) {
+  if (numbers.size() == 1) return {numbers[0], std::nullopt};
+  return {numbers[0], Spectrum(numbers.tail(3))};
+}
+
 }  // namespace
 
+Coverage coverage_by(const AlphaColours& picture, const std::function<double(double)>& covered) {
+  // Pixels are counted and divided by once: all of them are a share of 1, without rounding.
+  double covering = 0;
+  std::size_t all = 0;
+  Rgb sum{};
+  for (std::size_t alpha = 0; alpha < picture.count.size(); ++alpha) {
+    const double share = covered(static_cast<double>(alpha) / 255);
+    covering += share * static_cast<double>(picture.count[alpha]);
+    all += picture.count[alpha];
+    sum = sum_of(sum, times(share, picture.sum[alpha]));
+  }
+  Coverage coverage{covering / static_cast<double>(all), rgb(0, 0, 0)};
+  if (covering > 0) coverage.colour = rgb(sum[0], sum[1], sum[2]) / covering;
+  return coverage;
+}
+
 DecodedPicture decoded_picture(std::string_view picture, std::size_t most_texels) {
-  const bool is_png = picture.starts_with("\x89PNG");
-  if (!is_png && !picture.starts_with("\xFF\xD8\xFF")) return {{}, nullptr, "is neither PNG nor JPEG"};
-  const std::uint64_t pixels = is_png ? pixels_of_png(picture) : pixels_of_jpeg(picture);
-  if (pixels == 0) return {{}, nullptr, "is cut off"};
-  if (pixels > most_pixels) return {{}, nullptr, "has more than 8192 x 8192 pixels"};
-  std::string error;
-  std::string warning;
-  tinygltf::Image decoded;
-  // The one member of tinygltf's LoadImageDataOption, which only its implementation declares: channels stay as they
-  // are, three bytes a pixel rather than four.
-  bool preserve_channels = true;
-  const bool good = tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0,
-                                            reinterpret_cast<const unsigned char*>(picture.data()),
-                                            static_cast<int>(picture.size()), &preserve_channels) &&
-                    decoded.width > 0 && decoded.height > 0 && decoded.component > 0 && !decoded.image.empty();
-  if (!good) return {{}, nullptr, "cannot be decoded; is it whole?"};
-  return picture_of(decoded, most_texels);
+  const PicturePixels pixels = decoded_pixels(picture);
+  if (pixels.fault.empty()) return picture_of(pixels, most_texels);
+  DecodedPicture undecoded;
+  undecoded.fault = pixels.fault;
+  return undecoded;
 }
 
 Texture reduced(const Texture& texture, std::size_t most_texels) {
@@ -203,15 +223,16 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
   const auto& pictures = read.bytes;
   if (pictures.empty()) return colours;
   // What a child process finds comes back as a scene: a material for each picture, and a note for each fault.
-  const std::size_t most = std::min(most_texels_of_picture, most_texels_of_model / pictures.size());
+  const std::size_t most = texels_of_one_of(pictures.size());
   const auto decode = [&] {
     Scene scene;
     scene.notes.resize(pictures.size());
     for (std::size_t k = 0; k < pictures.size(); ++k) {
-      const DecodedPicture picture = decoded_picture(pictures[k].second, std::max(most, std::size_t{1}));
+      const DecodedPicture picture = decoded_picture(pictures[k].second, most);
       scene.notes[k] = picture.fault;
       if (!picture.mean) continue;
       scene.materials.push_back({std::to_string(k), *picture.mean, rgb(0, 0, 0)});
+      scene.materials.back().transmittance = numbers_of_mask(picture);
       if (picture.texture)
         scene.materials.back().texture = {picture.texture, {rgb(1, 0, 0), rgb(0, 1, 0), rgb(0, 0, 1)}, {}};
     }
@@ -224,6 +245,7 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
       const auto& [file, bytes] = pictures[std::stoul(found.name)];
       colours.by_file.emplace(file, found.reflectance);
       if (found.texture) colours.textures.emplace(file, found.texture->texture);
+      colours.masks.emplace(file, mask_from(found.transmittance));
       colours.digests.push_back(sha256({&bytes, 1}));
     }
     for (std::size_t k = 0; k < pictures.size(); ++k)

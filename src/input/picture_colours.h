@@ -2,8 +2,10 @@
 
 #include "patchlight/light/material.h"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,15 +15,32 @@
 
 namespace patchlight {
 
-/// A picture as it was decoded.
-struct DecodedPicture {
-  std::optional<Spectrum> mean;            ///< linear RGB; nothing where it could not be decoded
-  std::shared_ptr<const Texture> texture;  ///< null where all of it has one colour
-  std::string fault;                       ///< why it could not be decoded: "is cut off"
+/// The pixels of a picture by their alpha, of 0 to 255.
+struct AlphaColours {
+  std::array<std::size_t, 256> count{};          ///< those with this alpha
+  std::array<std::array<double, 3>, 256> sum{};  ///< the sum of their linear RGB
 };
 
-/// A picture in PNG or JPEG of at most 8192 x 8192 pixels. Larger ones than `most_texels` are reduced to as many, each
-/// the mean of what it takes the place of.
+/// What covers a surface that a picture leaves free in places.
+struct Coverage {
+  double share = 1;  ///< of the surface
+  Spectrum colour;   ///< the mean of what covers it, linear RGB; black where nothing does
+};
+
+/// The coverage where a pixel of an alpha in [0, 1] covers the share `covered(alpha)` of its place.
+Coverage coverage_by(const AlphaColours& picture, const std::function<double(double)>& covered);
+
+/// A picture as it was decoded.
+struct DecodedPicture {
+  std::optional<Spectrum> mean;                 ///< linear RGB; nothing where it could not be decoded
+  std::shared_ptr<const Texture> texture;       ///< null where all of it has one colour
+  std::shared_ptr<const AlphaColours> alpha{};  ///< null where all of it is opaque
+  double number = 0;    ///< the mean of red, green and blue as a picture of numbers has them, 0 to 1, not gamma encoded
+  std::string fault{};  ///< why it could not be decoded: "is cut off"
+};
+
+/// A picture in a format of decoded_pixels(). Larger ones than `most_texels` are reduced to as many, each the mean of
+/// what it takes the place of.
 DecodedPicture decoded_picture(std::string_view picture, std::size_t most_texels);
 
 /// So many texels are kept of all pictures of a model together, and of one of them.
@@ -31,10 +50,22 @@ inline constexpr std::size_t most_texels_of_picture = std::size_t{1} << 20U;
 /// The texture with at most so many texels.
 Texture reduced(const Texture& texture, std::size_t most_texels);
 
+/// The note on materials that are there in part, before their names and shares.
+inline constexpr const char* covered_note =
+    "surfaces cut out by pictures are there in part, every face by the share that its whole picture covers; no "
+    "error bar holds where its holes are";
+
+/// What a picture says that tells where a surface is.
+struct PictureMask {
+  double covered = 1;              ///< the mean of its alpha, or of its numbers where all of it is opaque
+  std::optional<Spectrum> colour;  ///< where it has alpha: the mean linear RGB of what it covers
+};
+
 /// The mean colours of picture files.
 struct PictureColours {
   std::map<std::string, Spectrum> by_file;                         ///< of those that could be read
   std::map<std::string, std::shared_ptr<const Texture>> textures;  ///< of those with more than one colour
+  std::map<std::string, PictureMask> masks;                        ///< of those that could be read
   std::map<std::string, std::string> faults;                       ///< of the others: "is not there"
   std::vector<std::string> digests;                                ///< for the checksum of what they belong to
 };

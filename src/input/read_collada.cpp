@@ -1,9 +1,11 @@
 #include "input/read_collada.h"
 
-#include "files/sha256.h"
 #include "input/assimp_scene.h"
+#include "input/decoded_pictures.h"
 #include "input/isolated.h"
 #include "input/text.h"
+
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -20,15 +22,17 @@ Vector up_axis(const std::string& text) {
 
 }  // namespace
 
-Scene read_collada(const std::filesystem::path& file, double metres_per_unit) {
+Scene read_collada(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   const std::string bytes = read_text(file, file.string(), "the model file");
   AssimpFormat format;
   format.extension = "dae";
+  format.has_pictures = true;
   Scene scene =
       read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
+  // These are decoded in a process of their own: one on which that crashes leaves the model as it is.
+  scene = with_decoded_pictures(std::move(scene), bytes, confine);
   scene.up = up_axis(bytes);
   scene.up_stated = true;
-  scene.sha256 = sha256({&bytes, 1});
   return scene;
 }
 

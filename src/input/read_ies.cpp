@@ -169,8 +169,18 @@ struct IesHeader {
   std::size_t horizontal = 0;
   PhotometricType type = PhotometricType::c;
   Vector opening = Vector::Zero();
+  OpeningShape shape = OpeningShape::box;
   double watts = 0;
 };
+
+// IES LM-63-02, table 1.
+OpeningShape shape_of(const Vector& stated) {
+  const bool width = stated[0] < 0, length = stated[1] < 0, height = stated[2] < 0;
+  if (width && length) return height ? OpeningShape::ellipsoid : OpeningShape::upright_cylinder;
+  if (height && width) return OpeningShape::cylinder_by_length;
+  if (height && length) return OpeningShape::cylinder_by_width;
+  return OpeningShape::box;
+}
 
 IesHeader read_header(Words& words) {
   IesHeader header;
@@ -185,8 +195,12 @@ IesHeader read_header(Words& words) {
   header.horizontal = words.count("the number of horizontal angles", 1, many);
   header.type = type_of(words.count("the photometric type", 1, 3));
   const double unit = words.count("the units type", 1, 2) == 1 ? metres_per_foot : 1;
-  // A negative width or length says that the opening is round.
-  for (int axis = 0; axis < 3; ++axis) header.opening[axis] = unit * std::abs(words.number("the luminous opening"));
+  Vector stated;  // width, length, height
+  for (int axis = 0; axis < 3; ++axis) stated[axis] = words.number("the luminous opening");
+  // LM-63 of 1991 and 1995 state a circle, an upright cylinder and a sphere without their length.
+  if (stated[0] < 0 && stated[1] == 0) stated[1] = stated[0];
+  header.opening = unit * stated.cwiseAbs();
+  header.shape = shape_of(stated);
   header.factor *= words.number_from("the ballast factor", 0, huge);
   header.factor *= words.number_from("the ballast-lamp factor", 0, huge);
   header.watts = words.number("the input watts");
@@ -202,6 +216,7 @@ PhotometricWeb parse_ies(const std::string& text, const std::string& file) {
   PhotometricWeb web{.file = file,
                      .type = header.type,
                      .opening = header.opening,
+                     .shape = header.shape,
                      .lamp_lumens = header.lamp_lumens,
                      .watts = header.watts,
                      .tilt = tilt.angles,

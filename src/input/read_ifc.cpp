@@ -4,6 +4,7 @@
 #include "input/assimp_scene.h"
 #include "input/ifc_voids.h"
 #include "input/isolated.h"
+#include "input/materials.h"
 #include "input/text.h"
 
 #include <cmath>
@@ -38,7 +39,7 @@ Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
   Scene scene = read_isolated(file.string(), [&] {
     const JoinedVoids joined = with_joined_voids(bytes);
     format.has_seams = joined.joined > 0;
-    Scene read = assimp_scene(joined.text, file.string(), format, metres_per_unit);
+    Scene read = with_used_materials(assimp_scene(joined.text, file.string(), format, metres_per_unit));
     if (joined.left > 0) read.notes.push_back(note_on_voids(joined.left));
     return read;
   });

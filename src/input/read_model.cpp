@@ -38,7 +38,7 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
   if (format == "ply") return read_ply(file, metres_per_unit);
   if (format == "stl") return read_stl(file, metres_per_unit);
   if (format == "off") return read_off(file, metres_per_unit);
-  if (format == "dae") return read_collada(file, metres_per_unit);
+  if (format == "dae") return read_collada(file, metres_per_unit, confine);
   if (format == "ifc") return read_ifc(file, metres_per_unit);
   if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit, confine);
   if (format == "hbjson") return read_hbjson(file, metres_per_unit);

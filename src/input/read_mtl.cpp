@@ -21,6 +21,7 @@ struct Statements {
   MtlTransparency transparency;
   MtlReflection reflection;
   std::uint32_t texture_line = 0;
+  std::uint32_t mask_line = 0;
 };
 
 // A line of the file, its words, and the file's name for messages.
@@ -56,6 +57,7 @@ double one_number(const MtlLine& statement) {
 void take(Statements& material, const MtlLine& statement) {
   const std::string_view key = statement.words[0];
   if (key == "map_Kd") material.texture_line = statement.line.number;
+  if (key == "map_d") material.mask_line = statement.line.number;
   if (key == "Kd") material.reflectance = three_numbers(statement);
   if (key == "Ke") material.radiance = three_numbers(statement);
   if (key == "Tf") material.transparency.filter = three_numbers(statement);
@@ -108,6 +110,11 @@ std::optional<MtlMirror> mirror_from(const tinyobj::material_t& read, MtlReflect
   return mtl_mirror(stated);
 }
 
+// Another channel of the picture than its alpha or numbers (-imfchan), or numbers that are changed (-mm).
+bool has_changed_numbers(const tinyobj::texture_option_t& options) {
+  return options.imfchan != 'm' || options.brightness != 0 || options.contrast != 1;
+}
+
 MtlMaterial material_from(const tinyobj::material_t& read, const std::string& name, Statements stated) {
   stated.transparency.illumination = read.illum;
   MtlMaterial material;
@@ -126,10 +133,16 @@ MtlMaterial material_from(const tinyobj::material_t& read, const std::string& na
   material.pane = mtl_pane(stated.transparency);
   if (!material.pane) material.mirror = mirror_from(read, stated.reflection, material.reflectance);
   material.is_contradictory = is_contradictory(stated.transparency);
-  material.has_cut_outs = !read.alpha_texname.empty();
+  material.has_ignored_mask = !read.alpha_texname.empty() && has_changed_numbers(read.alpha_texopt);
+  if (!material.has_ignored_mask) material.mask_picture = read.alpha_texname;
+  material.mask_line = stated.mask_line;
   material.is_metallic = read.metallic > 0;
   material.is_mirror_or_glass = read.illum >= 3 && read.illum <= 9;
   return material;
+}
+
+bool has_ignored_mask(const MtlMaterial& material) {
+  return material.has_ignored_mask || (!material.mask_picture.empty() && !material.has_mask);
 }
 
 std::vector<std::string> names_with(std::span<const MtlMaterial> materials, bool (*property)(const MtlMaterial&)) {
@@ -173,10 +186,10 @@ std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials
   note("map_Kd counts by the mean colour of its picture",
        [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
   note("textures are ignored, Kd is used instead",
-       [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1 : 0); });
+       [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1U : 0U) + (m.has_mask ? 1U : 0U); });
   note("d and Tr contradict each other, the surface is opaque",
        [](const MtlMaterial& m) { return m.is_contradictory; });
-  note("map_d (transparency by a picture) is ignored", [](const MtlMaterial& m) { return m.has_cut_outs; });
+  note("map_d (transparency by a picture) is ignored", has_ignored_mask);
   note("illum 3 to 9 (mirror, glass) is ignored, the surface is matt",
        [](const MtlMaterial& m) { return m.is_mirror_or_glass && !m.pane && !m.mirror; });
   return notes;
@@ -186,7 +199,7 @@ std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> mater
   const auto is_gloss = [](const MtlMaterial& m) {
     return !m.mirror && (m.is_specular || m.is_metallic || (m.is_mirror_or_glass && !m.pane));
   };
-  const auto is_glass = [](const MtlMaterial& m) { return m.has_cut_outs || m.is_contradictory; };
+  const auto is_glass = [](const MtlMaterial& m) { return has_ignored_mask(m) || m.is_contradictory; };
   return counted(names_with(materials, is_gloss).size(), names_with(materials, is_glass).size());
 }
 

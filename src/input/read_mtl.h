@@ -32,12 +32,16 @@ struct MtlMaterial {
   std::string diffuse_texture;                 ///< the file of map_Kd, by read_libraries() its place
   TextureOptions texture_options;              ///< those of map_Kd
   std::uint32_t texture_line = 0;              ///< on which map_Kd stands
+  std::string mask_picture;                    ///< the file of map_d, by read_libraries() its place
+  std::uint32_t mask_line = 0;                 ///< on which map_d stands
+  bool has_ignored_mask = false;               ///< map_d has options that are not heeded; then it has no mask_picture
+  bool has_mask = false;                       ///< the picture of map_d was read
+  double covered = 1;                          ///< the share of the surface that map_d leaves
   bool has_mean = false;                       ///< the mean colour of map_Kd is in the reflectance
   std::optional<TexturedReflectance> texture;  ///< what it is the mean of, where that has more than one colour
   std::optional<MtlPane> pane;                 ///< what d, Tr, Tf, Ni and illum make of it
   std::optional<MtlMirror> mirror;             ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
   bool is_contradictory = false;               ///< d and Tr contradict each other
-  bool has_cut_outs = false;                   ///< map_d is given
   bool is_mirror_or_glass = false;             ///< illum 3 to 9
   bool is_metallic = false;                    ///< Pm is not 0
 };

@@ -4,8 +4,8 @@
 
 #include "files/sha256.h"
 #include "input/at_line.h"
+#include "input/mtl_pictures.h"
 #include "input/obj_libraries.h"
-#include "input/picture_colours.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
 #include "input/stated_mirrors.h"
@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
-#include <set>
 #include <sstream>
 #include <tiny_obj_loader.h>
 #include <utility>
@@ -88,33 +87,6 @@ ObjPalette used_materials(std::span<const MtlMaterial> defined, std::span<const 
   return palette;
 }
 
-// The palette with the pictures that map_Kd names and their mean colours, times Kd where it is not 0, as exporters
-// write it beside a picture.
-ObjPalette with_pictures(ObjPalette palette, const PictureColours& pictures) {
-  for (MtlMaterial& material : palette.materials) {
-    const auto found = pictures.by_file.find(material.diffuse_texture);
-    if (found == pictures.by_file.end()) continue;
-    const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
-    const Spectrum stated = material.reflectance;
-    material.reflectance = has_factor ? Spectrum(stated * found->second) : found->second;
-    material.has_mean = true;
-    const auto texture = pictures.textures.find(material.diffuse_texture);
-    if (texture == pictures.textures.end()) continue;
-    const Spectrum factor = has_factor ? stated : rgb(1, 1, 1);
-    const Wrap wrap = material.texture_options.clamp ? Wrap::clamp : Wrap::repeat;
-    material.texture = {texture->second, primaries_times(factor), {wrap, wrap}};
-  }
-  return palette;
-}
-
-PictureColours pictures_of(const ObjPalette& palette, const std::filesystem::path& confine, const std::string& file) {
-  std::set<std::filesystem::path> names;
-  for (const MtlMaterial& material : palette.materials) {
-    if (!material.diffuse_texture.empty()) names.insert(material.diffuse_texture);
-  }
-  return picture_colours({names.begin(), names.end()}, confine, file);
-}
-
 std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::string& file) {
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
@@ -181,19 +153,6 @@ Scene with_texture_maps(Scene scene, const ObjScan& scan, const ObjPalette& pale
   scene.texture_maps = mapped.maps();
   for (std::string& note : mapped.notes()) scene.notes.push_back(std::move(note));
   return scene;
-}
-
-// One sentence for each map_Kd whose picture cannot be read.
-std::vector<std::string> notes_on_pictures(const ObjPalette& palette, const PictureColours& pictures) {
-  std::vector<std::string> notes;
-  for (const MtlMaterial& material : palette.materials) {
-    const auto fault = pictures.faults.find(material.diffuse_texture);
-    if (fault == pictures.faults.end()) continue;
-    notes.push_back("the picture " + material.diffuse_texture + " of material '" + material.name + "' (map_Kd, line " +
-                    std::to_string(material.texture_line) + " of its material file) " + fault->second +
-                    "; Kd is used alone");
-  }
-  return notes;
 }
 
 std::vector<std::string> notes_on(const ObjScan& scan, const ObjPalette& palette) {
@@ -266,7 +225,13 @@ Material obj_material(const MtlMaterial& read) {
     return as_mirror(std::move(material), read.mirror->specular_reflectance, read.mirror->reflectance,
                      read.mirror->statement);
   if (!read.pane) return material;
-  return as_pane(std::move(material), read.pane->transmittance, read.pane->index, read.pane->statement);
+  material = as_pane(std::move(material), read.pane->transmittance, read.pane->index, read.pane->statement);
+  if (!read.pane->reflectance) return material;
+  // There in part.
+  material.reflectance = *read.pane->reflectance;
+  material.stated_pane->matt_exitance = material.exitance;
+  material.exitance *= read.covered;
+  return material;
 }
 
 // Materials that do not emit, but have a Ka above 1: some programs mean a lamp by that.
@@ -294,8 +259,8 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   const std::vector<MtlMaterial> undefined = undefined_materials(scan, defined);
   defined.insert(defined.end(), undefined.begin(), undefined.end());
   ObjPalette palette = used_materials(defined, face_materials(scan, defined));
-  const PictureColours pictures = pictures_of(palette, confine, file.string());
-  palette = with_pictures(std::move(palette), pictures);
+  const PictureColours pictures = pictures_of(palette.materials, confine, file.string());
+  palette.materials = with_pictures(std::move(palette.materials), pictures);
 
   // 3. The scene, in metres.
   Scene scene;
@@ -306,7 +271,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   scene.metres_per_unit = metres_per_unit;
   scene.notes = notes_on(scan, palette);
   scene.unsimulated = unsimulated(palette.materials);
-  for (std::string& note : notes_on_pictures(palette, pictures)) scene.notes.push_back(std::move(note));
+  for (std::string& note : notes_on_pictures(palette.materials, pictures)) scene.notes.push_back(std::move(note));
   scene = with_texture_maps(std::move(scene), scan, palette);
   scene.lamp_hints = lamp_hints(palette.materials);
   scene.inputs = libraries.files;

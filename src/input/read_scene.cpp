@@ -2,9 +2,11 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/shortest.h"
 #include "files/sha256.h"
 #include "input/daylight_setting.h"
 #include "input/material_settings.h"
+#include "input/materials.h"
 #include "input/merge_scenes.h"
 #include "input/placed.h"
 #include "input/read_model.h"
@@ -13,10 +15,14 @@
 #include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml_sensors.h"
+#include "input/with_bands.h"
+#include "light/colour.h"
+#include "scene/dimmed.h"
 #include "scene/joined_faces.h"
 #include "scene/less_detail.h"
 #include "scene/limits.h"
 #include "scene/repair.h"
+#include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <cassert>
@@ -88,6 +94,35 @@ Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
   return with_lights(std::move(scene), lights);
 }
 
+// The daylight that is asked for instead of that of the scene.
+Scene with_other_daylight(Scene scene, const ReadOptions& options) {
+  scene.sun.reset();
+  scene.sky.reset();
+  if (!are_of_wavelengths(bands_of(scene))) return with_daylight(std::move(scene), options, true);
+  // Daylight is stated in linear RGB, the materials are already in bands.
+  Scene lit;
+  lit.file = scene.file;
+  lit.up = scene.up;
+  lit.north = scene.north;
+  lit.materials = {default_material()};
+  lit = with_daylight(std::move(lit), options, true);
+  scene.photometric = scene.photometric || lit.photometric;
+  scene.north = lit.north;
+  scene.sun = lit.sun;
+  scene.sky = lit.sky;
+  scene.inputs.insert(scene.inputs.end(), lit.inputs.begin(), lit.inputs.end());
+  return with_daylight_in_bands(std::move(scene));
+}
+
+bool asks_for_new_light(const ReadOptions& options) {
+  return asks_for_daylight(options.daylight) ||
+         std::any_of(options.settings.begin(), options.settings.end(), [](const MaterialSetting& setting) {
+           const bool is_of_lamp = setting.quantity == MaterialSetting::Quantity::exitance ||
+                                   setting.quantity == MaterialSetting::Quantity::radiance;
+           return is_of_lamp && (setting.value > 0).any();
+         });
+}
+
 // Without what is smaller than is asked for, and with coplanar neighbours as one.
 Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
   double detail = options.detail;
@@ -100,6 +135,32 @@ Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vecto
   if (!keep) scene = with_joined_faces(std::move(scene));
   check(scene);
   return scene;
+}
+
+// With lamps and luminaires as they are between cleaning and replacing, EN 12464-1; daylight does not age.
+Scene maintained(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
+  std::optional<double> stated = options.maintenance_factor;
+  for (const SceneFile& file : files) {
+    if (!stated) stated = file.maintenance_factor;
+  }
+  if (!stated || *stated == 1) return scene;
+  for (Material& material : scene.materials) {
+    material.exitance *= *stated;
+    if (material.stated_pane) material.stated_pane->matt_exitance *= *stated;
+  }
+  for (Luminaire& luminaire : scene.luminaires) luminaire = dimmed(std::move(luminaire), *stated);
+  scene.notes.push_back("maintenance factor " + shortest(*stated) +
+                        ": lamps and luminaires give that share of the light stated for them, and all results are "
+                        "maintained values; sun and sky are as stated");
+  return scene;
+}
+
+// Bands as the options ask for them, else as the last scene file does.
+BandsAsked bands_for(const ReadOptions& options, const std::vector<SceneFile>& files) {
+  if (options.bands) return *options.bands;
+  BandsAsked asked;
+  for (const SceneFile& file : files) asked = file.bands.value_or(asked);
+  return asked;
 }
 
 // The sensors that a scene file asks for.
@@ -160,6 +221,8 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);
   }
   scene = with_daylight(std::move(scene), options, !scene_files.empty());
+  scene = with_bands(std::move(scene), bands_for(options, scene_files));
+  scene = maintained(std::move(scene), options, scene_files);
   check_limits(scene);
   std::vector<std::string> notes;
   for (const Problem& problem : scene.problems) notes.push_back(problem.what);
@@ -171,11 +234,11 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   scene = with_settings(std::move(scene), options.settings);
   check(scene);
   scene = set_upright(std::move(scene), options);
-  if (asks_for_daylight(options.daylight)) {
-    scene.sun.reset();
-    scene.sky.reset();
-    scene = with_daylight(std::move(scene), options, true);
-  }
+  if (asks_for_daylight(options.daylight)) scene = with_other_daylight(std::move(scene), options);
+  if (are_of_wavelengths(bands_of(scene)) && asks_for_new_light(options))
+    scene.notes.emplace_back(
+        "new light is spread over the bands as its linear RGB under D65, or as the lamp's was; "
+        "reflectances per band stay averaged over the light of the stored solution");
   check_limits(scene);
   return scene;
 }

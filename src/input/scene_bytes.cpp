@@ -1,90 +1,17 @@
 #include "input/scene_bytes.h"
 
+#include "input/message.h"
+
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-class Writer {
- public:
-  template <typename Value>
-  void plain(const Value& value) {
-    static_assert(std::is_arithmetic_v<Value>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void text(const std::string& text) {
-    plain(text.size());
-    bytes_ += text;
-  }
-  template <typename Vector>
-  void numbers(const Vector& values) {
-    plain(static_cast<std::size_t>(values.size()));
-    for (const auto value : values) plain(value);
-  }
-  void texels(const std::vector<std::array<float, 3>>& texels) {
-    plain(texels.size());
-    bytes_.append(reinterpret_cast<const char*>(texels.data()), texels.size() * sizeof texels[0]);
-  }
-  std::string bytes() && { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-  template <typename Value>
-  Value plain() {
-    if (bytes_.size() < sizeof(Value)) throw std::runtime_error("a message ends early");
-    Value value;
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_.remove_prefix(sizeof value);
-    return value;
-  }
-  // How many things follow, each of a byte or more.
-  std::size_t count() {
-    const auto count = plain<std::size_t>();
-    if (count > bytes_.size()) throw std::runtime_error("a message ends early");
-    return count;
-  }
-  std::string text() {
-    const std::size_t size = count();
-    std::string text(bytes_.substr(0, size));
-    bytes_.remove_prefix(size);
-    return text;
-  }
-  Spectrum spectrum() {
-    Spectrum values(static_cast<Eigen::Index>(count()));
-    for (double& value : values) value = plain<double>();
-    return values;
-  }
-  std::vector<std::array<float, 3>> texels() {
-    std::vector<std::array<float, 3>> texels(count());
-    const std::size_t size = texels.size() * sizeof(std::array<float, 3>);
-    if (size > bytes_.size()) throw std::runtime_error("a message ends early");
-    if (size > 0) std::memcpy(texels.data(), bytes_.data(), size);
-    bytes_.remove_prefix(size);
-    return texels;
-  }
-  Point point() {
-    Point values;
-    if (count() != 3) throw std::runtime_error("a point has not three coordinates");
-    for (double& value : values) value = plain<double>();
-    return values;
-  }
-
- private:
-  std::string_view bytes_;
-};
-
-void write_polygon(Writer& out, const Polygon& polygon) {
+void write_polygon(MessageWriter& out, const Polygon& polygon) {
   out.numbers(polygon.corners);
   out.plain(polygon.material);
   out.plain(polygon.group);
@@ -92,7 +19,7 @@ void write_polygon(Writer& out, const Polygon& polygon) {
   out.plain(polygon.texture_map);
 }
 
-Polygon read_polygon(Reader& in) {
+Polygon read_polygon(MessageReader& in) {
   Polygon polygon;
   polygon.corners.resize(in.count());
   for (std::uint32_t& corner : polygon.corners) corner = in.plain<std::uint32_t>();
@@ -103,18 +30,20 @@ Polygon read_polygon(Reader& in) {
   return polygon;
 }
 
-void write_stated(Writer& out, const std::optional<StatedSurface>& stated) {
+void write_stated(MessageWriter& out, const std::optional<StatedSurface>& stated) {
   out.plain(stated.has_value());
   if (!stated) return;
   out.text(stated->by);
   out.numbers(stated->matt_reflectance);
+  out.numbers(stated->matt_exitance);
 }
 
-std::optional<StatedSurface> read_stated(Reader& in) {
+std::optional<StatedSurface> read_stated(MessageReader& in) {
   if (!in.plain<bool>()) return std::nullopt;
   StatedSurface stated;
   stated.by = in.text();
   stated.matt_reflectance = in.spectrum();
+  stated.matt_exitance = in.spectrum();
   return stated;
 }
 
@@ -131,7 +60,7 @@ Textures textures_of(const Scene& scene) {
   return textures;
 }
 
-void write_textures(Writer& out, const Textures& textures) {
+void write_textures(MessageWriter& out, const Textures& textures) {
   out.plain(textures.size());
   for (const auto& texture : textures) {
     out.plain(texture->width);
@@ -140,7 +69,7 @@ void write_textures(Writer& out, const Textures& textures) {
   }
 }
 
-Textures read_textures(Reader& in) {
+Textures read_textures(MessageReader& in) {
   Textures textures(in.count());
   for (auto& texture : textures) {
     Texture read;
@@ -154,7 +83,7 @@ Textures read_textures(Reader& in) {
   return textures;
 }
 
-void write_textured(Writer& out, const std::optional<TexturedReflectance>& textured, const Textures& textures) {
+void write_textured(MessageWriter& out, const std::optional<TexturedReflectance>& textured, const Textures& textures) {
   out.plain(textured.has_value());
   if (!textured) return;
   out.plain(
@@ -163,7 +92,7 @@ void write_textured(Writer& out, const std::optional<TexturedReflectance>& textu
   for (const Wrap wrap : textured->wrap) out.plain(static_cast<std::uint8_t>(wrap));
 }
 
-std::optional<TexturedReflectance> read_textured(Reader& in, const Textures& textures) {
+std::optional<TexturedReflectance> read_textured(MessageReader& in, const Textures& textures) {
   if (!in.plain<bool>()) return std::nullopt;
   TexturedReflectance textured;
   textured.texture = textures.at(in.plain<std::size_t>());
@@ -172,19 +101,19 @@ std::optional<TexturedReflectance> read_textured(Reader& in, const Textures& tex
   return textured;
 }
 
-void write_map(Writer& out, const TextureMap& map) {
+void write_map(MessageWriter& out, const TextureMap& map) {
   for (const double value : map.linear.reshaped()) out.plain(value);
   for (const double value : map.offset) out.plain(value);
 }
 
-TextureMap read_map(Reader& in) {
+TextureMap read_map(MessageReader& in) {
   TextureMap map;
   for (double& value : map.linear.reshaped()) value = in.plain<double>();
   for (double& value : map.offset) value = in.plain<double>();
   return map;
 }
 
-void write_material(Writer& out, const Material& material, const Textures& textures) {
+void write_material(MessageWriter& out, const Material& material, const Textures& textures) {
   out.text(material.name);
   out.numbers(material.reflectance);
   out.numbers(material.exitance);
@@ -197,7 +126,7 @@ void write_material(Writer& out, const Material& material, const Textures& textu
   write_textured(out, material.texture, textures);
 }
 
-Material read_material(Reader& in, const Textures& textures) {
+Material read_material(MessageReader& in, const Textures& textures) {
   Material material;
   material.name = in.text();
   material.reflectance = in.spectrum();
@@ -212,7 +141,7 @@ Material read_material(Reader& in, const Textures& textures) {
   return material;
 }
 
-void write_room(Writer& out, const NamedRoom& room) {
+void write_room(MessageWriter& out, const NamedRoom& room) {
   out.text(room.name);
   out.text(room.storey);
   out.plain(room.faces.size());
@@ -222,7 +151,7 @@ void write_room(Writer& out, const NamedRoom& room) {
   }
 }
 
-NamedRoom read_room(Reader& in) {
+NamedRoom read_room(MessageReader& in) {
   NamedRoom room;
   room.name = in.text();
   room.storey = in.text();
@@ -237,7 +166,7 @@ NamedRoom read_room(Reader& in) {
 }  // namespace
 
 std::string scene_bytes(const Scene& scene) {
-  Writer out;
+  MessageWriter out;
   out.plain(scene.vertices.size());
   for (const Point& vertex : scene.vertices) out.numbers(vertex);
   out.plain(scene.polygons.size());
@@ -270,7 +199,7 @@ std::string scene_bytes(const Scene& scene) {
 }
 
 Scene scene_from_bytes(std::string_view bytes) {
-  Reader in(bytes);
+  MessageReader in(bytes);
   Scene scene;
   scene.vertices.resize(in.count());
   for (Point& vertex : scene.vertices) vertex = in.point();

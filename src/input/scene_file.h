@@ -39,16 +39,18 @@ struct FloorGrid {
 /// What a scene file says, in metres, before the models are read.
 struct SceneFile {
   std::string file;
-  std::vector<std::filesystem::path> inputs;  ///< it, and the files of lamps, weather and points that it names
-  std::string sha256;                         ///< of it and of the files of lamps and weather that it names
+  std::vector<std::filesystem::path> inputs;  ///< it, and the files of lamps, weather, points and spectra it names
+  std::string sha256;                         ///< of it and of the files of lamps, weather and spectra it names
   std::vector<ModelEntry> models;
   std::optional<Vector> up;
   std::vector<MaterialSetting> settings;
   std::vector<std::variant<SensorGroup, FloorGrid>> sensors;
   std::vector<Camera> cameras;
   LightEntries lights;
-  double detail = 0;        ///< ReadOptions::detail
-  bool keep_faces = false;  ///< ReadOptions::keep_faces
+  double detail = 0;                              ///< ReadOptions::detail
+  std::optional<double> maintenance_factor = {};  ///< ReadOptions::maintenance_factor
+  bool keep_faces = false;                        ///< ReadOptions::keep_faces
+  std::optional<BandsAsked> bands;
 };
 
 /// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError

@@ -84,6 +84,13 @@ Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Inde
   return daylight;
 }
 
+// Of the colour temperatures that are stated.
+Daylight with_spectra(Daylight daylight, const LightEntries& lights) {
+  if (daylight.sun && lights.sun) daylight.sun->spectrum = lights.sun->spectrum;
+  if (daylight.sky && lights.sky) daylight.sky->spectrum = lights.sky->spectrum;
+  return daylight;
+}
+
 // What falls on open level ground.
 Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
   Spectrum irradiance = Spectrum::Zero(bands);
@@ -100,7 +107,7 @@ Scene with_lights(Scene scene, const LightEntries& lights) {
   scene.north = north_of(scene, lights);
   for (const LuminaireEntry& entry : lights.luminaires) scene.luminaires.push_back(luminaire_of(entry, scene, bands));
   if (!lights.sun && !lights.sky && !lights.weather) return scene;
-  Daylight daylight = daylight_of(lights, scene, bands);
+  Daylight daylight = with_spectra(daylight_of(lights, scene, bands), lights);
   if ((scene.sun && daylight.sun) || (scene.sky && daylight.sky))
     throw InputError(lights.where, "a file read before has sun or sky; expected each once");
   if (daylight.sun) scene.sun = daylight.sun;

@@ -5,6 +5,7 @@
 #include "input/read_epw.h"
 #include "light/solar_position.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,13 +26,15 @@ struct SunEntry {
   std::optional<SolarPosition> position;  ///< instead of a direction
   Place place;                            ///< with instant, where there is neither
   Instant instant;
-  Spectrum normal_irradiance;  ///< may be empty, or of one band
+  Spectrum normal_irradiance;                            ///< may be empty, or of one band
+  std::shared_ptr<const SampledSpectrum> spectrum = {};  ///< how it is spread, or null
 };
 
 struct SkyEntry {
   SkyKind kind = SkyKind::uniform;
-  Spectrum horizontal_irradiance;           ///< may be of one band
-  std::optional<SolarIrradiance> measured;  ///< for perez; brings the sun with it
+  Spectrum horizontal_irradiance;                        ///< may be of one band
+  std::optional<SolarIrradiance> measured;               ///< for perez; brings the sun with it
+  std::shared_ptr<const SampledSpectrum> spectrum = {};  ///< how it is spread, or null
 };
 
 /// The lights that a scene file names besides its models' lamps.

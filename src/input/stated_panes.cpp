@@ -38,6 +38,7 @@ Material as_pane(Material material, const Spectrum& transmittance, double index,
 Material without_stated_pane(Material material) {
   if (!material.stated_pane) return material;
   material.reflectance = material.stated_pane->matt_reflectance;
+  if (material.stated_pane->matt_exitance.size() > 0) material.exitance = material.stated_pane->matt_exitance;
   material.transmittance = {};
   material.index = usual_index;
   material.stated_pane.reset();
@@ -69,8 +70,8 @@ Scene with_stated_panes(Scene scene) {
     panes.push_back(material.name + " (" + material.stated_pane->by + ": transmittance " +
                     listed_shares(material.transmittance) + ")");
     const Spectrum most = 1 - material.transmittance;
-    if (!(material.reflectance > most).any()) continue;
-    darker.push_back(material.name);
+    constexpr double rounding = 1e-12;
+    if ((material.reflectance > most + rounding).any()) darker.push_back(material.name);
     material.reflectance = material.reflectance.min(most);
   }
   if (!panes.empty()) scene.notes.push_back(note_on_panes(panes, first));

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/toml_spectrum.h"
 #include "light/photometry.h"
 
 #include <cmath>
@@ -47,8 +48,9 @@ Instant instant_of(const TomlValue& value) {
 }
 
 SunEntry sun_of(const TomlValue& root, const TomlValue& table, bool only_its_place) {
-  allow_keys(table, {"direction", "time", "irradiance", "illuminance"});
+  allow_keys(table, {"direction", "time", "irradiance", "illuminance", "color_temperature"});
   SunEntry sun;
+  sun.spectrum = daylight_of_temperature(table);
   if (one_of(table, {"direction", "time"}) == "direction") {
     sun.direction = direction(*find(table, "direction"));
   } else {
@@ -61,7 +63,7 @@ SunEntry sun_of(const TomlValue& root, const TomlValue& table, bool only_its_pla
 }
 
 SkyEntry perez_of(const TomlValue& table, const TomlValue* sun) {
-  allow_keys(table, {"kind", "direct_normal", "diffuse_horizontal"});
+  allow_keys(table, {"kind", "direct_normal", "diffuse_horizontal", "color_temperature"});
   if (sun == nullptr)
     throw InputError(table.where, "a Perez sky needs the sun's place: a table [sun] with direction or time");
   for (const char* const key : {"irradiance", "illuminance"}) {
@@ -72,7 +74,7 @@ SkyEntry perez_of(const TomlValue& table, const TomlValue* sun) {
   SolarIrradiance measured;
   measured.direct_normal = not_negative(required(table, "direct_normal", "W/m^2, as measured"));
   measured.diffuse_horizontal = not_negative(required(table, "diffuse_horizontal", "W/m^2, as measured"));
-  return {SkyKind::perez, {}, measured};
+  return {SkyKind::perez, {}, measured, daylight_of_temperature(table)};
 }
 
 SkyEntry sky_of(const TomlValue& table, const TomlValue* sun) {
@@ -82,11 +84,11 @@ SkyEntry sky_of(const TomlValue& table, const TomlValue* sun) {
                                                {"clear", SkyKind::cie_clear},
                                                {"perez", SkyKind::perez}});
   if (kind == SkyKind::perez) return perez_of(table, sun);
-  allow_keys(table, {"kind", "irradiance", "illuminance"});
+  allow_keys(table, {"kind", "irradiance", "illuminance", "color_temperature"});
   if (kind == SkyKind::cie_clear && sun == nullptr) {
     throw InputError(named.where, "a clear sky needs the sun's place: a table [sun] with direction or time");
   }
-  return {kind, irradiance_of(table), {}};
+  return {kind, irradiance_of(table), {}, daylight_of_temperature(table)};
 }
 
 WeatherHour weather_of(const TomlValue& table, const TomlFrame& frame) {

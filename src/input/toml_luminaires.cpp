@@ -2,7 +2,9 @@
 
 #include "input/read_ies.h"
 #include "input/toml_lights.h"
+#include "input/toml_spectrum.h"
 #include "light/photometry.h"
+#include "light/spectra.h"
 #include "scene/photometric_web.h"
 
 #include <algorithm>
@@ -26,12 +28,20 @@ Spectrum colour_of(const TomlValue& table) {
   return colour;
 }
 
+// The watts between 380 and 780 nm, such that the lumens of a light with this spectrum are right.
+Spectrum watts_by_wavelength(const TomlValue& table, const TomlFrame& frame) {
+  const double watts = number(*find(table, "watts"), "one number of watts beside a spectrum");
+  const Cells light = in_cells(*light_spectrum(*find(table, "spectrum"), frame), Beyond::zero);
+  return Spectrum::Constant(1, watts * luminance_of_cells(light) / light.sum() / luminous_efficacy);
+}
+
 // Flux per band in W: the watts as given, or with 179 lm/W as many lumens as given.
-Spectrum flux_of(const TomlValue& table) {
+Spectrum flux_of(const TomlValue& table, const TomlFrame& frame) {
   const std::string key = one_of(table, {"lumens", "watts"});
   if (key == "watts") {
     if (const TomlValue* const colour = find(table, "color")) refuse(*colour, "no color beside watts: give [R, G, B]");
-    return spectrum(*find(table, key));
+    const Spectrum watts = spectrum(*find(table, key));
+    return find(table, "spectrum") ? watts_by_wavelength(table, frame) : watts;
   }
   const Spectrum colour = colour_of(table);
   return not_negative(*find(table, key)) / luminance(colour) * colour;
@@ -44,20 +54,20 @@ double half_angle(const TomlValue& table, const std::string& key) {
   return 0.5 * value.number;
 }
 
-SpotLight spot_of(const TomlValue& table) {
+SpotLight spot_of(const TomlValue& table, const TomlFrame& frame) {
   SpotLight spot{.intensity = {},
                  .beam_half_angle = half_angle(table, "beam_angle"),
                  .field_half_angle = half_angle(table, "field_angle")};
   if (spot.beam_half_angle >= spot.field_half_angle) {
     refuse(*find(table, "field_angle"), "an angle above the beam_angle: there a tenth of the intensity is left");
   }
-  spot.intensity = flux_of(table) / spot_solid_angle(spot);
+  spot.intensity = flux_of(table, frame) / spot_solid_angle(spot);
   return spot;
 }
 
 SphericalLamp sphere_of(const TomlValue& table, const TomlFrame& frame) {
   const double radius = frame.metres_per_unit * positive(required(table, "radius", "the radius of the sphere"));
-  return {radius, flux_of(table) / (4 * pi * radius * radius)};
+  return {radius, flux_of(table, frame) / (4 * pi * radius * radius)};
 }
 
 // As the file says, or dimmed or brightened to the lumens given.
@@ -74,7 +84,7 @@ WebLight web_of(const TomlValue& table, const TomlFrame& frame) {
 }
 
 void require_keys_of(const TomlValue& table, LuminaireKind kind) {
-  const std::vector<std::string> common = {"name", "kind", "position", "positions", "lumens", "color"};
+  const std::vector<std::string> common = {"name", "kind", "position", "positions", "lumens", "color", "spectrum"};
   const std::vector<std::vector<std::string>> own = {
       {"watts"}, {"watts", "aim", "beam_angle", "field_angle"}, {"aim", "zero_plane", "file"}, {"watts", "radius"}};
   std::vector<std::string> allowed = common;
@@ -101,10 +111,14 @@ LuminaireEntry entry_of(const TomlValue& table, const TomlFrame& frame) {
                                                            {"sphere", LuminaireKind::sphere}});
   require_keys_of(table, kind);
   LuminaireEntry entry;
+  if (const TomlValue* const given = find(table, "spectrum")) {
+    if (find(table, "color")) one_of(table, {"color", "spectrum"});
+    entry.luminaire.spectrum = light_spectrum(*given, frame);
+  }
   entry.where = table.where;
   entry.luminaire.place = table.where;
-  if (kind == LuminaireKind::point) entry.luminaire.light = PointLight{flux_of(table) / (4 * pi)};
-  if (kind == LuminaireKind::spot) entry.luminaire.light = spot_of(table);
+  if (kind == LuminaireKind::point) entry.luminaire.light = PointLight{flux_of(table, frame) / (4 * pi)};
+  if (kind == LuminaireKind::spot) entry.luminaire.light = spot_of(table, frame);
   if (kind == LuminaireKind::ies) entry.luminaire.light = web_of(table, frame);
   if (kind == LuminaireKind::sphere) entry.luminaire.light = sphere_of(table, frame);
   if (const TomlValue* const aim = find(table, "aim")) entry.aim = direction(*aim);

@@ -4,7 +4,10 @@
 
 #include "input/material_settings.h"
 #include "input/text.h"
+#include "input/toml_spectrum.h"
 #include "input/turned_about.h"
+#include "light/photometry.h"
+#include "light/spectra.h"
 
 namespace patchlight {
 namespace {
@@ -100,9 +103,27 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
   return model;
 }
 
-std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
+// What a key of a material says, in linear RGB and by wavelength.
+MaterialSetting with_value(MaterialSetting setting, const TomlValue& value, const TomlFrame& frame) {
+  if (setting.quantity == Quantity::light_spectrum) {
+    setting.sampled = light_spectrum(value, frame);
+    setting.value = rgb_of_light(*setting.sampled);
+  } else if (setting.quantity == Quantity::index || !is_by_wavelength(value)) {
+    setting.value = spectrum(value);
+  } else if (is_share(setting.quantity)) {
+    setting.sampled = sampled_share(value, frame);
+    setting.value = rgb_of_reflectance(*setting.sampled).max(0.0).min(1.0);
+  } else {
+    setting.sampled = sampled_exitance(value, frame);
+    const double luminance = luminance_of_cells(in_cells(*setting.sampled, Beyond::zero));
+    setting.value = luminance / luminous_efficacy * rgb_of_light(*setting.sampled);
+  }
+  return setting;
+}
+
+std::vector<MaterialSetting> settings_of_table(const TomlValue& table, const TomlFrame& frame) {
   allow_keys(table, {"name", "of", "reflectance", "specular_reflectance", "transmittance", "diffuse_transmittance",
-                     "index", "exitance", "radiance"});
+                     "index", "exitance", "radiance", "spectrum"});
   const TomlValue* const of = find(table, "of");
   const TomlValue& name =
       of && !find(table, "name") ? *of : required(table, "name", "the name of materials, or a pattern with * and ?");
@@ -113,14 +134,19 @@ std::vector<MaterialSetting> settings_of_table(const TomlValue& table) {
         std::pair("specular_reflectance", Quantity::specular_reflectance),
         std::pair("transmittance", Quantity::transmittance),
         std::pair("diffuse_transmittance", Quantity::diffuse_transmittance), std::pair("index", Quantity::index),
-        std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance)}) {
+        std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance),
+        std::pair("spectrum", Quantity::light_spectrum)}) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
-    settings.push_back({material, quantity, spectrum(*value), name.where, of ? text(*of) : std::string()});
+    settings.push_back(with_value({material, quantity, {}, name.where, of ? text(*of) : std::string()}, *value, frame));
     if (is_share(quantity) && (settings.back().value > 1).any()) refuse(*value, "0 to 1 in every band");
     if (quantity == Quantity::index && !is_index(settings.back().value)) refuse(*value, expected_index);
   }
   if (find(table, "exitance") && find(table, "radiance")) one_of(table, {"exitance", "radiance"});
+  for (const char* const key : {"exitance", "radiance"}) {
+    const TomlValue* const light = find(table, key);
+    if (light && is_by_wavelength(*light) && find(table, "spectrum")) one_of(table, {key, "spectrum"});
+  }
   if (settings.empty()) throw InputError(table.where, "this material changes nothing; expected a reflectance or more");
   return settings;
 }
@@ -142,10 +168,10 @@ std::vector<ModelEntry> models_of(const TomlValue& root, const TomlFrame& frame)
   return models;
 }
 
-std::vector<MaterialSetting> settings_of(const TomlValue& root) {
+std::vector<MaterialSetting> settings_of(const TomlValue& root, const TomlFrame& frame) {
   std::vector<MaterialSetting> settings;
   for (const TomlValue& table : tables(find(root, "material"))) {
-    for (MaterialSetting& setting : settings_of_table(table)) settings.push_back(std::move(setting));
+    for (MaterialSetting& setting : settings_of_table(table, frame)) settings.push_back(std::move(setting));
   }
   return settings;
 }

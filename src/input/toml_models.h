@@ -23,7 +23,7 @@ std::filesystem::path named_file(const TomlValue& value, const TomlFrame& frame)
 /// The tables [[model]]. \throws InputError.
 std::vector<ModelEntry> models_of(const TomlValue& root, const TomlFrame& frame);
 
-/// The tables [[material]]. \throws InputError.
-std::vector<MaterialSetting> settings_of(const TomlValue& root);
+/// The tables [[material]]; the spectra that they name are read. \throws InputError.
+std::vector<MaterialSetting> settings_of(const TomlValue& root, const TomlFrame& frame);
 
 }  // namespace patchlight

@@ -35,8 +35,9 @@ Shares shares_of(double t, double a) {
 // The mean of both polarisations.
 Shares unpolarised(const Pane& pane, double cosine) {
   const double sine_inside = std::sqrt(std::fmax(0, 1 - cosine * cosine)) / pane.index;
-  const double cosine_inside = pane.index == 1 ? cosine : std::sqrt(1 - sine_inside * sine_inside);
-  const double a = std::pow(pane.internal, 1 / cosine_inside);
+  const double cosine_inside = std::sqrt(1 - sine_inside * sine_inside);
+  // Holes in a sheet without thickness are the same share of it from everywhere.
+  const double a = pane.index == 1 ? pane.internal : std::pow(pane.internal, 1 / cosine_inside);
   Shares mean;
   for (const double t : through_surface(pane.index, cosine, cosine_inside)) {
     const Shares shares = shares_of(t, a);

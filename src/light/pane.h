@@ -6,7 +6,7 @@ namespace patchlight {
 /// what it lets straight through and what it mirrors at an angle, by Fresnel's equations for both of its surfaces, all
 /// reflections between them, and absorption on the way. The same from either side.
 struct Pane {
-  double index = 1;     ///< of refraction, at least 1
+  double index = 1;     ///< of refraction, at least 1; that of air, 1: a sheet with holes, the same at all angles
   double internal = 1;  ///< the share of light that is left after the way across, straight; 1: it absorbs nothing
 };
 

@@ -4,7 +4,8 @@
 
 namespace patchlight {
 
-/// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance).
+/// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance). Of bands of wavelengths the
+/// luminous weights are such that times it they give 683 lm/W at the peak of V(lambda).
 inline constexpr double luminous_efficacy = 179.0;
 
 /// Luminance in cd/m^2 of a radiance in W/(m^2 sr): 179 lm/W times the sum of the bands by their luminous weights. The
@@ -13,5 +14,8 @@ double luminance(const Spectrum& radiance, const Bands& bands);
 
 /// The same of usual_bands().
 double luminance(const Spectrum& radiance);
+
+/// The weights of bands in means by luminance; they sum up to 1.
+Spectrum luminous_shares(const Bands& bands);
 
 }  // namespace patchlight

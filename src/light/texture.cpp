@@ -61,6 +61,19 @@ Rgb mean_colour(const Texture& texture) {
   return {sum[0] / count, sum[1] / count, sum[2] / count};
 }
 
+bool reflects_more_than_all(const TexturedReflectance& textured) {
+  constexpr double most = 1 + 1e-6;
+  const auto is_more = [&](const std::array<float, 3>& texel) {
+    return (reflectance_of(textured, colour_of(texel)) > most).any();
+  };
+  const auto& texels = textured.texture->texels;
+  // The highest red, green and blue together reflect no less than any texel, and mostly that is little enough.
+  std::array<float, 3> highest{};
+  for (const auto& texel : texels)
+    for (std::size_t k = 0; k < 3; ++k) highest[k] = std::max(highest[k], texel[k]);
+  return is_more(highest) && std::any_of(texels.begin(), texels.end(), is_more);
+}
+
 TextureRange range_of(const TexturedReflectance& textured) {
   const Spectrum mean = reflectance_of(textured, mean_colour(*textured.texture));
   TextureRange range;

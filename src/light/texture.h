@@ -21,6 +21,9 @@ Spectrum reflectance_at(const TexturedReflectance& textured, const Eigen::Vector
 /// The mean of all texels.
 Rgb mean_colour(const Texture& texture);
 
+/// True where a texel reflects more than 1 in a band, by more than rounding.
+bool reflects_more_than_all(const TexturedReflectance& textured);
+
 /// What can be said of all texels of a picture.
 struct TextureRange {
   double highest_reflectance = 0;  ///< worst band

@@ -11,22 +11,24 @@
 namespace patchlight {
 
 /// Shadow rays per patch. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball
-/// and four times as many to the sky.
+/// and over mirrors, and four times as many to the sky.
 struct LightingOptions {
-  int lamp_samples = 64;   ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
-                           ///< take one
-  int sun_samples = 64;    ///< 64 times that where shadows are too many to be found by geometry; at a point one
-  int sky_samples = 1024;  ///< directions; half of them towards panes, or half as many again towards holes
+  int lamp_samples = 64;      ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
+                              ///< take one
+  int sun_samples = 64;       ///< 64 times that where shadows are too many to be found by geometry; at a point one
+  int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
+  int sky_samples = 1024;     ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
 };
 
 /// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
-  Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen; 0 where nothing is
-                         ///< sampled. Where n rays to a light without extent, or from a point to a ball, all find the
-                         ///< same: 3 / n of what it gives without shadows. What all rays of a patch to a ball or to the
-                         ///< sky miss, a hole that is smaller than one ray's share of these, is not known
+  Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
+                         ///< eight; 0 where nothing is sampled. Where n rays to a light without extent, or from a point
+                         ///< to a ball, all find the same: 3 / n of what it gives without shadows. What all rays of a
+                         ///< patch to a ball or to the sky miss, a hole that is smaller than one ray's share of these,
+                         ///< is not known
 };
 
 /// More light on the same patches or points, whose errors have nothing to do with each other.

@@ -20,9 +20,16 @@ LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
       bands_(number_of_bands(scene)) {}
 
 Field LightPaths::transmittance(std::span<const Segment> segments) const {
+  const auto blocked = opaque_->occluded(segments);
+  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
   Field share(static_cast<Eigen::Index>(segments.size()), bands_);
-  const std::vector<Passage> all = passages(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) share.row(static_cast<Eigen::Index>(k)) = all[k].transmittance;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    auto row = share.row(static_cast<Eigen::Index>(k));
+    if (meets_opening[k] && !blocked[k])
+      row = through_openings(segments[k]).transmittance;
+    else
+      row = blocked[k] ? 0.0 : 1.0;
+  }
   return share;
 }
 

@@ -3,7 +3,9 @@
 #include "scene/transmittance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <queue>
 #include <utility>
 
@@ -13,6 +15,7 @@ namespace {
 constexpr std::size_t most_mirrors = 16;
 constexpr std::size_t most_chains = 1024;
 constexpr double least_reflectance = 1e-3;
+constexpr double least_share = 1e-3;
 
 // What a material reflects at most in a band; of a clear one, of light from all directions alike.
 double reflectance_of(const Material& material) {
@@ -28,7 +31,58 @@ double reflectance_of(const Material& material) {
   return most;
 }
 
+// Lamps of a scene with very many are looked at up to here.
+constexpr std::size_t most_lamps = 256;
+
+Point middle_of(const std::vector<Point>& corners) {
+  Point middle = Point::Zero();
+  for (const Point& corner : corners) middle += corner / static_cast<double>(corners.size());
+  return middle;
+}
+
+std::vector<Point> places_of_lamps(const Scene& scene) {
+  std::vector<Point> places;
+  for (const Luminaire& luminaire : scene.luminaires) places.push_back(luminaire.position);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_lamp(scene, p)) places.push_back(middle_of(corner_points(scene, p)));
+  }
+  places.resize(std::min(places.size(), most_lamps));
+  return places;
+}
+
+// Of the light of a lamp all around it: A cos / (4 pi d^2), one half at most.
+double share_seen_from(const Point& lamp, const Point& middle, const Vector& normal, double area) {
+  const Vector way = lamp - middle;
+  const double before = normal.dot(way);
+  if (!(before > 0)) return 0;
+  return std::min(0.5, area * before / std::pow(way.norm(), 3) / (4 * std::numbers::pi));
+}
+
+std::vector<MirrorSide> with_light_shares(const Scene& scene, std::vector<MirrorSide> sides) {
+  const std::vector<Point> lamps = places_of_lamps(scene);
+  const auto area_of = [&](const MirrorSide& side) { return area_vector(corner_points(scene, side.polygon)).norm(); };
+  double all = 0;
+  for (const MirrorSide& side : sides) all += area_of(side);
+  for (MirrorSide& side : sides) {
+    const Point middle = middle_of(corner_points(scene, side.polygon));
+    const double area = area_of(side);
+    side.light_share = area / all;
+    for (const Point& lamp : lamps)
+      side.light_share = std::max(side.light_share, share_seen_from(lamp, middle, side.normal, area));
+  }
+  return sides;
+}
+
+// So far before a plane something has to be to count.
+double tolerance_in(const Scene& scene) { return 1e-7 * bounds(scene).diagonal().norm(); }
+
+bool has_scene_before(const Scene& scene, const MirrorSide& side, double tolerance) {
+  return std::any_of(scene.vertices.begin(), scene.vertices.end(),
+                     [&](const Point& vertex) { return side.normal.dot(vertex - side.on_plane) > tolerance; });
+}
+
 std::vector<MirrorSide> mirror_sides(const Scene& scene) {
+  const double tolerance = tolerance_in(scene);
   std::vector<double> by_material;
   for (const Material& material : scene.materials) by_material.push_back(reflectance_of(material));
   std::vector<MirrorSide> sides;
@@ -39,11 +93,12 @@ std::vector<MirrorSide> mirror_sides(const Scene& scene) {
       const double reflectance = by_material[material_on(polygon, side)];
       if (!(reflectance > 0) || !(is_clear || is_mirror(scene, p, side))) continue;
       const Vector front = front_normal(scene, p);
-      sides.push_back(
-          {p, side, side == Side::front ? front : Vector(-front), scene.vertices[polygon.corners[0]], reflectance});
+      const MirrorSide mirror{p, side, side == Side::front ? front : Vector(-front), scene.vertices[polygon.corners[0]],
+                              reflectance};
+      if (has_scene_before(scene, mirror, tolerance)) sides.push_back(mirror);
     }
   }
-  return sides;
+  return with_light_shares(scene, std::move(sides));
 }
 
 bool has_corner_before(const Scene& scene, PolygonIndex polygon, const MirrorSide& mirror, double tolerance) {
@@ -64,17 +119,21 @@ MirrorChain lengthened(const MirrorChain& chain, const MirrorSide& by) {
   MirrorChain longer = chain;
   longer.mirrors.push_back(by);
   longer.reflectance *= by.reflectance;
+  longer.light_share = std::min(chain.light_share, by.light_share);
   longer.image = reflection_at(by) * chain.image;
   return longer;
 }
 
-// Those that reflect most come first, of equal ones those that were found first.
+// About so much light goes by it.
+double light_by(const MirrorChain& chain) { return chain.reflectance * chain.light_share; }
+
+// Those by which most light goes come first, of equal ones those that were found first.
 struct QueuedChain {
   MirrorChain chain;
   std::size_t number = 0;
 
   bool operator<(const QueuedChain& other) const {
-    if (chain.reflectance != other.chain.reflectance) return chain.reflectance < other.chain.reflectance;
+    if (light_by(chain) != light_by(other.chain)) return light_by(chain) < light_by(other.chain);
     return number > other.number;
   }
 };
@@ -82,9 +141,9 @@ struct QueuedChain {
 class ChainQueue {
  public:
   ChainQueue(const Scene& scene, std::vector<MirrorSide> sides)
-      : scene_(scene), sides_(std::move(sides)), tolerance_(1e-7 * bounds(scene).diagonal().norm()) {
-    for (const MirrorSide& side : sides_)
-      if (has_scene_before(side)) add(lengthened({}, side));
+      : scene_(scene), sides_(std::move(sides)), tolerance_(tolerance_in(scene)) {
+    for (const MirrorSide& side : sides_) least_ = std::max(least_, least_share * light_by(lengthened({}, side)));
+    for (const MirrorSide& side : sides_) add(lengthened({}, side));
   }
 
   bool empty() const { return queue_.empty(); }
@@ -106,11 +165,8 @@ class ChainQueue {
   }
 
  private:
-  void add(MirrorChain chain) { queue_.push({std::move(chain), number_++}); }
-
-  bool has_scene_before(const MirrorSide& side) const {
-    return std::any_of(scene_.vertices.begin(), scene_.vertices.end(),
-                       [&](const Point& vertex) { return side.normal.dot(vertex - side.on_plane) > tolerance_; });
+  void add(MirrorChain chain) {
+    if (light_by(chain) >= least_) queue_.push({std::move(chain), number_++});
   }
 
   const Scene& scene_;
@@ -118,23 +174,26 @@ class ChainQueue {
   double tolerance_;
   std::priority_queue<QueuedChain> queue_;
   std::size_t number_ = 0;
+  double least_ = 0;  // light by a chain that is followed
 };
 
 }  // namespace
 
 MirrorChains mirror_chains(const Scene& scene) {
-  ChainQueue queued(scene, mirror_sides(scene));
+  const std::vector<MirrorSide> sides = mirror_sides(scene);
+  ChainQueue queued(scene, sides);
   MirrorChains found;
-  while (!queued.empty()) {
+  while (!queued.empty() && found.chains.size() < most_chains) {
     MirrorChain chain = queued.next();
-    if (found.chains.size() == most_chains) {
-      found.is_cut = true;
-      found.cut_off = chain.reflectance;
-      break;
-    }
     if (chain.mirrors.size() < most_mirrors) queued.add_longer(chain);
     found.chains.push_back(std::move(chain));
   }
+  found.is_cut = !queued.empty();
+  double all = 0;
+  for (const MirrorSide& side : sides) all += side.reflectance * side.light_share;
+  double followed = 0;
+  for (const MirrorChain& chain : found.chains) followed += chain.mirrors.size() == 1 ? light_by(chain) : 0;
+  found.left_out = all > 0 ? std::max(0.0, 1 - followed / all) : 0;
   return found;
 }
 

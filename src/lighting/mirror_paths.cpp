@@ -1,6 +1,7 @@
 #include "lighting/mirror_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace patchlight {
@@ -45,15 +46,26 @@ MirrorPaths::MirrorPaths(const Scene& scene)
 }
 
 // All these lines lie in the hull of the two balls, no farther from the segment between the centres than the larger
-// radius.
+// radius; so they meet the plane no farther from where the segment does than that over the cosine there.
 bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const {
-  const Ball& mirror = balls_[chain.mirrors.back().polygon];
+  const MirrorSide& last = chain.mirrors.back();
+  const Ball& mirror = balls_[last.polygon];
   const Point image = chain.image * receiver.centre;
+  const double before = last.normal.dot(source.centre - last.on_plane);
+  const double behind = last.normal.dot(last.on_plane - image);
+  if (before < -source.radius || behind < -receiver.radius) return false;
   const Vector way = source.centre - image;
   const double squared_length = way.squaredNorm();
   const double along = squared_length > 0 ? std::clamp((mirror.centre - image).dot(way) / squared_length, 0.0, 1.0) : 0;
-  const double reach = mirror.radius + std::max(receiver.radius, source.radius);
-  return (image + along * way - mirror.centre).squaredNorm() <= (1 + rounding_of_squares) * reach * reach;
+  const double wide = std::max(receiver.radius, source.radius);
+  const double reach = mirror.radius + wide;
+  if ((image + along * way - mirror.centre).squaredNorm() > (1 + rounding_of_squares) * reach * reach) return false;
+  if (!(before > source.radius && behind > receiver.radius)) return true;
+
+  const FlatPolygon& flat = flat_[last.polygon];
+  const Eigen::Vector2d place = flat.in_plane(image + behind / (before + behind) * way);
+  const double spread = wide * std::sqrt(squared_length) / (before + behind);
+  return flat.box.squaredExteriorDistance(place) <= (1 + rounding_of_squares) * spread * spread;
 }
 
 bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const {

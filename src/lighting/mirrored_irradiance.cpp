@@ -19,8 +19,9 @@
 namespace patchlight {
 namespace {
 
-// Independent estimates of each irradiance: their spread is its standard error.
-constexpr std::uint32_t mirrored_replicates = 8;
+// Independent estimates of each irradiance, at most: their spread is its standard error. Of few samples there are
+// fewer.
+constexpr std::uint32_t most_replicates = 8;
 constexpr std::size_t most_mirrors_of_sky = 16;
 constexpr int effort_at_points = 16;
 
@@ -92,6 +93,11 @@ SurfacePoint image_of(const MirrorChain& chain, const SurfacePoint& at) {
 struct WantedChain {
   const MirrorChain* chain;
   std::vector<const MirroredSource*> sources;
+};
+
+struct MirroredEstimate {
+  Spectrum mean;
+  Spectrum standard_error;
 };
 
 struct MirrorSampler {
@@ -186,11 +192,12 @@ Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePo
   return sum;
 }
 
-// One row each.
+// One row each, of those with a place over which no other polygon lies.
 Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key) const {
-  Field found = Field::Zero(mirrored_replicates, lighting.bands);
+  Field found = Field::Zero(static_cast<Eigen::Index>(points.size()), lighting.bands);
   const std::vector<WantedChain> chains = chains_to(receiver);
-  for (std::uint32_t r = 0; r < mirrored_replicates; ++r) {
+  Eigen::Index count = 0;
+  for (std::uint32_t r = 0; r < points.size(); ++r) {
     const auto samples = shifted(points[r], hash({key, r}));
     std::vector<SurfacePoint> places;
     std::vector<std::array<double, 4>> of_places;
@@ -202,27 +209,35 @@ Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key) 
     }
     if (places.empty()) continue;
     const Spectrum sum = over_chains(chains, places, of_places) + of_sky(places, of_places, receiver.is_point());
-    found.row(r) = sum / static_cast<double>(places.size());
+    found.row(count++) = sum / static_cast<double>(places.size());
   }
-  return found;
+  return found.topRows(count);
+}
+
+// The mean of replicates and its standard error, as large as itself where there is one alone; 0 where there is none.
+MirroredEstimate estimate_from(const Field& replicates) {
+  const Eigen::Index count = replicates.rows();
+  if (count == 0) return {Spectrum::Zero(replicates.cols()), Spectrum::Zero(replicates.cols())};
+  const Spectrum mean = replicates.colwise().mean();
+  if (count == 1) return {mean, mean};
+  const Spectrum squares = replicates.square().colwise().mean();
+  return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
 }
 
 DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps,
                                const std::vector<Receiver>& receivers, const LightingOptions& options, int effort,
                                const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
-  const auto wanted = static_cast<std::uint32_t>(std::max(1, effort * options.lamp_samples)) / mirrored_replicates;
-  for (std::uint32_t r = 0; r < mirrored_replicates; ++r)
-    sampler.points.push_back(scrambled_sobol(std::bit_ceil(std::max(2U, wanted)), hash({options.seed, r, 7})));
+  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, effort * options.mirrored_samples)));
+  const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
+  for (std::uint32_t r = 0; r < replicates; ++r)
+    sampler.points.push_back(scrambled_sobol(samples / replicates, hash({options.seed, r, 7})));
   const auto rows = static_cast<Eigen::Index>(receivers.size());
   DirectIrradiance direct{Field::Zero(rows, lighting.bands), Field::Zero(rows, lighting.bands)};
   parallel_for(receivers.size(), Stage::direct_light, observer, [&](std::size_t k) {
-    const Field found = sampler.replicates_at(receivers[k], hash({options.seed, k, 8}));
-    const Spectrum mean = found.colwise().mean();
-    const Spectrum squares = found.square().colwise().mean();
-    direct.irradiance.row(static_cast<Eigen::Index>(k)) = mean;
-    direct.standard_error.row(static_cast<Eigen::Index>(k)) =
-        ((squares - mean.square()).max(0.0) / (mirrored_replicates - 1)).sqrt();
+    const MirroredEstimate found = estimate_from(sampler.replicates_at(receivers[k], hash({options.seed, k, 8})));
+    direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
+    direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
   });
   return direct;
 }

@@ -37,7 +37,7 @@ std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
 /// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to 16.
 /// `lighting` must have mirrors; it is sampled as direct_irradiance() samples. docs/theory.md section 11.
-/// O(patches x chains x lights x lamp_samples). \throws Cancelled.
+/// O(patches x chains x lights x mirrored_samples). \throws Cancelled.
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options = {}, const Observer& observer = {});
 

@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
+// A surface that leaves another by less than this sine, a tenth of a degree, lies in it.
+constexpr double flat_sine = 2e-3;
+
 // OutlineCorners of all outlines are numbered through; an edge has the number of the corner where it begins.
 struct OutlineCorners {
   std::vector<std::uint32_t> first;  // per polygon, one more at the end
@@ -67,9 +70,58 @@ std::vector<OutlineEdge> sorted_edges(const Scene& scene, const OutlineCorners& 
   return edges;
 }
 
+// The edges of all polygons, whichever of their sides are kept.
+class AllEdges {
+ public:
+  AllEdges(std::span<const Outline> outlines, const OutlineCorners& corners, std::span<const std::uint32_t> place)
+      : outlines_(outlines), corners_(corners) {
+    for (std::uint32_t p = 0; p < outlines.size(); ++p) {
+      for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
+        const auto [low, high] = std::minmax({place[c], place[corners.next(p, c)]});
+        edges_.push_back({low, high, p, c});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
+      return std::tuple(a.low, a.high, a.corner) < std::tuple(b.low, b.high, b.corner);
+    });
+  }
+
+  // Does a third polygon stand on the edge between two, on the side of them that is lit? A slab that ends at two walls,
+  // one above the other, parts the light of the storeys.
+  bool wall_between(const OutlineEdge& a, const OutlineEdge& b, Side side) const {
+    const double sign = side == Side::front ? 1 : -1;
+    const auto range = std::equal_range(edges_.begin(), edges_.end(), Edge{a.low, a.high, 0, 0}, before);
+    return std::any_of(range.first, range.second, [&](const Edge& edge) {
+      if (edge.polygon == a.polygon || edge.polygon == b.polygon) return false;
+      const Vector inward = inward_from(edge);
+      return sign * inward.dot(outlines_[a.polygon].normal) > flat_sine &&
+             sign * inward.dot(outlines_[b.polygon].normal) > flat_sine;
+    });
+  }
+
+ private:
+  struct Edge {
+    std::uint32_t low, high, polygon, corner;
+  };
+  static bool before(const Edge& a, const Edge& b) { return std::tuple(a.low, a.high) < std::tuple(b.low, b.high); }
+
+  // From an edge into its polygon, along its plane.
+  Vector inward_from(const Edge& edge) const {
+    const Outline& outline = outlines_[edge.polygon];
+    const std::uint32_t first = corners_.first[edge.polygon];
+    const Vector along =
+        outline.corners[corners_.next(edge.polygon, edge.corner) - first] - outline.corners[edge.corner - first];
+    return outline.normal.cross(along).normalized();
+  }
+
+  std::span<const Outline> outlines_;
+  const OutlineCorners& corners_;
+  std::vector<Edge> edges_;
+};
+
 // Per edge the edge of the smooth neighbour, or none.
 std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, std::span<const OutlineEdge> edges,
-                                             std::size_t corner_count) {
+                                             std::size_t corner_count, const AllEdges& all, Side side) {
   std::vector<std::uint32_t> neighbour(corner_count, none);
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end].place() == edges[begin].place()) ++end;
@@ -78,6 +130,7 @@ std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, 
     const OutlineEdge& b = edges[begin + 1];
     if (a.forward == b.forward) continue;
     if (outlines[a.polygon].normal.dot(outlines[b.polygon].normal) <= smooth_cosine) continue;
+    if (all.wall_between(a, b, side)) continue;
     neighbour[a.corner] = b.corner;
     neighbour[b.corner] = a.corner;
   }
@@ -118,7 +171,8 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
   const OutlineCorners corners = count_corners(outlines);
   const std::vector<std::uint32_t> place = weld(outlines);
   const std::vector<OutlineEdge> edges = sorted_edges(scene, corners, side, kept, place);
-  const std::vector<std::uint32_t> neighbour = smooth_neighbours(outlines, edges, place.size());
+  const std::vector<std::uint32_t> neighbour =
+      smooth_neighbours(outlines, edges, place.size(), AllEdges(outlines, corners, place), side);
   const std::vector<std::uint32_t> shared = unite(corners, neighbour);
 
   // 2. The first polygon at a corner or an edge makes the vertices; the others use them, on an edge in reverse order.

@@ -24,11 +24,11 @@ void require_so_many_patches(const Scene& scene, const KeptSides& sides, double 
 /// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
 /// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
 /// are numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
-/// 30 degrees, and between those only. Patches end at lines of contact, see cut_polygons(), and share no vertices over
-/// them: a polygon with such lines becomes a Delaunay mesh around them. Both sides of a polygon have their own
-/// vertices. With graded edges patches of grids of quadrilaterals shrink towards edges where lit faces meet, see
-/// graded(): there are as many, and edges in the middle are longer than `max_edge` by up to pi / 2. \throws MemoryError
-/// when more than 2^31 patches would be needed.
+/// 30 degrees and between which no wall stands, and between those only. Patches end at lines of contact, see
+/// cut_polygons(), and share no vertices over them: a polygon with such lines becomes a Delaunay mesh around them. Both
+/// sides of a polygon have their own vertices. With graded edges patches of grids of quadrilaterals shrink towards
+/// edges where lit faces meet, see graded(): there are as many, and edges in the middle are longer than `max_edge` by
+/// up to pi / 2. \throws MemoryError when more than 2^31 patches would be needed.
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts = {},
                      bool graded_edges = false);
 

@@ -25,15 +25,15 @@ double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
   return (from + t * edge - point).norm();
 }
 
-// Zero inside. The patch is convex and counter-clockwise in the flat coordinates.
-double distance_to(const PatchCorners& patch, const Point& point, int axis_u, int axis_v) {
-  const auto flat = [&](const Point& x) { return Flat(x[axis_u], x[axis_v]); };
-  const Flat eye = flat(point);
+// Zero inside. The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds
+// nothing.
+double distance_to(const auto& outline, const Flat& eye) {
   bool inside = true;
   double nearest = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < patch.count; ++k) {
-    const Flat from = flat(patch.points[static_cast<std::size_t>(k)]);
-    const Flat to = flat(patch.points[static_cast<std::size_t>((k + 1) % patch.count)]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    const Flat from(outline.u[k], outline.v[k]);
+    const Flat to(outline.u[next], outline.v[next]);
     if (cross(to - from, eye - from) >= 0) continue;
     inside = false;
     nearest = std::min(nearest, distance_to_edge(eye, from, to));
@@ -143,6 +143,16 @@ PatchLookup::PatchLookup(const PatchMesh& mesh) : mesh_(mesh) {
   }
 }
 
+PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch) const {
+  const PatchCorners corners = mesh_.corner_points(patch);
+  Outline outline{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    outline.u[k] = corners.points[k][grid.axis_u];
+    outline.v[k] = corners.points[k][grid.axis_v];
+  }
+  return outline;
+}
+
 PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
   if (auto lattice = lattice_of(range)) {
     Grid grid;
@@ -152,6 +162,8 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
   Box bounds;
   for (PatchIndex patch = range.begin; patch < range.end; ++patch) bounds.extend(box_of(mesh_, patch));
   Grid grid = lay_out<Grid>(mesh_, range, bounds);
+  grid.outlines.reserve(range.end - range.begin);
+  for (PatchIndex patch = range.begin; patch < range.end; ++patch) grid.outlines.push_back(outline_of(grid, patch));
 
   // Sort the patches into the cells that their padded bounds overlap: count, then fill from the back.
   const Point pad = Point::Constant(lookup_slack * bounds.diagonal().norm());
@@ -190,13 +202,14 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
     return range.begin + static_cast<PatchIndex>(row * lattice.count_u + column);
   }
 
+  const Flat eye(point[grid.axis_u], point[grid.axis_v]);
   std::optional<PatchIndex> nearest;
   double shortest = std::numeric_limits<double>::infinity();
   const auto search_cell = [&](Cell cell) {
     if (cell.u < 0 || cell.u >= grid.count_u || cell.v < 0 || cell.v >= grid.count_v) return;
     const std::size_t index = cell_index(grid, cell);
     for (std::uint32_t k = grid.begin[index]; k < grid.begin[index + 1] && shortest > 0; ++k) {
-      const double distance = distance_to(mesh_.corner_points(grid.patches[k]), point, grid.axis_u, grid.axis_v);
+      const double distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
       if (distance < shortest) shortest = distance, nearest = grid.patches[k];
     }
   };

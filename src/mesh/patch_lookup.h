@@ -2,6 +2,7 @@
 
 #include "patchlight/mesh/patch_mesh.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -26,6 +27,10 @@ class PatchLookup {
     Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
     int count_u = 0, count_v = 0;
   };
+  // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
+  struct Outline {
+    std::array<double, 4> u, v;
+  };
   struct Grid {
     std::optional<Lattice> lattice;  // then the rest is empty
     PatchIndex first = 0;
@@ -34,9 +39,11 @@ class PatchLookup {
     int count_u = 0, count_v = 0;
     std::vector<std::uint32_t> begin;  // per cell, into patches
     std::vector<PatchIndex> patches;
+    std::vector<Outline> outlines;  // of its patches, the first one first
   };
   std::optional<Lattice> lattice_of(PatchRange range) const;
   Grid make_grid(PatchRange range) const;
+  Outline outline_of(const Grid& grid, PatchIndex patch) const;
 
   const PatchMesh& mesh_;
   std::vector<std::uint32_t> grid_of_;  // per 2 * polygon + side: its grid, where it has several patches

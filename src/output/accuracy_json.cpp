@@ -17,7 +17,9 @@ Json errors_of(const AccuracyStep& step) {
 
 Json relative_errors(const std::vector<AccuracyStep>& steps) {
   if (steps.empty()) return nullptr;
-  return errors_of(steps.back());
+  Json part = errors_of(steps.back());
+  part["inside"] = steps.back().inside;
+  return part;
 }
 
 Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {

@@ -14,6 +14,7 @@ nlohmann::ordered_json sensors_part(const SensorFacts& sensors) {
     entry["inside_walls"] = group.inside_walls;
     entry["min"] = group.min;
     entry["mean"] = group.mean;
+    entry["standard_error_of_mean"] = group.standard_error_of_mean;
     entry["max"] = group.max;
     entry["uniformity"] = group.uniformity;
     entry["largest_standard_error"] = group.largest_standard_error;

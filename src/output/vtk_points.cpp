@@ -1,5 +1,6 @@
 #include "output/vtk_points.h"
 
+#include "light/colour.h"
 #include "output/vtk_polygons.h"
 
 #include <string>
@@ -92,6 +93,11 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   const std::string name = readings.photometric ? "illuminance" : "weighted_irradiance";
   data.AddArray(numbers<vtkFloatArray>(name.c_str(), values));
   data.AddArray(numbers<vtkFloatArray>((name + "_standard_error").c_str(), errors));
+  if (are_of_wavelengths(readings.bands)) {
+    const Field xyz = xyz_rows(in_order(readings.irradiance, rows), readings.bands);
+    data.AddArray(floats("xyz", xyz));
+    data.AddArray(numbers<vtkFloatArray>("cct", colour_temperatures(xyz)));
+  }
   if (readings.outside_by_sky) data.AddArray(numbers<vtkFloatArray>("daylight_factor", daylight));
   data.AddArray(numbers<vtkIntArray>("group", groups));
   data.AddArray(numbers<vtkIntArray>("sensor", sensors));
@@ -104,6 +110,7 @@ std::vector<std::string> units_of(const Readings& readings) {
   std::vector<std::string> all = {"irradiance and its standard error: W/m^2"};
   all.push_back(readings.photometric ? "illuminance and its standard error: lx"
                                      : "weighted_irradiance and its standard error: W/m^2");
+  if (are_of_wavelengths(readings.bands)) all.emplace_back("xyz: lx; cct: K, not a number where it has no meaning");
   if (readings.outside_by_sky) all.emplace_back("daylight_factor: percent");
   return all;
 }

@@ -7,12 +7,18 @@
 #include <algorithm>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkCommand.h>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
+#include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 namespace patchlight {
 namespace {
@@ -21,6 +27,43 @@ namespace {
 void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
   auto& kept = *static_cast<std::string*>(message);
   if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
+}
+
+void write_data(const std::filesystem::path& file, vtkDataSet& data, vtkXMLWriter& writer) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::string error;
+    const vtkNew<vtkCallbackCommand> on_error;
+    on_error->SetCallback(keep_first_error);
+    on_error->SetClientData(&error);
+    writer.AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer.SetInputData(&data);
+    writer.SetFileName(temporary.c_str());
+    writer.SetDataModeToAppended();
+    writer.EncodeAppendedDataOff();
+    writer.SetHeaderTypeToUInt64();
+    const bool written = writer.Write() != 0 && writer.GetErrorCode() == vtkErrorCode::NoError && error.empty();
+    if (!written) throw OutputError(file.string(), "cannot be written; is the disk full?");
+  });
+}
+
+// Without facts that are texts or empty: meshio, which reads such grids, takes neither.
+Pointer<vtkUnstructuredGrid> grid_of(vtkPolyData& polygons) {
+  auto grid = Pointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(polygons.GetPoints());
+  vtkCellArray& cells = *polygons.GetPolys();
+  const vtkNew<vtkUnsignedCharArray> types;
+  for (vtkIdType k = 0; k < cells.GetNumberOfCells(); ++k)
+    types->InsertNextValue(cells.GetCellSize(k) == 3 ? VTK_TRIANGLE : VTK_QUAD);
+  grid->SetCells(types, &cells);
+  grid->GetCellData()->ShallowCopy(polygons.GetCellData());
+  grid->GetPointData()->ShallowCopy(polygons.GetPointData());
+  vtkFieldData& facts = *polygons.GetFieldData();
+  for (int k = 0; k < facts.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const numbers = facts.GetArray(k);
+    if (numbers != nullptr && numbers->GetNumberOfTuples() > 0) grid->GetFieldData()->AddArray(numbers);
+  }
+  return grid;
 }
 
 }  // namespace
@@ -74,25 +117,15 @@ Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::
 }
 
 void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::string error;
-    const vtkNew<vtkCallbackCommand> on_error;
-    on_error->SetCallback(keep_first_error);
-    on_error->SetClientData(&error);
-    const vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
-    writer->SetInputData(&polygons);
-    writer->SetFileName(temporary.c_str());
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToLZ4();
-    writer->SetHeaderTypeToUInt64();
-    const bool written = writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError && error.empty();
-    if (!written) {
-      throw OutputError(file.string(), "cannot be written; is the disk full?");
-    }
-  });
+  const vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetCompressorTypeToLZ4();
+  write_data(file, polygons, *writer);
+}
+
+void write_grid(const std::filesystem::path& file, vtkPolyData& polygons) {
+  const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetCompressorTypeToZLib();
+  write_data(file, *grid_of(polygons), *writer);
 }
 
 }  // namespace patchlight

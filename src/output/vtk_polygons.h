@@ -43,4 +43,8 @@ Pointer<Array> numbers(const char* name, const Values& values) {
 /// Writes a whole .vtp file, appended raw data, LZ4. \throws OutputError.
 void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons);
 
+/// Writes the same as an unstructured grid, a whole .vtu file, appended raw data, zlib; facts that are texts are left
+/// out. \throws OutputError.
+void write_grid(const std::filesystem::path& file, vtkPolyData& polygons);
+
 }  // namespace patchlight

@@ -1,10 +1,8 @@
 #include "output/write_glb.h"
 
-#include "patchlight/base/error.h"
-
 #include "output/append_bytes.h"
+#include "output/glb_file.h"
 #include "output/json_array.h"
-#include "output/write_bytes.h"
 #include "render/tone_map.h"
 
 #include <Eigen/Core>
@@ -16,11 +14,7 @@ namespace patchlight {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Numbers of the glTF 2.0 specification.
-constexpr int type_float = 5126, type_unsigned_short = 5123, type_unsigned_int = 5125;
-constexpr int target_vertices = 34962, target_indices = 34963;
-constexpr std::uint32_t magic = 0x46546C67, chunk_json = 0x4E4F534A, chunk_binary = 0x004E4942;
+using namespace gltf;
 
 // The binary chunk and where its parts are.
 struct Buffer {
@@ -30,12 +24,6 @@ struct Buffer {
   Eigen::Array3f lowest = Eigen::Array3f::Constant(0.0F);  // of the positions
   Eigen::Array3f highest = Eigen::Array3f::Constant(0.0F);
 };
-
-// glTF's y points up.
-Vector y_up(const Vector& vector, const Scene& scene) {
-  const bool turned = std::abs(scene.up.y()) < std::abs(scene.up.z());
-  return turned ? Vector(vector.x(), vector.z(), -vector.y()) : vector;
-}
 
 // IEC 61966-2-1:1999, section 5.2: linear value of an 8-bit sRGB channel, as a share of 65535.
 std::uint16_t linear(std::uint8_t channel) {
@@ -114,35 +102,12 @@ Json description(const Buffer& buffer, const Vector& translation, const Provenan
   return json;
 }
 
-void append_chunk(std::string& bytes, std::uint32_t type, const std::string& chunk) {
-  append_bytes(bytes, static_cast<std::uint32_t>(chunk.size()));
-  append_bytes(bytes, type);
-  bytes += chunk;
-}
-
 }  // namespace
 
 void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
   const Point centre = bounds(surface.scene).center();
   const Buffer buffer = buffer_of(surface, centre, provenance.exposure);
-  // Bytes that are not UTF-8 are replaced. Chunks are padded to four bytes, JSON with spaces; the other one fits.
-  std::string text =
-      description(buffer, y_up(centre, surface.scene), provenance).dump(-1, ' ', false, Json::error_handler_t::replace);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-
-  const std::size_t header = 12, chunk_header = 8;
-  const std::size_t size = header + chunk_header + text.size() + chunk_header + buffer.bytes.size();
-  if (size > std::numeric_limits<std::uint32_t>::max()) {
-    throw OutputError(file.string(), "needs more than the 4 GiB that a .glb can hold; expected fewer patches or .vtp");
-  }
-  std::string bytes;
-  bytes.reserve(size);
-  append_bytes(bytes, magic);
-  append_bytes(bytes, std::uint32_t{2});  // version of the container
-  append_bytes(bytes, static_cast<std::uint32_t>(size));
-  append_chunk(bytes, chunk_json, text);
-  append_chunk(bytes, chunk_binary, buffer.bytes);
-  write_bytes(file, bytes);
+  write_glb_file(file, description(buffer, y_up(centre, surface.scene), provenance), buffer.bytes);
 }
 
 }  // namespace patchlight

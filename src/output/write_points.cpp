@@ -1,11 +1,13 @@
 #include "output/write_points.h"
 
+#include "light/colour.h"
 #include "output/csv_cell.h"
 #include "output/vtk_points.h"
 #include "output/write_bytes.h"
 
 #include <cassert>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 namespace patchlight {
@@ -25,6 +27,7 @@ std::string header(const Readings& readings) {
     if (part->size() > 0) names += band_columns(std::string("SE_") + name, bands);
   }
   if (readings.photometric) names += ",E_v_lx,SE_v_lx";
+  if (are_of_wavelengths(bands)) names += ",X_lx,Y_lx,Z_lx,CCT_K";
   if (readings.outside_by_sky) names += ",daylight_factor_percent";
   return names + ",inside_wall,group\n";
 }
@@ -50,6 +53,12 @@ void add_values(std::ostream& text, const Readings& readings, std::size_t sensor
   }
   const SensorValue value = sensor_value(readings, sensor);
   if (readings.photometric) text << ',' << value.value << ',' << value.standard_error;
+  if (are_of_wavelengths(readings.bands)) {
+    const Eigen::Vector3d xyz = xyz_of(readings.irradiance.row(row), readings.bands);
+    for (const double component : xyz) text << ',' << component;
+    text << ',';
+    if (const std::optional<double> kelvin = correlated_colour_temperature(xyz)) text << *kelvin;
+  }
   if (readings.outside_by_sky) text << ',' << daylight_factor(readings, sensor);
 }
 

@@ -1,9 +1,11 @@
 #include "patchlight/output/write_result.h"
 
+#include "light/colour.h"
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"
 #include "output/json_array.h"
 #include "output/report_json.h"
+#include "output/rooms_part.h"
 #include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
@@ -19,6 +21,14 @@ using Json = nlohmann::ordered_json;
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json json_of(const std::optional<std::size_t>& value) { return value ? Json(*value) : Json(); }
 
+// Bands of wavelengths, and what colours are told of them.
+Json bands_part(const Bands& bands) {
+  Json edges = Json::array();
+  for (const Band& band : bands) edges.push_back(band.edges_nm);
+  return {
+      {"edges_nm", std::move(edges)}, {"observer", "CIE 1931, 2 degrees"}, {"white_of_rgb", "D65, without adaptation"}};
+}
+
 Json scene_part(const SceneFacts& scene) {
   Json part;
   part["file"] = scene.file;
@@ -28,6 +38,7 @@ Json scene_part(const SceneFacts& scene) {
   part["metres_per_unit"] = scene.metres_per_unit;
   part["up"] = json_array(scene.up);
   part["notes"] = scene.notes;
+  if (are_of_wavelengths(scene.bands)) part["bands"] = bands_part(scene.bands);
   return part;
 }
 
@@ -111,7 +122,15 @@ Json mesh_part(const Report& report) {
   return {{"patches", report.patches}, {"vertices", report.vertices}, {"area_m2", report.area}};
 }
 
-Json materials_part(const std::vector<MaterialLight>& materials) {
+// The colour of the light that a material sends out in the mean of its area.
+void add_colour(Json& part, const MaterialLight& material, const Bands& bands) {
+  const Eigen::Vector3d xyz = xyz_of(material.radiance, bands);
+  part["radiance_mean_W_m2_sr"] = json_array(material.radiance);
+  part["xyz_mean_cd_m2"] = json_array(xyz);
+  part["cct_K"] = json_of(correlated_colour_temperature(xyz));
+}
+
+Json materials_part(const std::vector<MaterialLight>& materials, const Bands& bands) {
   Json parts = Json::array();
   for (const MaterialLight& material : materials) {
     Json part;
@@ -124,6 +143,7 @@ Json materials_part(const std::vector<MaterialLight>& materials) {
     part["irradiance_min_W_m2"] = json_array(material.lowest);
     part["irradiance_mean_W_m2"] = json_array(material.mean);
     part["irradiance_max_W_m2"] = json_array(material.highest);
+    if (are_of_wavelengths(bands)) add_colour(part, material, bands);
     parts.push_back(std::move(part));
   }
   return parts;
@@ -231,7 +251,8 @@ Json report_json(const Report& report, const Provenance& provenance) {
   json["request"] = request_part(report.request);
   json["plan"] = plan_part(report);
   json["mesh"] = mesh_part(report);
-  json["materials"] = materials_part(report.materials);
+  json["materials"] = materials_part(report.materials, report.scene.bands);
+  json["room_surfaces"] = rooms_part(report);
   if (!report.sensors.groups.empty()) json["sensors"] = sensors_part(report.sensors);
   json["transport"] = transport_part(report.form_factors);
   json["energy_balance"] = energy_part(report.balance, report.form_factors.row_sum.has_value());

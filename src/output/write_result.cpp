@@ -9,16 +9,16 @@
 namespace patchlight {
 
 const std::vector<std::string>& result_extensions() {
-  static const std::vector<std::string> extensions = {".vtp", ".ply", ".glb"};
+  static const std::vector<std::string> extensions = {".vtp", ".vtu", ".ply", ".glb"};
   return extensions;
 }
 
 void write_result(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
   const std::string extension = file.extension().string();
-  if (extension == ".vtp") return write_vtk(file, surface, provenance);
+  if (extension == ".vtp" || extension == ".vtu") return write_vtk(file, surface, provenance);
   if (extension == ".ply") return write_ply(file, surface, provenance);
   if (extension == ".glb") return write_glb(file, surface, provenance);
-  throw OutputError(file.string(), "the extension names no known format; expected .vtp, .ply or .glb");
+  throw OutputError(file.string(), "the extension names no known format; expected .vtp, .vtu, .ply or .glb");
 }
 
 }  // namespace patchlight

@@ -4,13 +4,15 @@
 
 #include "output/isolines.h"
 #include "output/map_axes.h"
+#include "output/map_marks.h"
 #include "output/plot_text.h"
 #include "output/plot_ticks.h"
+#include "output/sensor_lattice.h"
 #include "output/write_drawing.h"
-#include "render/tone_map.h"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -24,17 +26,21 @@ constexpr double map_edge = 24;
 constexpr double widest_map = 520;
 constexpr double highest_map = 420;
 constexpr double line_height = 18;
+constexpr double room_of_arrow = 24;  // with its N
 constexpr double bar_width = 22;
 constexpr double legend_room = 150;
 constexpr double map_text = 12;
 constexpr std::size_t most_maps = 64;
 constexpr int most_levels = 9;
+constexpr double wall_margin = 0.1;  // around grids, as a share of width and height together
+constexpr double longest_scale_bar = 100;
 
 // One grid, with its axes and what it reads.
 struct GridMap {
   const SensorGroup* group = nullptr;
   std::vector<std::array<Point, 4>> cells;
   std::vector<double> values;
+  std::span<const std::array<Point, 2>> walls;      // that stand where the grid's plane cuts the model
   Vector right, above;                              // unit
   double left = 0, top = 0, width = 0, height = 0;  // along these, metres
 };
@@ -65,8 +71,9 @@ std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sens
   return cells;
 }
 
-GridMap grid_map(const SensorGroup& group, std::vector<double> values, const MapOptions& options) {
-  GridMap map{&group, group.cells, std::move(values), {}, {}};
+GridMap grid_map(const SensorGroup& group, std::vector<double> values, std::span<const std::array<Point, 2>> walls,
+                 const MapOptions& options) {
+  GridMap map{&group, group.cells, std::move(values), walls, {}, {}};
   const MapAxes axes = map_axes(group.sensors[0].normal, options.up, options.north);
   map.right = axes.right;
   map.above = axes.above;
@@ -84,6 +91,12 @@ GridMap grid_map(const SensorGroup& group, std::vector<double> values, const Map
   }
   map.width = right - map.left;
   map.height = bottom - map.top;
+  // Walls stand a little way off.
+  const double margin = walls.empty() ? 0 : wall_margin * (map.width + map.height);
+  map.left -= margin;
+  map.top -= margin;
+  map.width += 2 * margin;
+  map.height += 2 * margin;
   return map;
 }
 
@@ -91,7 +104,8 @@ std::vector<GridMap> grid_maps(std::span<const SensorGroup> groups, const Readin
                                const MapOptions& options) {
   std::vector<GridMap> maps;
   std::size_t sensor = 0;
-  for (const SensorGroup& group : groups) {
+  for (std::size_t number = 0; number < groups.size(); ++number) {
+    const SensorGroup& group = groups[number];
     std::vector<double> values;
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++sensor) {
       const bool is_inside = is_inside_wall(readings, sensor);
@@ -100,7 +114,10 @@ std::vector<GridMap> grid_maps(std::span<const SensorGroup> groups, const Readin
                                                                           : sensor_value(readings, sensor).value);
     }
     if (group.sensors.empty() || maps.size() >= most_maps) continue;
-    GridMap map = grid_map(group, std::move(values), options);
+    std::span<const std::array<Point, 2>> walls;
+    assert(options.sections.empty() || number < options.sections.size());
+    if (!options.sections.empty()) walls = options.sections[number];
+    GridMap map = grid_map(group, std::move(values), walls, options);
     if (!map.cells.empty()) maps.push_back(std::move(map));
   }
   return maps;
@@ -120,11 +137,6 @@ Pixel pixel_of(const GridMap& map, const Placed& at, const Point& point) {
   return {at.x + (point.dot(map.right) - map.left) * at.scale, at.y + (-point.dot(map.above) - map.top) * at.scale};
 }
 
-void set_colour(cairo_t* cairo, double value, const AxisRange& range) {
-  const auto colour = false_color(Eigen::VectorXd::Constant(1, value), range.lower, range.upper)[0];
-  cairo_set_source_rgb(cairo, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
-}
-
 void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const AxisRange& range) {
   for (std::size_t k = 0; k < map.values.size(); ++k) {
     cairo_new_path(cairo);
@@ -134,7 +146,7 @@ void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const Axis
     }
     cairo_close_path(cairo);
     if (std::isfinite(map.values[k]))
-      set_colour(cairo, map.values[k], range);
+      set_false_colour(cairo, map.values[k], range);
     else
       cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
     cairo_fill_preserve(cairo);
@@ -142,40 +154,6 @@ void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const Axis
     cairo_set_line_width(cairo, 0.6);
     cairo_stroke(cairo);
   }
-}
-
-// The lattice that the cells of a grid lie on.
-struct SensorLattice {
-  Eigen::MatrixXd values;  // NaN where there is no sensor
-  Point origin;            // of column and row 0
-  Vector step, step_of_rows;
-};
-
-SensorLattice lattice_of(const GridMap& map) {
-  const std::vector<Sensor>& sensors = map.group->sensors;
-  const auto& cell = map.cells[0];
-  SensorLattice lattice{{}, sensors[0].point, cell[1] - cell[0], cell[3] - cell[0]};
-  const auto place = [&](const Point& point) -> Eigen::Vector2d {
-    const Vector way = point - lattice.origin;
-    return {way.dot(lattice.step) / lattice.step.squaredNorm(),
-            way.dot(lattice.step_of_rows) / lattice.step_of_rows.squaredNorm()};
-  };
-  Eigen::Vector2d low(0, 0), high(0, 0);
-  for (const Sensor& sensor : sensors) {
-    low = low.cwiseMin(place(sensor.point));
-    high = high.cwiseMax(place(sensor.point));
-  }
-  const Eigen::Vector2d size = (high - low).array().round() + 1;
-  // More places than a file can show: cells of several sizes, or not in one plane
-  if (!(size.prod() < 100.0 * static_cast<double>(sensors.size()) + 1000)) return lattice;
-  lattice.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(size[1]), static_cast<Eigen::Index>(size[0]),
-                                             std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = 0; k < sensors.size(); ++k) {
-    const Eigen::Vector2d at = (place(sensors[k].point) - low).array().round();
-    lattice.values(static_cast<Eigen::Index>(at[1]), static_cast<Eigen::Index>(at[0])) = map.values[k];
-  }
-  lattice.origin += low[0] * lattice.step + low[1] * lattice.step_of_rows;
-  return lattice;
 }
 
 // A label in a gap of its line.
@@ -189,7 +167,7 @@ void draw_level(cairo_t* cairo, const Pixel& at, const Tick& tick) {
 }
 
 void draw_isolines(cairo_t* cairo, const GridMap& map, const Placed& at, const std::vector<Tick>& levels) {
-  const SensorLattice lattice = lattice_of(map);
+  const SensorLattice lattice = lattice_of(map.group->sensors, map.cells[0], map.values);
   const auto pixel = [&](const Eigen::Vector2d& place) {
     return pixel_of(map, at, lattice.origin + place[0] * lattice.step + place[1] * lattice.step_of_rows);
   };
@@ -207,6 +185,17 @@ void draw_isolines(cairo_t* cairo, const GridMap& map, const Placed& at, const s
     const auto& [from, to] = pieces[pieces.size() / 2];
     if (!level.text.empty()) draw_level(cairo, pixel((from + to) / 2), level);
   }
+}
+
+void draw_walls(cairo_t* cairo, const GridMap& map, const Placed& at) {
+  std::vector<std::array<Pixel, 2>> lines;
+  for (const auto& [from, to] : map.walls) lines.push_back({pixel_of(map, at, from), pixel_of(map, at, to)});
+  draw_walls(cairo, {{at.x, at.y}, map.width * at.scale, map.height * at.scale}, lines);
+}
+
+// Level grids are shown with north above.
+bool is_seen_from_above(const GridMap& map, const MapOptions& options) {
+  return (map.above - options.north).norm() < 1e-9;
 }
 
 std::string digits(double value) {
@@ -231,21 +220,50 @@ std::string told(const GridMap& map, const std::string& unit) {
          (mean > 0 ? digits(least / mean) : "-");
 }
 
-void draw_colours(cairo_t* cairo, double left, const AxisRange& range, const std::string& title) {
-  const double top = map_edge + 2 * line_height, height = highest_map - 2 * line_height;
+// What all maps of a file have in common.
+struct MapStyle {
+  AxisRange range;
+  std::vector<Tick> levels;
+  std::string unit;
+  double width;  // of the place of each, pixels
+  const MapOptions& options;
+};
+
+void draw_map(cairo_t* cairo, const GridMap& map, const Placed& at, const MapStyle& style) {
+  draw_cells(cairo, map, at, style.range);
+  draw_walls(cairo, map, at);
+  draw_isolines(cairo, map, at, style.levels);
   cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  draw_text(cairo, {left, map_edge + line_height / 2}, title, Align::left);
-  constexpr int steps = 128;
-  for (int k = 0; k < steps; ++k) {
-    set_colour(cairo, range.upper - (k + 0.5) / steps * (range.upper - range.lower), range);
-    cairo_rectangle(cairo, left, top + k * height / steps, bar_width, height / steps + 0.5);
-    cairo_fill(cairo);
+  const bool has_arrow = style.options.north_known && is_seen_from_above(map, style.options);
+  const double of_arrow = std::max(map.width * at.scale, style.width / 2);
+  const double of_name = has_arrow ? of_arrow - room_of_arrow : style.width;
+  draw_text(cairo, {at.x, at.y - line_height / 2}, fitting_text(cairo, map.group->name, of_name), Align::left);
+  draw_text(cairo, {at.x, at.y + map.height * at.scale + line_height / 2}, told(map, style.unit), Align::left);
+  if (has_arrow) draw_north(cairo, {at.x + of_arrow, at.y - line_height / 2});
+}
+
+// Maps all to one scale, two beside each other.
+struct Layout {
+  double scale = 1;  // pixels for each metre
+  double wide = 0, high = 0;
+  std::size_t columns = 1, rows = 1;
+};
+
+Layout layout_of(std::span<const GridMap> maps) {
+  double widest = 0, highest = 0;
+  for (const GridMap& map : maps) {
+    widest = std::max(widest, map.width);
+    highest = std::max(highest, map.height);
   }
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  for (const Tick& tick : axis_ticks(range, Scale::linear, most_levels)) {
-    const double y = top + height * (1 - place_on_axis(tick.value, range, Scale::linear));
-    draw_label(cairo, {left + bar_width + 8, y}, tick, Align::left);
-  }
+  const double scale = std::min(widest_map / widest, highest_map / highest);
+  const std::size_t columns = std::min<std::size_t>(2, maps.size());
+  return {scale, std::max(widest * scale, 300.0) + map_edge, highest * scale + 2 * line_height + map_edge, columns,
+          (maps.size() + columns - 1) / columns};
+}
+
+std::string title_of(MapQuantity quantity, const Readings& readings, const std::string& unit) {
+  if (quantity == MapQuantity::daylight_factor) return "daylight factor, " + unit;
+  return (readings.photometric ? "illuminance, " : "irradiance, ") + unit;
 }
 
 }  // namespace
@@ -259,43 +277,28 @@ void write_sensor_map(const std::filesystem::path& file, std::span<const SensorG
   const std::vector<GridMap> maps = grid_maps(groups, readings, options);
   if (maps.empty()) throw OutputError(file.string(), "a map needs a grid of sensors, and there are only single points");
   const AxisRange range = range_of(maps, options);
-  const std::vector<Tick> levels = axis_ticks(range, Scale::linear, most_levels);
   const std::string unit = is_factor ? "%" : sensor_unit(readings);
-  const std::string title = (is_factor              ? "daylight factor, "
-                             : readings.photometric ? "illuminance, "
-                                                    : "irradiance, ") +
-                            unit;
-  // All to one scale, two beside each other.
-  double widest = 0, highest = 0;
-  for (const GridMap& map : maps) {
-    widest = std::max(widest, map.width);
-    highest = std::max(highest, map.height);
-  }
-  const double scale = std::min(widest_map / widest, highest_map / highest);
-  const std::size_t columns = std::min<std::size_t>(2, maps.size());
-  const std::size_t rows = (maps.size() + columns - 1) / columns;
-  const double wide = std::max(widest * scale, 300.0) + map_edge;
-  const double high = highest * scale + 2 * line_height + map_edge;
-  const double legend = map_edge + static_cast<double>(columns) * wide;
+  const Layout layout = layout_of(maps);
+  const MapStyle style{range, axis_ticks(range, Scale::linear, most_levels), unit, layout.wide - map_edge, options};
+  const double legend = map_edge + static_cast<double>(layout.columns) * layout.wide;
   const int width = static_cast<int>(std::ceil(legend + legend_room + map_edge));
-  const int height =
-      static_cast<int>(std::ceil(std::max(map_edge + static_cast<double>(rows) * high, highest_map + 3 * map_edge)));
+  const int height = static_cast<int>(
+      std::ceil(std::max(map_edge + static_cast<double>(layout.rows) * layout.high, highest_map + 3 * map_edge)));
   write_drawing(file, width, height, [&](cairo_t* cairo) {
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
     set_text_size(cairo, map_text);
     for (std::size_t k = 0; k < maps.size(); ++k) {
-      const std::size_t row = k / columns;
-      const Placed at{map_edge + static_cast<double>(k % columns) * wide,
-                      map_edge + line_height + static_cast<double>(row) * high, scale};
-      draw_cells(cairo, maps[k], at, range);
-      draw_isolines(cairo, maps[k], at, levels);
-      cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-      draw_text(cairo, {at.x, at.y - line_height / 2}, fitting_text(cairo, maps[k].group->name, wide - map_edge),
-                Align::left);
-      draw_text(cairo, {at.x, at.y + maps[k].height * scale + line_height / 2}, told(maps[k], unit), Align::left);
+      const std::size_t row = k / layout.columns;
+      const Placed at{map_edge + static_cast<double>(k % layout.columns) * layout.wide,
+                      map_edge + line_height + static_cast<double>(row) * layout.high, layout.scale};
+      draw_map(cairo, maps[k], at, style);
     }
-    draw_colours(cairo, legend, range, title);
+    cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+    draw_text(cairo, {legend, map_edge + line_height / 2}, title_of(options.quantity, readings, unit), Align::left);
+    const double top = map_edge + 2 * line_height;
+    draw_colours(cairo, {{legend, top}, bar_width, highest_map - 2 * line_height}, range, style.levels);
+    draw_scale_bar(cairo, {legend, map_edge + highest_map + line_height}, layout.scale, longest_scale_bar);
   });
 }
 

@@ -87,6 +87,7 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   for (const VerifiedPart& part : verification.parts) json["parts"].push_back(part_of(part));
   json["patches"] = simulation.mesh.size();
   json["paths_per_patch"] = verification.paths.paths;
+  json["first_paths_per_patch"] = verification.first_paths;
   json["rays"] = verification.paths.rays;
   json["checked"] = checked_part(scene, simulation.mesh, verification);
   json["left_out_sides"] = left_out_part(scene, verification);

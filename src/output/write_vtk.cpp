@@ -1,5 +1,6 @@
 #include "output/write_vtk.h"
 
+#include "light/colour.h"
 #include "light/photometry.h"
 #include "output/vtk_polygons.h"
 #include "render/tone_map.h"
@@ -67,6 +68,25 @@ void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
   cell_data.AddArray(floats("error_irradiance", total));
 }
 
+// Where bands are of wavelengths: of linear RGB they are the same once more.
+void add_colours(vtkCellData& cell_data, const Field& radiance, const Bands& bands) {
+  if (!are_of_wavelengths(bands)) return;
+  const Field xyz = xyz_rows(radiance, bands);
+  cell_data.AddArray(floats("xyz", xyz));
+  cell_data.AddArray(numbers<vtkFloatArray>("cct", colour_temperatures(xyz)));
+}
+
+// Which wavelengths the components of spectra are of.
+void add_bands(vtkFieldData& facts, const Bands& bands) {
+  if (!are_of_wavelengths(bands)) return;
+  std::vector<std::string> names;
+  for (const Band& band : bands) names.push_back(band.name);
+  facts.AddArray(strings("band_names", names));
+  facts.AddArray(strings("white_of_rgb", {"D65, without adaptation"}));
+  facts.AddArray(strings("unit_xyz", {"X, Y, Z of the CIE 1931 observer, cd/m^2"}));
+  facts.AddArray(strings("unit_cct", {"K, not a number where it has no meaning"}));
+}
+
 void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double exposure) {
   const Simulation& simulation = surface.simulation;
   const PatchMesh& mesh = simulation.mesh;
@@ -88,6 +108,7 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   cell_data.AddArray(floats("exitance", simulation.problem.exitance));
   cell_data.AddArray(floats("reflectance", simulation.problem.scattering.reflectance));
   cell_data.AddArray(floats("luminance", luminances));
+  add_colours(cell_data, radiance, bands);
   cell_data.AddArray(numbers<vtkFloatArray>("area", mesh.area));
   cell_data.AddArray(numbers<vtkIntArray>("material_id", mesh.material));
   std::vector<std::uint32_t> faces;
@@ -189,6 +210,7 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   up->SetNumberOfComponents(3);
   facts.AddArray(up);
   add_what_pictures_need(facts, simulation, provenance);
+  add_bands(facts, bands_of(scene));
   // One array per unit: ParaView's information panel shows the value of a string array with one entry.
   for (const auto& [name, unit] : units_of_arrays) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }
@@ -201,6 +223,7 @@ void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, 
   add_facts(*polygons->GetFieldData(), surface.scene, surface.simulation, provenance);
   add_history(*polygons->GetFieldData(), surface.simulation);
 
+  if (file.extension() == ".vtu") return write_grid(file, *polygons);
   write_polygons(file, *polygons);
 }
 

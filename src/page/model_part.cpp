@@ -3,8 +3,10 @@
 #include "light/photometry.h"
 #include "output/json_array.h"
 #include "page/drawn_faces.h"
+#include "page/looks.h"
 #include "page/packed.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -114,12 +116,17 @@ Json values_part(const SolvedSurface& surface, const RowMeans& means) {
 Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
   const PatchMesh& mesh = surface.simulation.mesh;
   std::vector<std::uint32_t> first, count, face, material, group;
-  std::vector<std::uint8_t> side;
+  std::vector<std::uint8_t> side, enclosed;
   std::vector<float> areas;
+  const Eigen::VectorXd& holds_light = surface.simulation.enclosed;
   for (const PatchRange& range : drawn.patches) {
     const Polygon& polygon = surface.scene.polygons[mesh.polygon[range.begin]];
-    double area = 0;
-    for (PatchIndex patch = range.begin; patch < range.end; ++patch) area += mesh.area[patch];
+    double area = 0, area_enclosed = 0;
+    for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
+      area += mesh.area[patch];
+      if (holds_light.size() > 0) area_enclosed += mesh.area[patch] * holds_light[patch];
+    }
+    enclosed.push_back(2 * area_enclosed > area ? 1 : 0);
     first.push_back(range.begin);
     count.push_back(range.end - range.begin);
     areas.push_back(static_cast<float>(area));
@@ -128,13 +135,39 @@ Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
     material.push_back(mesh.material[range.begin]);
     side.push_back(static_cast<std::uint8_t>(mesh.side[range.begin]));
   }
-  return {{"patch", packed_array<std::uint32_t>(first, 1)},
-          {"patches", packed_array<std::uint32_t>(count, 1)},
-          {"area", packed_array<float>(areas, 1)},
-          {"source_polygon", packed_array<std::uint32_t>(face, 1)},
-          {"group_id", packed_array<std::uint32_t>(group, 1)},
-          {"material_id", packed_array<std::uint32_t>(material, 1)},
-          {"side", packed_array<std::uint8_t>(side, 1)}};
+  Json part = {{"patch", packed_array<std::uint32_t>(first, 1)},
+               {"patches", packed_array<std::uint32_t>(count, 1)},
+               {"area", packed_array<float>(areas, 1)},
+               {"source_polygon", packed_array<std::uint32_t>(face, 1)},
+               {"group_id", packed_array<std::uint32_t>(group, 1)},
+               {"material_id", packed_array<std::uint32_t>(material, 1)},
+               {"side", packed_array<std::uint8_t>(side, 1)}};
+  if (holds_light.size() > 0) part["enclosed"] = packed_array<std::uint8_t>(enclosed, 1);
+  return part;
+}
+
+// How much of the display's value of what lies behind a material it takes away: display values are about the 2.2nd root
+// of radiances.
+double opacity_of(const Material& material, const Spectrum& shares) {
+  if (material.transmittance.size() == 0) return 1;
+  return 1 - std::pow(std::clamp((shares * material.transmittance).sum(), 0.0, 1.0), 1 / 2.2);
+}
+
+// The names of materials with their opacity, and which have a picture.
+void add_materials(Json& part, const SolvedSurface& surface) {
+  const Spectrum shares = luminous_shares(bands_of(surface.scene));
+  const PatchMesh& mesh = surface.simulation.mesh;
+  for (const char* name : {"materials", "opacity", "textured"}) part[name] = Json::array();
+  for (const Material& material : surface.scene.materials) {
+    part["materials"].push_back(material.name);
+    part["opacity"].push_back(opacity_of(material, shares));
+  }
+  std::vector<std::uint8_t> has_picture(surface.scene.materials.size(), 0);
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) has_picture[mesh.material[patch]] = 1;
+  for (std::size_t k = 0; k < has_picture.size(); ++k) {
+    const Material& material = surface.scene.materials[k];
+    if (has_picture[k] != 0 && material.texture) part["textured"].push_back(material.name);
+  }
 }
 
 }  // namespace
@@ -143,8 +176,6 @@ Json model_part(const SolvedSurface& surface, double exposure, std::size_t most_
   const DrawnFaces drawn = drawn_faces(surface, exposure, most_faces);
   const std::span<const std::uint32_t> corners(drawn.corners.empty() ? nullptr : drawn.corners.front().data(),
                                                4 * drawn.corners.size());
-  const std::span<const std::uint8_t> colours(drawn.colours.empty() ? nullptr : drawn.colours.front().data(),
-                                              3 * drawn.colours.size());
   Json part;
   part["patches"] = surface.simulation.mesh.size();
   part["faces"] = drawn.corners.size();
@@ -153,13 +184,13 @@ Json model_part(const SolvedSurface& surface, double exposure, std::size_t most_
   part["photometric"] = surface.scene.photometric;
   part["bands"] = Json::array();
   for (const Band& band : bands_of(surface.scene)) part["bands"].push_back(band.name);
-  part["materials"] = Json::array();
-  for (const Material& material : surface.scene.materials) part["materials"].push_back(material.name);
+  add_materials(part, surface);
   part["groups"] = Json::array();
   for (std::uint32_t group = 0; group < surface.scene.groups.size(); ++group)
     part["groups"].push_back(group_name(surface.scene, group));
   part["positions"] = positions_part(drawn.vertices);
-  part["colours"] = packed_array<std::uint8_t>(colours, 3);
+  part["looks"] = looks_part(surface, exposure, most_faces);
+  if (surface.scene.sky) part["sky"] = sky_directions(surface);
   part["corners"] = packed_array<std::uint32_t>(corners, 4);
   part["row"] = packed_array<std::uint32_t>(drawn.row, 1);
   part["rows"] = rows_part(surface, drawn);

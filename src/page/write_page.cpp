@@ -73,6 +73,7 @@ Json data_of(const Page& page) {
   Json data;
   data["version"] = version();
   data["command_line"] = page.provenance.command_line;
+  data["changes"] = page.provenance.changes;
   data["scene_hash"] = page.provenance.scene_hash;
   data["file"] = page.scene.file;
   data["files"] = page.scene.files;

@@ -36,7 +36,8 @@ ConservingSolution conserving_flux(const TransportOperator& transport, const Rad
   // 2. What a watt of it changes: B' = R shape + R F B', of which some is missing again.
   const RadiosityProblem of_a_watt{problem.scattering, problem.scattering.reflect(flux.shape), area};
   const Solution response =
-      solve(transport, of_a_watt, {.solver = Solver::gmres, .relative_error = error_of_response}, observer);
+      solve(transport, of_a_watt, {.solver = Solver::gmres, .relative_error = error_of_response, .patch_bounds = false},
+            observer);
   const Eigen::ArrayXd lacking_again = missing(flux, transport.apply(response.radiosity), response.radiosity, area);
 
   constexpr double most_again = 0.5;

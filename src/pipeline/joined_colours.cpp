@@ -1,5 +1,6 @@
 #include "pipeline/joined_colours.h"
 
+#include "light/photometry.h"
 #include "pipeline/problem_of.h"
 
 #include <algorithm>
@@ -109,9 +110,9 @@ void add_effects(SolvedMesh& sum, const SolvedMesh& part) {
   sum.light_bar = std::max(sum.light_bar, part.light_bar);
 }
 
-double luminous_weight(const Bands& bands, const std::vector<Eigen::Index>& of) {
+double luminous_weight(const Spectrum& shares, const std::vector<Eigen::Index>& of) {
   double weight = 0;
-  for (const Eigen::Index band : of) weight += bands[static_cast<std::size_t>(band)].luminous_weight;
+  for (const Eigen::Index band : of) weight += shares[band];
   return weight;
 }
 
@@ -125,13 +126,15 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
   into.notes = run.notes;
   into.mesh = meshed.mesh.patches;
   into.tracing = run.tracing;
+  into.enclosed = parts.front().simulation.enclosed;
   const Bands bands = bands_of(run.scene);
+  const Spectrum shares = luminous_shares(bands);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     add_effects(all, parts[k]);
     // Whole patches have the same area in all colours, what they hold of them has not.
     const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].scene);
     const IntoBands columns{colours[k].bands, static_cast<Eigen::Index>(bands.size())};
-    const double weight = luminous_weight(bands, colours[k].bands);
+    const double weight = luminous_weight(shares, colours[k].bands);
     put_problem(into.problem, part.problem, columns);
     add(into.problem.area, weight, part.problem.area);
     put_solution(into.solution, part.solution, columns, k == 0);

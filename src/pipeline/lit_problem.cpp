@@ -4,6 +4,7 @@
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace patchlight {
@@ -45,8 +46,12 @@ LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostSh
   return lit;
 }
 
-Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed) {
-  const LightingOptions few{.lamp_samples = 8, .sun_samples = 8, .sky_samples = 64, .seed = seed};
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed, int rays) {
+  const LightingOptions few{.lamp_samples = 8,
+                            .sun_samples = 8,
+                            .mirrored_samples = std::clamp(rays / 2, 2, 8),
+                            .sky_samples = 64,
+                            .seed = seed};
   return direct_irradiance_as_planned(run, plan, mesh, few).irradiance;
 }
 

@@ -24,7 +24,8 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);
 
 /// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with 8 rays to each luminaire,
-/// 8 to the sun and 64 to the sky; `seed` chooses them. \throws Cancelled.
-Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed);
+/// 8 to the sun and 64 to the sky, and over each way by mirrors half of `rays`, from 2 to 8; `seed` chooses them.
+/// \throws Cancelled.
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed, int rays);
 
 }  // namespace patchlight

@@ -23,12 +23,18 @@ std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& trac
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
   if (!has_lamps_apart_from_sky(scene)) return {};
   const MirrorChains found = mirror_chains(scene);
-  if (!found.is_cut) return {};
+  constexpr double too_little = 0.01;
+  const bool misses_mirrors = found.left_out >= too_little;
+  if (!found.is_cut && !misses_mirrors) return {};
   std::ostringstream text;
   text.precision(2);
-  text << "light of lamps, luminaires and sun takes more ways over mirrors and clear faces than the "
-       << found.chains.size() << " that are followed; those left out reflect " << 100 * found.cut_off
-       << " % at most, and no error bar has what they would bring";
+  text << "light of lamps, luminaires and sun is followed on " << found.chains.size()
+       << " ways over mirrors and clear faces" << (found.is_cut ? ", and there are more" : "");
+  if (misses_mirrors) {
+    text << "; " << 100 * found.left_out
+         << " % of the light that these faces may reflect meets some that are on none of them, as small ones are";
+  }
+  text << "; no error bar has what other ways would bring";
   return {text.str()};
 }
 

@@ -25,11 +25,22 @@ AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weig
           .display = relative(bars.display)};
 }
 
+Eigen::VectorXd interest_in(const Scene& scene, const Simulation& simulation) {
+  const std::vector<std::string>& names = simulation.plan.accuracy.interest;
+  const Eigen::VectorXd& enclosed = simulation.enclosed;
+  if (names.empty() && enclosed.size() > 0 && simulation.solution.radiosity.rows() == enclosed.size()) {
+    const Field reflected = simulation.solution.radiosity - simulation.problem.exitance;
+    if (!(reflected.colwise() * enclosed.array() > 0).any()) return Eigen::VectorXd::Ones(enclosed.size());
+  }
+  return interest_of(scene, simulation.mesh, names, enclosed);
+}
+
 std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation) {
   if (!simulation.error_bars) return {};
   const PatchMesh& mesh = simulation.mesh;
-  const Eigen::VectorXd interest = interest_of(scene, mesh, simulation.plan.accuracy.interest);
-  const Eigen::VectorXd inside = interest.cwiseProduct(inside_shells(scene, mesh, Dividing::with_openings));
+  const bool all = simulation.plan.accuracy.interest.empty();
+  const Eigen::VectorXd interest = all ? Eigen::VectorXd::Ones(mesh.size()) : interest_in(scene, simulation);
+  const Eigen::VectorXd inside = interest.cwiseProduct(inside_patches(scene, mesh, simulation.enclosed));
   const Eigen::VectorXd outside = interest - inside;
   if (total(inside) == 0 || total(outside) == 0) return {};
   return {{"inside", errors_of(simulation, inside)}, {"outside", errors_of(simulation, outside)}};

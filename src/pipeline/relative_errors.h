@@ -7,7 +7,11 @@
 
 namespace patchlight {
 
-/// The errors inside and outside, by the error bars; empty where no shells with openings divide what is of interest.
+/// 1 for each patch whose errors count, else 0: those of what the plan names as of interest. Where it names nothing,
+/// by daylight those that are enclosed, as long as light gets there; else all.
+Eigen::VectorXd interest_in(const Scene& scene, const Simulation& simulation);
+
+/// The errors inside and outside, by the error bars; empty where what is of interest is on one side.
 std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation);
 
 /// The relative errors of the patches that `weight` counts. Seconds are left open.

@@ -130,6 +130,7 @@ Plan with_solver_part(Plan plan, const std::optional<double>& solver_part) {
 AccuracyStep accuracy_of(const SolvedMesh& solved) {
   AccuracyStep step = errors_of(solved.simulation, solved.interest);
   step.patches = step.new_patches = solved.simulation.mesh.size();
+  step.inside = solved.simulation.plan.accuracy.interest.empty() && (solved.interest.array() == 0).any();
   return step;
 }
 
@@ -168,7 +169,6 @@ MeshToSolve Search::first() const {
 
 AccuracyStep Search::step_of(const SolvedMesh& solved) const {
   AccuracyStep step = accuracy_of(solved);
-  if (!refines(run_.plan.accuracy)) return step;
   step.new_patches -= known_;
   step.seconds = wall_seconds() - start_;
   step.cpu_seconds = cpu_seconds() - cpu_start_;

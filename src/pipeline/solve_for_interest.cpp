@@ -3,7 +3,7 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/interest.h"
+#include "pipeline/relative_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, cons
   SolvedWith best{solve(options), tolerance_of(options)};
   const std::optional<double>& part = simulation.plan.accuracy.solver_part;
   if (!part || !best.solution.converged) return best;
-  const Eigen::VectorXd interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
+  const Eigen::VectorXd interest = interest_in(run.scene, simulation);
   for (;;) {
     const SolvedProblem solved{simulation.problem, best.solution};
     const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);

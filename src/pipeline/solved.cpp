@@ -1,5 +1,6 @@
 #include "pipeline/solved.h"
 
+#include "accuracy/enclosed.h"
 #include "base/vectors.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/solve_for_interest.h"
@@ -49,6 +50,8 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   simulation.problem = std::move(problem.problem);
   simulation.direct_standard_error = std::move(problem.direct_standard_error);
   simulation.tracing = run.tracing;
+  if (run.scene.sky || run.scene.sun)
+    simulation.enclosed = enclosed_patches(run.scene, run.tracing->all_faces(run.scene), simulation.mesh);
 
   if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);
 

@@ -15,7 +15,7 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
     const PatchMesh quarters = refine(simulation.mesh);
     for (std::size_t half = 0; half < look.direct.size(); ++half)
       look.direct[half] =
-          reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half})), needed.bands);
+          reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), rays), needed.bands);
   }
   const Occluder& occluder = run.tracing->between_patches();
   const SolvedProblem solved = needed.solved();

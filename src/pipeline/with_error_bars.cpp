@@ -9,6 +9,7 @@
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "pipeline/light_of_lamps.h"
+#include "pipeline/relative_errors.h"
 #include "pipeline/unseen_differences_of.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
@@ -39,12 +40,12 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
   const auto transport = dense_transport(std::move(of_parents), coarse.area);
   options.solver = usual_solver(*transport, coarse);
   options.max_rows.reset();
+  options.patch_bounds = false;
   return solve(*transport, coarse, options).radiosity;
 }
 
 // How far two independent values of the irradiance straight from the lamps are apart.
-Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw) {
-  const Field& exitance = simulation.problem.exitance;
+Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw, const Field& exitance) {
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = simulation.plan.assembly;
   again.seed = hash({simulation.plan.assembly.seed, 1});
@@ -54,15 +55,22 @@ Field direct_difference(const Run& run, const Simulation& simulation, const Asse
 }
 
 // What the sampling of form factors errs. Light straight from the lamps is found twice, unless lamps are too many.
-Field sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw, const RowTransport& transport,
-                      const SolvedProblem& solved) {
+Field sampling_errors_in_bands(const Run& run, const Simulation& simulation, const Assembly& raw,
+                               const RowTransport& transport, const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;
   if (share_of_lamps(solved.problem) > most_lamps)
     return form_factor_errors(simulation.mesh, raw, transport, solved, B);
-  const Field difference = direct_difference(run, simulation, raw);
+  const Field difference = direct_difference(run, simulation, raw, solved.problem.exitance);
   const Field direct = direct_light_errors(simulation.mesh, transport, solved.problem, difference);
   const Field other = form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
   return (direct.square() + other.square()).sqrt();
+}
+
+Field sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw, const RowTransport& transport,
+                      const SolvedProblem& solved) {
+  const InNeededBands needed = in_needed_bands(solved);
+  const SolvedProblem in_bands{needed.problem, needed.solution, solved.closed};
+  return expanded(sampling_errors_in_bands(run, simulation, raw, transport, in_bands), needed.bands);
 }
 
 // What it does to the irradiance that the exposed shares of patches may be off. Where closure brings the entries of a
@@ -171,7 +179,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
   if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
-  result.interest = interest_of(run.scene, simulation.mesh, simulation.plan.accuracy.interest);
+  result.interest = interest_in(run.scene, simulation);
   if (!run.is_part) require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
   const InNeededBands needed = in_needed_bands(solved);
@@ -212,7 +220,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.assembly.close};
 
   // 1. What counts.
-  result.interest = interest_of(run.scene, mesh, simulation.plan.accuracy.interest);
+  result.interest = interest_in(run.scene, simulation);
   require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(rows, solved.problem, result.interest);
 

@@ -256,6 +256,10 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
   }
   decisions.push_back(mirrors(facts, request));
   decisions.push_back(closure(request, decisions[1].simulate));
+  if (facts.band_choice) {
+    decisions.push_back(
+        {Effect::spectra, facts.band_choice->spectral, facts.band_choice->reason, facts.band_choice->saving});
+  }
   for (Decision& decision : not_simulated(facts, request)) decisions.push_back(std::move(decision));
   return decisions;
 }

@@ -167,6 +167,7 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   for (const Material* material : in_use)
     facts.highest_reflectance = std::max(facts.highest_reflectance, highest_scattered(*material));
   facts.bands = number_of_bands(scene);
+  facts.band_choice = scene.band_choice;
   facts.grey = is_grey(scene, in_use);
   facts.coloured_specular = static_cast<std::size_t>(
       std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));

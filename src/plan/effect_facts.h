@@ -35,7 +35,8 @@ struct EffectFacts {
   double texture_deviation = 0;       ///< TextureRange::deviation, the largest of these
   std::size_t materials = 0;          ///< of kept sides
   std::size_t gloss = 0;              ///< materials that a file says are partly mirrors
-  std::size_t glass = 0;              ///< materials that a file says are transparent, taken for opaque
+  std::optional<BandChoice> band_choice = {};  ///< Scene::band_choice
+  std::size_t glass = 0;                       ///< materials that a file says are transparent, taken for opaque
 };
 
 /// Looks at a scene of which these sides are kept. Pure. O(n log n) for n corners, and what on_convex_hull() takes.

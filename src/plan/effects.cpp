@@ -44,6 +44,8 @@ const char* name_of(Effect effect) {
       return "mirrors";
     case Effect::bands_of_panes:
       return "colour of panes";
+    case Effect::spectra:
+      return "spectra";
     case Effect::gloss:
       return "gloss";
     case Effect::glass:

@@ -4,6 +4,7 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -50,11 +51,19 @@ Scene with_spectra(Scene scene, const Change& change) {
   return scene;
 }
 
+// That of 1 in every band; of colours 179, to the last bit.
+double luminance_of_ones(const Bands& bands) {
+  const double ones = luminance(Spectrum::Ones(static_cast<Eigen::Index>(bands.size())), bands);
+  constexpr double rounding = 1e-9;
+  return std::abs(ones - luminous_efficacy) <= rounding * ones ? luminous_efficacy : ones;
+}
+
 // The same luminance without colour.
 Scene without_colour(Scene scene) {
   const Bands bands = bands_of(scene);
+  const double white = luminance_of_ones(bands);
   return with_spectra(std::move(scene), [&](const Spectrum& spectrum) -> Spectrum {
-    return Spectrum::Constant(spectrum.size(), luminance(spectrum, bands) / luminous_efficacy);
+    return Spectrum::Constant(spectrum.size(), luminance(spectrum, bands) / white);
   });
 }
 

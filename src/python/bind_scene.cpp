@@ -105,7 +105,8 @@ std::string plan_of(Scene scene, const cli::SolveArguments& arguments) {  // NOL
 
 void bind_scene(py::module_& module) {
   bind_material(module);
-  py::class_<Scene, ScenePointer>(module, "Scene",
+  // It remembers what it was read with, see scene.py.
+  py::class_<Scene, ScenePointer>(module, "Scene", py::dynamic_attr(),
                                   "A model: polygons with materials, in metres. Materials may be changed.")
       .def_property_readonly("materials", &materials_of)
       .def_readonly("groups", &Scene::groups)
@@ -125,7 +126,8 @@ void bind_scene(py::module_& module) {
       .def("copy", [](const Scene& scene) { return std::make_shared<Scene>(scene); })
       .def(
           "check", [](const Scene& scene) { check(scene); }, "Raises InputError for what cannot be solved.");
-  py::class_<cli::SolveArguments>(module, "Arguments").def_readonly("command_line", &cli::SolveArguments::command_line);
+  py::class_<cli::SolveArguments>(module, "Arguments")
+      .def_readwrite("command_line", &cli::SolveArguments::command_line);
   module.def("parse", &parsed<cli::SolveArguments>);
   module.def("help", [](const std::string& command) {
     return parsed<cli::Information>({"patchlight", command, "--help"}).text;

@@ -14,7 +14,6 @@
 #include "python/bindings.h"
 #include "python/interrupt_flag.h"
 #include "python/solved_scene.h"
-#include "render/tone_map.h"
 
 #include <memory>
 #include <pybind11/stl.h>
@@ -33,8 +32,9 @@ struct LentUntilTheEnd {
 };
 
 // A function of Python in place of the solver: it gets H = F B as a function, and E, rho and H_direct, and returns H.
-SolveWith solve_by(const py::object& own) {
-  return [&own](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&, const Observer&) {
+SolveWith solve_by(const py::object& own, const InterruptFlag& flag) {
+  return [&own, &flag](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
+                       const Observer&) {
     Solution solution;
     const Eigen::Index size = problem.exitance.rows();
     {
@@ -42,6 +42,7 @@ SolveWith solve_by(const py::object& own) {
       // The function may outlive the transport.
       const auto lent = std::make_shared<const RowTransport*>(&transport);
       const LentUntilTheEnd end{lent};
+      const InterruptFlag::LeftToPython signals(flag);
       const auto apply = py::cpp_function([lent, size](const NumbersIn& radiosity) {
         if (*lent == nullptr)
           throw InputError("apply", "found a call after the solver has ended; expected calls before it returns");
@@ -69,7 +70,7 @@ SolveWith solve_by(const py::object& own) {
 }
 
 SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArguments& arguments, const py::object& own,
-                     const py::object& progress) {
+                     const std::vector<std::string>& changes, const py::object& progress) {
   const InterruptFlag flag;
   const Observer observer = InterruptFlag::observer(progress);
   auto result = std::make_shared<SolvedScene>();
@@ -78,17 +79,19 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
   check(*result->scene);
   result->request = arguments.request;
   result->command_line = arguments.command_line;
+  result->changes = changes;
   Steps with;
-  if (!own.is_none()) with.solve = solve_by(own);
+  if (!own.is_none()) with.solve = solve_by(own, flag);
   const py::gil_scoped_release others;
   result->simulation = simulate(*result->scene, arguments.request, observer, with);
   return result;
 }
 
 Provenance provenance_of(const SolvedScene& self) {
-  const double exposure =
-      exposure_for(display_radiance(self.simulation), self.simulation.problem.area, bands_of(*self.scene));
-  return {.command_line = self.command_line, .exposure = exposure, .scene_hash = scene_hash(*self.scene)};
+  return {.command_line = self.command_line,
+          .exposure = exposure_of(*self.scene, self.simulation),
+          .scene_hash = scene_hash(*self.scene),
+          .changes = self.changes};
 }
 
 std::string report_of_run(const SolvedScene& self) {
@@ -249,10 +252,11 @@ void bind_simulation(py::module_& module) {
                              })
       .def("report_json", &report_of_run)
       .def("page", &page_of_run)
-      .def("write", &write_run, py::arg("file"), "Writes .vtp, .ply or .glb.")
+      .def("write", &write_run, py::arg("file"), "Writes .vtp, .vtu, .ply or .glb.")
       .def("sensors", &sensors_of)
       .def("_picture", &picture_of);
-  module.def("solve", &solved, py::arg("scene"), py::arg("arguments"), py::arg("own"), py::arg("progress"));
+  module.def("solve", &solved, py::arg("scene"), py::arg("arguments"), py::arg("own"), py::arg("changes"),
+             py::arg("progress"));
 }
 
 }  // namespace patchlight

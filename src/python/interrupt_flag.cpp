@@ -30,6 +30,15 @@ InterruptFlag::~InterruptFlag() {
   if (installed_) std::signal(SIGINT, before_);
 }
 
+// A Ctrl-C that came before stops the work when the function has returned.
+InterruptFlag::LeftToPython::LeftToPython(const InterruptFlag& flag) : installed_(flag.installed_) {
+  if (installed_) std::signal(SIGINT, flag.before_);
+}
+
+InterruptFlag::LeftToPython::~LeftToPython() {
+  if (installed_) std::signal(SIGINT, ask_to_stop);
+}
+
 Observer InterruptFlag::observer(pybind11::object progress) {
   if (progress.is_none()) return [](const Progress&) { return !asked_to_stop; };
   // The function is let go of where Python may run, whichever thread that is in.

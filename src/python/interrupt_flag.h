@@ -15,6 +15,19 @@ class InterruptFlag {
   InterruptFlag(const InterruptFlag&) = delete;
   InterruptFlag& operator=(const InterruptFlag&) = delete;
 
+  /// While it lives signals are Python's own again: a function of Python's that runs meanwhile ends by
+  /// KeyboardInterrupt.
+  class LeftToPython {
+   public:
+    explicit LeftToPython(const InterruptFlag& flag);
+    ~LeftToPython();
+    LeftToPython(const LeftToPython&) = delete;
+    LeftToPython& operator=(const LeftToPython&) = delete;
+
+   private:
+    bool installed_;
+  };
+
   /// Stops the work after Ctrl-C, and tells `progress`, a function of stage and share or None, how it goes on.
   static Observer observer(pybind11::object progress);
 

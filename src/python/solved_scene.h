@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -13,6 +14,7 @@ struct SolvedScene {
   Request request;
   Simulation simulation;
   std::string command_line;
+  std::vector<std::string> changes;  ///< see Provenance
 };
 
 }  // namespace patchlight

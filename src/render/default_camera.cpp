@@ -31,6 +31,13 @@ struct Surroundings {
   }
 };
 
+Surroundings surroundings(const Scene& scene) {
+  Surroundings around{bounds(scene), 2, false};
+  scene.up.cwiseAbs().maxCoeff(&around.up_axis);
+  around.up_is_negative = scene.up[around.up_axis] < 0;
+  return around;
+}
+
 // One of the four upright sides of the bounds: across `axis`, at its lower or upper end.
 struct UprightSide {
   Eigen::Index axis;
@@ -70,8 +77,13 @@ Camera view_from_above(const Surroundings& around) {
   return {around.box.center() + distance * direction.normalized(), around.box.center(), outside_field_of_view};
 }
 
-// Is most of this side of the bounds a hole through which one sees into the depth?
-bool is_open(const Surroundings& around, const UprightSide& side, const Occluder& occluder) {
+bool is_kept(const KeptSides& sides, const Hit& hit) {
+  return (hit.side == Side::front ? sides.front : sides.back)[hit.polygon] != 0;
+}
+
+// Is most of this side of the bounds a hole through which one sees into the depth? The dark outsides of other rooms are
+// no depth.
+bool is_open(const Surroundings& around, const UprightSide& side, const KeptSides& sides, const Occluder& occluder) {
   const Eigen::Index across = 3 - side.axis - around.up_axis;
   const Point eye = view_before(around, side).eye;
   const Vector size = around.box.sizes();
@@ -88,13 +100,20 @@ bool is_open(const Surroundings& around, const UprightSide& side, const Occluder
   const double plane = side.upper ? around.box.max()[side.axis] : around.box.min()[side.axis];
   int entered = 0;
   for (const std::optional<Hit>& hit : occluder.first_hits(rays)) {
-    if (!hit || std::abs(hit->point[side.axis] - plane) > open_depth * size[side.axis]) ++entered;
+    if (!hit || (is_kept(sides, *hit) && std::abs(hit->point[side.axis] - plane) > open_depth * size[side.axis]))
+      ++entered;
   }
   return entered >= open_share * static_cast<double>(rays.size());
 }
 
-bool is_kept(const KeptSides& sides, const Hit& hit) {
-  return (hit.side == Side::front ? sides.front : sides.back)[hit.polygon] != 0;
+std::vector<UprightSide> open_sides(const Surroundings& around, const KeptSides& sides, const Occluder& occluder) {
+  std::vector<UprightSide> open;
+  for (const Eigen::Index axis : {Eigen::Index{2}, Eigen::Index{1}, Eigen::Index{0}}) {
+    for (const bool upper : {false, true}) {
+      if (axis != around.up_axis && is_open(around, {axis, upper}, sides, occluder)) open.push_back({axis, upper});
+    }
+  }
+  return open;
 }
 
 // The number of different polygons seen times the share of the picture they fill.
@@ -124,18 +143,10 @@ double score(const Camera& camera, const Vector& up, const KeptSides& sides, con
 }  // namespace
 
 Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder) {
-  Surroundings around{bounds(scene), 2, false};
-  scene.up.cwiseAbs().maxCoeff(&around.up_axis);
-  around.up_is_negative = scene.up[around.up_axis] < 0;
-
+  const Surroundings around = surroundings(scene);
   // Views through open sides, if there are any; otherwise from the corners inside.
   std::vector<Camera> candidates;
-  for (const Eigen::Index axis : {Eigen::Index{2}, Eigen::Index{1}, Eigen::Index{0}}) {
-    for (const bool upper : {false, true}) {
-      if (axis == around.up_axis || !is_open(around, {axis, upper}, occluder)) continue;
-      candidates.push_back(view_before(around, {axis, upper}));
-    }
-  }
+  for (const UprightSide& side : open_sides(around, sides, occluder)) candidates.push_back(view_before(around, side));
   if (candidates.empty()) {
     for (const double first : {-1.0, 1.0}) {
       for (const double second : {-1.0, 1.0}) candidates.push_back(view_from_corner(around, {first, second}));
@@ -150,6 +161,10 @@ Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder
     best_score = candidate_score;
   }
   return best;
+}
+
+bool has_open_side(const Scene& scene, const KeptSides& sides, const Occluder& occluder) {
+  return !open_sides(surroundings(scene), sides, occluder).empty();
 }
 
 }  // namespace patchlight

@@ -81,6 +81,7 @@ class FinalGather {
   std::vector<std::uint32_t> wanted(std::uint32_t most) const;
   void see_layers();
   Image image() const;
+  double error_of(const Image& image) const { return mean_relative_error(pixels_, image.error); }
 
  private:
   struct Candidate {
@@ -166,12 +167,16 @@ std::vector<FinalGather::Candidate> FinalGather::candidates_in_row(int y, int st
 
 // Of several that would serve the same pixels the first.
 std::vector<FinalGather::Candidate> FinalGather::apart(const std::vector<Candidate>& all) const {
+  // Only where these would serve counts.
+  const Eigen::Index bands = solved_.luminous_weights.size();
+  const Spectrum no_light = Spectrum::Zero(bands);
+  const Field no_slope = Field::Zero(3, bands);
   IrradianceCache taken(solved_.luminous_weights);
   std::vector<Candidate> some;
   for (const Candidate& one : all) {
     const Vector& normal = solved_.mesh.normal[one.at.patch];
     if (taken.weight_at(one.at.point, normal) > 0) continue;
-    taken.add({one.at.point, normal, least_pixels * one.pixel_width / 2, {}, {}, 0});
+    taken.add({one.at.point, normal, least_pixels * one.pixel_width / 2, no_light, no_slope, 0});
     some.push_back(one);
   }
   return some;
@@ -379,7 +384,9 @@ GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radianc
   } catch (const Cancelled&) {
     unfinished = true;
   }
-  return {gather.image(), unfinished};
+  Image image = gather.image();
+  const double error = gather.error_of(image);
+  return {std::move(image), unfinished, error};
 }
 
 }  // namespace patchlight

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace patchlight {
 
@@ -27,6 +28,7 @@ struct FinalGatherOptions {
 struct GatheredImage {
   Image image;
   bool unfinished = false;
+  std::optional<double> error = {};  ///< mean_relative_error() of a finished or unfinished gather; a draft has none
 };
 
 /// A picture of the light that points get, by two passes (Wallace, Cohen and Greenberg 1987): each point that the eye

@@ -21,7 +21,7 @@ namespace {
 constexpr double share_of_distance = 0.25;
 
 // Of light that mirrors and clear faces send to a record; at points there are 16 times as many.
-constexpr int samples_of_mirrored = 8;
+constexpr int samples_of_mirrored = 2;
 
 // From a place that a ray has met so many rays look for lights.
 constexpr std::uint32_t rays_of_bounce = 2;
@@ -147,7 +147,7 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
     const SurfacePoint point{at.point, normal, mesh.polygon[at.patch]};
     const DirectIrradiance mirrored =
         mirrored_irradiance(solved_.lights.lighting, solved_.lights.lamps, std::span(&point, 1),
-                            {.lamp_samples = samples_of_mirrored, .sky_samples = samples_of_mirrored, .seed = seed});
+                            {.mirrored_samples = samples_of_mirrored, .seed = seed});
     record.irradiance += mirrored.irradiance.row(0);
     variance += mirrored.standard_error.row(0).square();
   }

@@ -41,7 +41,7 @@ class IrradianceCache {
   /// what one finds near an edge others do not cover up (Krivanek and others 2006, neighbour clamping).
   void add_graded(const std::vector<IrradianceRecord>& records);
 
-  std::size_t size() const { return records_.size(); }
+  std::size_t size() const { return reaches_.size(); }
 
   /// The sum of the weights of the records that may serve at a place of a surface with this unit normal.
   double weight_at(const Point& point, const Vector& normal) const;
@@ -50,15 +50,32 @@ class IrradianceCache {
   std::optional<CachedIrradiance> at(const Point& point, const Vector& normal) const;
 
  private:
+  /// What decides whether a record serves at a place.
+  struct Reach {
+    Point point;
+    Vector normal;
+    double radius = 0;
+    double uncertainty = 0;
+  };
+  struct Level {
+    int log2_of_edge = 0;  // metres
+    double cells_per_metre = 1;
+  };
   struct Weighted {
     std::uint32_t index;
     double weight;
   };
+  static double weight_of(const Reach& record, const Point& point, const Vector& normal);
   std::vector<Weighted> around(const Point& point, const Vector& normal) const;
+  /// Calls see(index, weight) for each record that serves there.
+  template <typename See>
+  void for_each_around(const Point& point, const Vector& normal, const See& see) const;
+  Level level_for(double radius);
 
   Eigen::VectorXd luminous_weights_;
-  std::vector<IrradianceRecord> records_;
-  std::vector<int> levels_;  // log2 of the cells' edges, those that are in use
+  std::vector<Reach> reaches_;
+  std::vector<double> values_;  // per record and band: irradiance, and its slopes along x, y and z
+  std::vector<Level> levels_;   // of cells, those that are in use
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 

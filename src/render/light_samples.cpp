@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -34,9 +35,9 @@ struct LightRay {
 struct LampRays {
   std::size_t point = 0;
   std::size_t first = 0, count = 0;  // of the rays
-  std::vector<double> kernels;       // of each: the form factor that it stands for
   double form_factor = 0;
-  Spectrum exitance;  // W/m^2, times as often as the lamp counts
+  const LampFace* lamp = nullptr;
+  double factor = 1;  // as often as it counts
 };
 
 // How a lamp is asked.
@@ -49,6 +50,7 @@ struct LampChoice {
 struct Rays {
   std::vector<LightRay> single;
   std::vector<Segment> to_lamps;
+  std::vector<double> kernels;  // of each of these: the form factor that it stands for
   std::vector<LampRays> lamps;
 };
 
@@ -96,18 +98,26 @@ std::array<double, 4> sample_of(const LitPoint& point, Purpose purpose, std::uin
 // So many rays to a lamp, which counts `factor` times.
 void add_lamp(Rays& to, const LampFace& lamp, std::size_t index, const LitPoint& point, const LampChoice& choice) {
   const std::span<const Point> corners(lamp.corners.data(), corner_count(lamp));
-  LampRays to_lamp{index, to.to_lamps.size(), choice.rays, {}, 0, choice.factor * lamp.exitance};
-  to_lamp.form_factor = point_to_polygon(point.at.point, point.at.normal, corners);
+  const double form_factor = point_to_polygon(point.at.point, point.at.normal, corners);
+  to.lamps.push_back({index, to.to_lamps.size(), choice.rays, form_factor, &lamp, choice.factor});
+  const QuadPoints points(lamp.corners);
   for (std::uint32_t k = 0; k < choice.rays; ++k) {
-    const auto u = pixel_sample(point.sample * choice.rays + k, choice.seed);
-    const Point place = square_to_quad(lamp.corners, u[0], u[1]);
-    to_lamp.kernels.push_back(kernel(lamp, point.at, place));
+    const auto u = pixel_sample_2d(point.sample * choice.rays + k, choice.seed);
+    const Point place = points.at(u[0], u[1]);
+    to.kernels.push_back(kernel(lamp, point.at, place));
     to.to_lamps.push_back({point.at.point, place, point.at.polygon, lamp.polygon});
   }
-  to.lamps.push_back(std::move(to_lamp));
 }
 
 void add_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint& point, std::uint32_t rays) {
+  if (lights.lamps.size() <= few_lights) {
+    const auto each = std::max(rays_of_lamp, rays / static_cast<std::uint32_t>(lights.lamps.size()));
+    for (std::size_t l = 0; l < lights.lamps.size(); ++l) {
+      if (possible_light(lights.lamps[l], point.at) > 0)
+        add_lamp(to, lights.lamps[l], index, point, {each, 1, hash({point.seed, place_on_lamp, l})});
+    }
+    return;
+  }
   std::vector<double> weights;
   double sum = 0;
   for (const LampFace& lamp : lights.lamps) {
@@ -115,13 +125,6 @@ void add_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint
     sum += weights.back();
   }
   if (!(sum > 0)) return;
-  if (lights.lamps.size() <= few_lights) {
-    const auto each = std::max(rays_of_lamp, rays / static_cast<std::uint32_t>(lights.lamps.size()));
-    for (std::size_t l = 0; l < weights.size(); ++l) {
-      if (weights[l] > 0) add_lamp(to, lights.lamps[l], index, point, {each, 1, hash({point.seed, place_on_lamp, l})});
-    }
-    return;
-  }
   const std::uint32_t count = std::max<std::uint32_t>(1, rays / rays_of_lamp);
   const std::vector<Choice> chosen = choices(weights, sum, count, sample_of(point, choice_of_lamp, 0, 1)[0]);
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -165,17 +168,17 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
 //
 // F, the form factor without shadows, is the mean of g: a control variate whose coefficient comes from the other rays
 // keeps the mean, and leaves no variance where the lamp is seen as a whole or not at all.
-Spectrum lamp_irradiance(const LampRays& rays, const Field& through) {
+double lamp_irradiance(const LampRays& rays, const Field& through, std::span<const double> kernels, Eigen::Index band) {
   const auto n = static_cast<Eigen::Index>(rays.count);
-  const auto shares = through.middleRows(static_cast<Eigen::Index>(rays.first), n);
-  const Spectrum all = shares.colwise().sum();
-  Spectrum sum = Spectrum::Zero(through.cols());
+  const auto shares = through.col(band).segment(static_cast<Eigen::Index>(rays.first), n);
+  const double all = shares.sum();
+  double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double g = rays.kernels[static_cast<std::size_t>(i)];
-    sum += g * shares.row(i);
-    if (n > 1) sum -= (g - rays.form_factor) / static_cast<double>(n - 1) * (all - shares.row(i));
+    const double g = kernels[rays.first + static_cast<std::size_t>(i)];
+    sum += g * shares[i];
+    if (n > 1) sum -= (g - rays.form_factor) / static_cast<double>(n - 1) * (all - shares[i]);
   }
-  return rays.exitance * sum / static_cast<double>(n);
+  return rays.factor * rays.lamp->exitance[band] * sum / static_cast<double>(n);
 }
 
 }  // namespace
@@ -192,12 +195,16 @@ Field light_samples(const Lights& lights, std::span<const LitPoint> points, std:
   Field irradiance = Field::Zero(static_cast<Eigen::Index>(points.size()), lighting.bands);
   const auto row = [&](std::size_t k) { return irradiance.row(static_cast<Eigen::Index>(k)); };
 
-  std::vector<Segment> segments = all.to_lamps;
+  const std::size_t to_lamps = all.to_lamps.size();
+  std::vector<Segment> segments = std::move(all.to_lamps);
   for (const LightRay& ray : all.single) segments.push_back(ray.segment);
   const Field through = lighting.paths.transmittance(segments);
-  for (const LampRays& lamp : all.lamps) row(lamp.point) += lamp_irradiance(lamp, through);
+  for (const LampRays& lamp : all.lamps) {
+    for (Eigen::Index band = 0; band < lighting.bands; ++band)
+      irradiance(static_cast<Eigen::Index>(lamp.point), band) += lamp_irradiance(lamp, through, all.kernels, band);
+  }
   for (std::size_t k = 0; k < all.single.size(); ++k)
-    row(all.single[k].point) += all.single[k].light * through.row(static_cast<Eigen::Index>(all.to_lamps.size() + k));
+    row(all.single[k].point) += all.single[k].light * through.row(static_cast<Eigen::Index>(to_lamps + k));
 
   if (lighting.sky) irradiance += sky_samples(lighting, points, rays);
   return irradiance;

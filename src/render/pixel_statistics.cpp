@@ -13,7 +13,6 @@ namespace {
 constexpr double dark = 0.05;
 constexpr double bright_share = 0.9;
 
-// That many times the mean of a pixel and those around may have, which edges of things raise.
 double least_luminance(const std::vector<PixelSamples>& pixels) {
   std::vector<double> values;
   for (const PixelSamples& pixel : pixels) {
@@ -52,11 +51,22 @@ double PixelSamples::variance() const {
   return sum / 12 * count_;
 }
 
+Eigen::VectorXd reference_luminances(const std::vector<PixelSamples>& pixels) {
+  const double least = least_luminance(pixels);
+  Eigen::VectorXd references(static_cast<Eigen::Index>(pixels.size()));
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+    references[static_cast<Eigen::Index>(k)] = std::max(least, pixels[k].mean());
+  return references;
+}
+
 Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int width) {
   const int height = static_cast<int>(pixels.size()) / width;
   const auto index = [&](int x, int y) { return static_cast<Eigen::Index>(y) * width + x; };
-  Eigen::VectorXd own(static_cast<Eigen::Index>(pixels.size()));
-  for (std::size_t k = 0; k < pixels.size(); ++k) own[static_cast<Eigen::Index>(k)] = pixels[k].variance();
+  const Eigen::VectorXd references = reference_luminances(pixels);
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(references.size());
+  for (Eigen::Index k = 0; k < own.size(); ++k) {
+    if (references[k] > 0) own[k] = pixels[static_cast<std::size_t>(k)].variance() / (references[k] * references[k]);
+  }
   Eigen::VectorXd pooled(own.size());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -64,19 +74,26 @@ Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int wi
       int number = 0;
       for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
         for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u, ++number) sum += own[index(u, v)];
-      pooled[index(x, y)] = sum / number / pixels[static_cast<std::size_t>(index(x, y))].count();
+      const Eigen::Index at = index(x, y);
+      pooled[at] = sum / number * references[at] * references[at] / pixels[static_cast<std::size_t>(at)].count();
     }
   }
   return pooled;
 }
 
+double mean_relative_error(const std::vector<PixelSamples>& pixels, const Eigen::VectorXd& errors) {
+  const Eigen::VectorXd references = reference_luminances(pixels);
+  if (!(references.array() > 0).all()) return 0;
+  return std::sqrt((errors.array() / references.array()).square().mean());
+}
+
 std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixels, int width, double error,
                                           std::uint32_t most) {
   const Eigen::VectorXd variances = pooled_variances(pixels, width);
-  const double least = least_luminance(pixels);
+  const Eigen::VectorXd references = reference_luminances(pixels);
   std::vector<std::uint32_t> wanted;
   for (std::size_t k = 0; k < pixels.size(); ++k) {
-    const double allowed = error * std::max(least, pixels[k].mean());
+    const double allowed = error * references[static_cast<Eigen::Index>(k)];
     const double variance = variances[static_cast<Eigen::Index>(k)];
     const std::uint32_t count = pixels[k].count();
     const double times = variance > 0 ? variance / (allowed * allowed) : 0;

@@ -36,4 +36,7 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
 /// such views that from which the most different polygons are seen over the widest part of the picture.
 Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
 
+/// True when most of an upright side of the bounds is a hole through which one sees into the depth, onto kept sides.
+bool has_open_side(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
+
 }  // namespace patchlight

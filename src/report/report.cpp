@@ -1,12 +1,14 @@
 #include "patchlight/report/report.h"
 
 #include "accuracy/errors.h"
+#include "report/room_light.h"
 #include "solve/scattering.h"
 #include "transport/worst_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -27,7 +29,8 @@ SceneFacts scene_facts(const Scene& scene) {
           .metres_per_unit = scene.metres_per_unit,
           .up = scene.up,
           .size = bounds(scene).diagonal(),
-          .notes = scene.notes};
+          .notes = scene.notes,
+          .bands = bands_of(scene)};
 }
 
 std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& simulation) {
@@ -44,7 +47,8 @@ std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& 
                    .absorbed = zero,
                    .lowest = infinite,
                    .mean = zero,
-                   .highest = -infinite});
+                   .highest = -infinite,
+                   .radiance = zero});
   }
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
     MaterialLight& of_material = all[simulation.mesh.material[i]];
@@ -52,11 +56,15 @@ std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& 
     of_material.area += area;
     of_material.emitted += area * simulation.problem.exitance.row(i);
     of_material.mean += area * irradiance.row(i);
+    of_material.radiance += area / std::numbers::pi * simulation.solution.radiosity.row(i);  // L = B / pi
     of_material.absorbed += area * absorbed.row(i);
     of_material.lowest = of_material.lowest.min(irradiance.row(i));
     of_material.highest = of_material.highest.max(irradiance.row(i));
   }
-  for (MaterialLight& of_material : all) of_material.mean /= of_material.area;
+  for (MaterialLight& of_material : all) {
+    of_material.mean /= of_material.area;
+    of_material.radiance /= of_material.area;
+  }
   return all;
 }
 
@@ -154,6 +162,18 @@ SolutionFacts solution_facts(const Simulation& simulation) {
 
 }  // namespace
 
+const char* name_of(RoomSurface surface) {
+  switch (surface) {
+    case RoomSurface::floor:
+      return "floor";
+    case RoomSurface::walls:
+      return "walls";
+    case RoomSurface::ceiling:
+      return "ceiling";
+  }
+  return "";
+}
+
 SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings,
                          std::vector<std::string> warnings) {
   return {.groups = by_group(groups, readings),
@@ -171,6 +191,8 @@ Report report_of(const Scene& scene, const Request& request, const Simulation& s
           .vertices = simulation.mesh.vertices.size(),
           .area = simulation.problem.area.sum(),
           .materials = material_light(scene, simulation),
+          .rooms = room_light(scene, simulation),
+          .unit = scene.photometric ? "lx" : "W/m^2",
           .sensors = std::move(sensors),
           .form_factors = form_factor_facts(scene, simulation),
           .balance = simulation.balance,

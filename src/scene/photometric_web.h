@@ -15,6 +15,15 @@ namespace patchlight {
 /// about the horizontal one, cos h (cos v aim + sin v z) - sin h s.
 enum class PhotometricType : std::uint8_t { a, b, c };
 
+/// What a luminous opening is by the signs of its width, length and height, IES LM-63-02 table 1.
+enum class OpeningShape : std::uint8_t {
+  box,                 ///< a rectangle, with a height a box: none negative
+  upright_cylinder,    ///< an ellipse, with a height a cylinder: - - +
+  cylinder_by_length,  ///< a tube along the length: - + -
+  cylinder_by_width,   ///< a tube along the width: + - -
+  ellipsoid            ///< - - -
+};
+
 /// The intensities of a luminaire as measured by its maker: what an IES LM-63 file holds.
 struct PhotometricWeb {
   std::string file{};  ///< for messages
@@ -23,9 +32,10 @@ struct PhotometricWeb {
   std::vector<double> horizontal{};  ///< degrees, ascending; what symmetry tells is left out, as in the file
   std::vector<double> candela{};     ///< at horizontal h and vertical v: [h * vertical.size() + v], all factors applied
   Vector opening = Vector::Zero();   ///< luminous width, length and height in metres; 0 for a point
-  double lamp_lumens = 0;            ///< of all lamps together, lm; 0 with absolute photometry, which does not say
-  double watts = 0;                  ///< electrical input
-  std::vector<double> tilt{};        ///< degrees between the aim and straight down, ascending; empty: does not matter
+  OpeningShape shape = OpeningShape::box;
+  double lamp_lumens = 0;             ///< of all lamps together, lm; 0 with absolute photometry, which does not say
+  double watts = 0;                   ///< electrical input
+  std::vector<double> tilt{};         ///< degrees between the aim and straight down, ascending; empty: does not matter
   std::vector<double> tilt_factor{};  ///< what the candela are multiplied with when tilted so
 };
 

@@ -3,9 +3,9 @@
 #include "patchlight/base/error.h"
 
 #include "base/shortest.h"
+#include "light/texture.h"
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 namespace patchlight {
@@ -91,26 +91,30 @@ void check_sheet(const Scene& scene, PolygonIndex index) {
                                                  "with read.settings MATERIAL.diffuse_transmittance=R,G,B");
 }
 
+void check_picture(const Scene& scene, const Material& material) {
+  if (!material.texture || !reflects_more_than_all(*material.texture)) return;
+  throw InputError(scene.file, "material '" + material.name +
+                                   "' has a picture that reflects more than 1 in places; expected 0 to 1 everywhere. "
+                                   "Take a picture of reflectances or a smaller factor, or use read.settings " +
+                                   material.name + ".reflectance=R,G,B");
+}
+
 void check_material(const Scene& scene, const Material& material) {
   const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
-    if (!(rho >= 0 && rho <= 1)) {
-      std::ostringstream message;
-      message << name << " has reflectance " << shortest(rho)
-              << "; expected 0 to 1 in every band. Mend Kd, or use read.settings " << material.name
-              << ".reflectance=R,G,B";
-      throw InputError(scene.file, message.str());
-    }
+    if (rho >= 0 && rho <= 1) continue;
+    throw InputError(scene.file, name + " has reflectance " + shortest(rho) +
+                                     "; expected 0 to 1 in every band. Mend Kd, or use read.settings " + material.name +
+                                     ".reflectance=R,G,B");
   }
+  check_picture(scene, material);
   for (Eigen::Index band = 0; band < material.transmittance.size(); ++band) {
     const double tau = material.transmittance[band];
     if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
-    std::ostringstream message;
-    message << name << " has transmittance " << shortest(tau) << " and reflectance "
-            << shortest(material.reflectance[band])
-            << "; expected numbers not below 0 whose sum is at most 1. Use read.settings " << material.name
-            << ".reflectance=R,G,B";
-    throw InputError(scene.file, message.str());
+    throw InputError(scene.file, name + " has transmittance " + shortest(tau) + " and reflectance " +
+                                     shortest(material.reflectance[band]) +
+                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     material.name + ".reflectance=R,G,B");
   }
   check_specular_reflectance(scene, material);
   check_diffuse_transmittance(scene, material);
@@ -120,13 +124,10 @@ void check_material(const Scene& scene, const Material& material) {
                                      ".index=1.52");
   }
   for (const double exitance : material.exitance) {
-    if (!(exitance >= 0 && std::isfinite(exitance))) {
-      std::ostringstream message;
-      message << name << " has exitance " << exitance
-              << " W/m^2; expected a finite number not below 0. Mend Ke, or use read.settings " << material.name
-              << ".exitance=R,G,B";
-      throw InputError(scene.file, message.str());
-    }
+    if (exitance >= 0 && std::isfinite(exitance)) continue;
+    throw InputError(scene.file, name + " has exitance " + shortest(exitance) +
+                                     " W/m^2; expected a finite number not below 0. Mend Ke, or use read.settings " +
+                                     material.name + ".exitance=R,G,B");
   }
 }
 

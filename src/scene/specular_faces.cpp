@@ -1,6 +1,7 @@
 #include "scene/specular_faces.h"
 
 #include "base/sampling.h"
+#include "light/photometry.h"
 #include "scene/transmittance.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ constexpr std::uint32_t not_specular = ~0U;
 
 SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections)
     : reflections_(reflections) {
-  const Bands bands = bands_of(scene);
+  const Spectrum shares = luminous_shares(bands_of(scene));
   const bool is_clear = is_opening(scene, polygon);
   for (const Side side : {Side::front, Side::back}) {
     const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
@@ -28,7 +29,7 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
       const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
         return part.pane.index == panes[band].index && part.pane.internal == panes[band].internal;
       });
-      const double weight = bands[band].luminous_weight / 2;
+      const double weight = shares[static_cast<Eigen::Index>(band)] / 2;
       if (found == parts_.end()) {
         parts_.push_back({weight, panes[band]});
       } else {
@@ -39,7 +40,7 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
     const auto s = static_cast<std::size_t>(side);
     is_mirror_[s] = is_mirror(scene, polygon, side) ? 1 : 0;
     for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band)
-      mirrored_[s] += bands[static_cast<std::size_t>(band)].luminous_weight * material.specular_reflectance[band];
+      mirrored_[s] += shares[band] * material.specular_reflectance[band];
     held_[s] = held_of(mirrored_[s]);
   }
   if (is_clear) keep_what_panes_hold();

@@ -31,6 +31,41 @@ GlowingRadiosity glowing_by_bounces(const TransportOperator& transport, const Ra
   return glowing;
 }
 
+// With fewer bands each has weights of its own, which are somewhat tighter.
+constexpr Eigen::Index few_bands = 3;
+
+// The largest share that a patch scatters in any band: R of no band is above it.
+Scattering of_brightest_bands(const Scattering& scattering) {
+  Scattering highest{scattering.reflectance.rowwise().maxCoeff(), scattering.other_side, {}};
+  if (!scattering.is_diagonal()) highest.transmittance = scattering.transmittance.rowwise().maxCoeff();
+  return highest;
+}
+
+// 1 in the bands of this R.
+RadiosityProblem glowing(const Scattering& scattering, const Eigen::VectorXd& area) {
+  return {scattering, Field::Ones(scattering.reflectance.rows(), scattering.reflectance.cols()), area};
+}
+
+// v of all bands, or of one for them all.
+GlowingRadiosity loosely_solved(const TransportOperator& transport, const RadiosityProblem& problem) {
+  constexpr int most_iterations = 60;
+  const bool is_symmetric = transport.is_reciprocal() && problem.scattering.is_diagonal();
+  return is_symmetric ? glowing_radiosity(transport, problem, most_iterations)
+                      : glowing_by_bounces(transport, problem, most_iterations);
+}
+
+bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() && (weights.g > 0).all(); }
+
+// The same v for all bands, from R that is as large as any of theirs: v - K v is not below what it is with that.
+PatchWeights shared_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
+  const Eigen::Index bands = problem.exitance.cols();
+  const auto [v, applications] =
+      loosely_solved(transport, glowing(of_brightest_bands(problem.scattering), problem.area));
+  const Field irradiance = transport.apply(v).replicate(1, bands);
+  const Field of_all = v.replicate(1, bands);
+  return {of_all, of_all - problem.scattering.reflect(irradiance), applications + 1};
+}
+
 }  // namespace
 
 bool Bounds::contracts(Eigen::Index band) const { return contraction[band] < largest_contraction; }
@@ -51,14 +86,15 @@ Eigen::ArrayXd contraction_of(const TransportOperator& transport, const Radiosit
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
   // v = 1 + K v is the radiosity of patches that all emit 1; with the residual r of an approximation g = v - K v = 1 -
   // r.
-  constexpr int most_iterations = 60;
-  const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
-  const RadiosityProblem glowing{problem.scattering, ones, problem.area};
-  const bool is_symmetric = transport.is_reciprocal() && problem.scattering.is_diagonal();
-  const auto [v, applications] = is_symmetric ? glowing_radiosity(transport, glowing, most_iterations)
-                                              : glowing_by_bounces(transport, glowing, most_iterations);
-  PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), applications + 1};
-  if (!(weights.v > 0).all() || !(weights.g > 0).all()) return std::nullopt;
+  int in_vain = 0;
+  if (problem.exitance.cols() > few_bands) {
+    PatchWeights weights = shared_weights(transport, problem);
+    if (are_positive(weights)) return weights;
+    in_vain = weights.applications;
+  }
+  const auto [v, applications] = loosely_solved(transport, glowing(problem.scattering, problem.area));
+  PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), in_vain + applications + 1};
+  if (!are_positive(weights)) return std::nullopt;
   return weights;
 }
 

@@ -162,7 +162,8 @@ Solution Iterations::finish() {
   solution.irradiance = last_.irradiance;
   solution.radiosity = radiosity_from(problem_, last_.irradiance);
   solution.ambient = std::move(ambient_);
-  if (!bounds_.weights && bounds_.contracts() && wants_weights()) bounds_.weights = patch_weights(transport_, problem_);
+  if (options_.patch_bounds && !bounds_.weights && bounds_.contracts() && wants_weights())
+    bounds_.weights = patch_weights(transport_, problem_);
   if (!bounds_.weights) return solution;
   solution.error = patch_errors(*bounds_.weights, last_.residual);
   const Eigen::ArrayXd error = area_norm(solution.error, problem_.area);

@@ -26,8 +26,9 @@ const char* name_of(Verdict verdict);
 /// How much path tracing a verdict rests on.
 struct VerifyOptions {
   std::uint32_t paths = 4096;  ///< per patch; rounded up to path_batches times a power of two
-  std::size_t checked = 64;    ///< patches, half of them inside closed shells with openings where these divide the
-                               ///< scene; all when there are fewer
+  std::size_t checked = 64;    ///< patches, half of them inside where there is an inside and an outside, by
+                               ///< daylight as Simulation::enclosed tells, else by closed shells with openings; all
+                               ///< when there are fewer
   std::size_t left_out = 0;    ///< sides without patches that must be dark, chosen at random by area
   std::uint64_t seed = 1;
 };
@@ -42,7 +43,7 @@ struct LeftOutSide {
                             ///< band: nine of 4,096 paths at least, which rounding does not let through
 };
 
-/// The checked patches inside closed shells with openings, those outside, or all where none divide them. Per band: sums
+/// The checked patches inside, those outside, or all where nothing divides them. Per band: sums
 /// over these patches.
 struct VerifiedPart {
   std::string name;                ///< "inside", "outside" or "all"
@@ -63,6 +64,8 @@ struct Verification {
   PathEstimate paths;               ///< by path tracing
   std::vector<LeftOutSide> left_out;
   std::vector<VerifiedPart> parts;
+  std::uint32_t first_paths = 0;  ///< per patch of a first comparison that disagreed by the noise of its paths, so that
+                                  ///< these are others, and more; 0: there was none
   double probability = 0;  ///< of the least likely chi-square or offset of a part and band, or a larger one, in a right
                            ///< solution, times their number
   Verdict verdict = Verdict::inconclusive;  ///< disagrees below least_probability, or where a side that was left out
@@ -76,8 +79,11 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares the irradiance of randomly chosen patches, the larger the likelier, with path tracing in `scene`. Bars are
 /// per patch of the simulation and band, one standard deviation each. Both their differences and their common offset
-/// are tested. Too good an agreement is none the less one. Paths see the scene without the lights and the colours that
-/// are skipped by force; every other effect they simulate. The same bits for any number of threads. \throws Cancelled.
+/// are tested. Too good an agreement is none the less one. Where they disagree and most of that is of patches whose
+/// paths scatter more than their bars are, and these are fewer than 8,192, the comparison is made once more with 16
+/// times as many other paths, 8,192 at least, and that one counts: the spread of few paths tells too little of light
+/// that few of them meet. Paths see the scene without the lights and the colours that are skipped by force; every other
+/// effect they simulate. The same bits for any number of threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 

@@ -23,12 +23,12 @@ struct Effects {
   // The effect of the patches `from` on the patches `on`.
   double of(const PatchRange& from, const PatchRange& on) const {
     double effect = 0;
+    Eigen::ArrayXd sum(difference.cols());
     for (PatchIndex i = on.begin; i < on.end; ++i) {
-      for (Eigen::Index band = 0; band < difference.cols(); ++band) {
-        double sum = 0;
-        for (PatchIndex c = from.begin; c < from.end; ++c) sum += static_cast<double>(S.at(c, i)) * difference(c, band);
-        effect += weight(i, band) * sum * sum;
-      }
+      sum.setZero();
+      for (PatchIndex c = from.begin; c < from.end; ++c)
+        sum += static_cast<double>(S.at(c, i)) * difference.row(c).transpose();
+      for (Eigen::Index band = 0; band < sum.size(); ++band) effect += weight(i, band) * sum[band] * sum[band];
     }
     return effect;
   }
@@ -61,6 +61,7 @@ ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& 
 Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh, const FieldView& difference,
                                  const FieldView& weight) {
   const PatchIndex count = mesh.parents.size();
+  if (difference.isZero(0)) return Eigen::VectorXd::Zero(count);
   const Effects effects{S, difference, weight};
   std::vector<Eigen::VectorXd> partial(parent_stripes, Eigen::VectorXd::Zero(count));
   parallel_for(parent_stripes, [&](std::size_t stripe) {

@@ -76,7 +76,7 @@ SampleSet RowTracer::samples(PatchIndex patch, Purpose purpose, std::uint32_t ha
 
 // Those of the first half, then those of the second.
 std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
-  const PatchCorners corners = mesh_.corner_points(patch);
+  const QuadPoints points(mesh_.corner_points(patch).points);
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   std::vector<Ray> rays;
   rays.reserve(2 * std::size_t{counts_[patch]});
@@ -84,8 +84,8 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
     const SampleSet set = samples(patch, Purpose::hemisphere, half);
     for (std::size_t k = 0; k < counts_[patch]; ++k) {
       const Vector direction = square_to_cosine_hemisphere(coordinate(set, 0, k), coordinate(set, 1, k));
-      rays.push_back({square_to_quad(corners.points, coordinate(set, 2, k), coordinate(set, 3, k)), frame * direction,
-                      mesh_.polygon[patch]});
+      rays.push_back(
+          {points.at(coordinate(set, 2, k), coordinate(set, 3, k)), frame * direction, mesh_.polygon[patch]});
     }
   }
   return rays;

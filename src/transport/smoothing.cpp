@@ -36,20 +36,21 @@ class Cells {
  public:
   Cells(const PatchMesh& mesh, double edge);
 
-  // Calls use(patch) for the patches of the cell of this point and all cells around it.
+  // Calls use(patch, from the point to its centroid) for all patches whose centroids lie within a distance of a point
+  // that is at most a cell's edge.
   template <typename Use>
-  void for_near(const Point& point, Use use) const;
+  void for_near(const Point& point, double distance, Use use) const;
 
  private:
   using Cell = std::array<std::int64_t, 3>;
   Cell cell_of(const Point& point) const;
   std::uint32_t slot(const Cell& cell) const;
 
-  const PatchMesh& mesh_;
   double edge_;
   std::uint32_t mask_ = 0;
   std::vector<std::uint32_t> first_;  // per slot; one more at the end
   std::vector<PatchIndex> patches_;
+  std::vector<Point> centroids_;  // of patches_
 };
 
 Cells::Cell Cells::cell_of(const Point& point) const {
@@ -65,7 +66,7 @@ std::uint32_t Cells::slot(const Cell& cell) const {
   return state & mask_;
 }
 
-Cells::Cells(const PatchMesh& mesh, double edge) : mesh_(mesh), edge_(edge) {
+Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
   std::uint32_t slots = 1;
   while (slots < mesh.size()) slots *= 2;
   mask_ = slots - 1;
@@ -77,16 +78,21 @@ Cells::Cells(const PatchMesh& mesh, double edge) : mesh_(mesh), edge_(edge) {
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   patches_.resize(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) patches_[next[slot_of[i]]++] = i;
+  centroids_.reserve(mesh.size());
+  for (const PatchIndex i : patches_) centroids_.push_back(mesh.centroid[i]);
 }
 
 template <typename Use>
-void Cells::for_near(const Point& point, Use use) const {
+void Cells::for_near(const Point& point, double distance, Use use) const {
   const Cell home = cell_of(point);
   for (int k = 0; k < 27; ++k) {
     const Cell cell{home[0] + k / 9 - 1, home[1] + k / 3 % 3 - 1, home[2] + k % 3 - 1};
     const std::uint32_t s = slot(cell);
-    for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p)
-      if (cell_of(mesh_.centroid[patches_[p]]) == cell) use(patches_[p]);
+    for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
+      const Vector to = centroids_[p] - point;
+      // Cells may share a slot; each of its patches counts once.
+      if (to.squaredNorm() <= distance * distance && cell_of(centroids_[p]) == cell) use(patches_[p], to);
+    }
   }
 }
 
@@ -114,11 +120,10 @@ std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const Cells& cells) co
   const Vector along = normal.unitOrthogonal();
   const Vector across = normal.cross(along);
   std::vector<Neighbour> found;
-  cells.for_near(mesh.centroid[i], [&](PatchIndex j) {
-    const Vector to = mesh.centroid[j] - mesh.centroid[i];
+  cells.for_near(mesh.centroid[i], r, [&](PatchIndex j, const Vector& to) {
     const double squared = to.squaredNorm();
     const double cosine = normal.dot(mesh.normal[j]);
-    if (squared > r * r || cosine < least_cosine) return;
+    if (cosine < least_cosine) return;
     const double reach_of_other = reach * static_cast<double>(distance[j]);
     if (squared > reach_of_other * reach_of_other || std::abs(to.dot(normal)) > off_plane * r) return;
     const double near = 1 - 0.75 * squared / (r * r);

@@ -4,14 +4,15 @@
 #include "light/photometry.h"
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
-#include "lighting/sky.h"
 #include "lighting/sky_openings.h"
-#include "pipeline/lamps_apart.h"
 #include "plan/planned_scene.h"
 #include "render/final_gather.h"
+#include "render/inside_camera.h"
 #include "render/lens.h"
 #include "render/render.h"
 #include "render/tone_map.h"
+#include "views/solved_light.h"
+#include "views/surroundings.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
@@ -24,9 +25,6 @@
 
 namespace patchlight {
 namespace {
-
-// A picture looks at so many emitting faces by shadow rays.
-constexpr std::size_t most_lamps = 256;
 
 Eigen::VectorXd pixel_luminance(const Image& image, const Bands& bands) {
   Eigen::VectorXd values(image.pixels.rows());
@@ -55,20 +53,6 @@ double end_of_scale(const Eigen::VectorXd& values) {
   return rounded_up(*end);
 }
 
-// The sky, the ground and the disc of the sun, as far as the plan has them; nothing is seen without.
-std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene) {
-  if (!scene.sky) return {};
-  constexpr double sun_radius = 0.2665 * std::numbers::pi / 180;  // as seen from the earth
-  const SkyModel sky = sky_model(*scene.sky, scene.up);
-  return [sky, sun = scene.sun](const Vector& direction) -> Spectrum {
-    Spectrum seen = radiance(sky, direction);
-    // L = E / solid angle, 2 pi (1 - cos)
-    if (sun && direction.dot(sun->direction) > std::cos(sun_radius) && direction.dot(sky.up) > 0)
-      seen += sun->normal_irradiance / (2 * std::numbers::pi * (1 - std::cos(sun_radius)));
-    return seen;
-  };
-}
-
 // 1 for the pixels that exposure goes by: what is seen of a room, not through its windows; all where that is nothing.
 Eigen::VectorXd weight_of_pixels(const Image& image) {
   const Eigen::VectorXd inside = (image.outlook.array() <= 0.5).cast<double>();
@@ -76,81 +60,12 @@ Eigen::VectorXd weight_of_pixels(const Image& image) {
   return is_lit ? inside : Eigen::VectorXd::Ones(inside.size()).eval();
 }
 
-// The faces that emit much more than most do, the brightest first. The light of those left out is gathered like that of
-// patches which reflect.
-struct PictureLamps {
-  std::vector<LampFace> faces;
-  Field exitance;  // of their patches, 0 of all others
-};
-
-// Seen from its front, a face's corners go round counter-clockwise.
-LampFace seen_from_front(LampFace face, Side side) {
-  if (side == Side::front) return face;
-  const auto [a, b, c, d] = face.corners;
-  face.corners = c == d ? std::array<Point, 4>{c, b, a, a} : std::array<Point, 4>{d, c, b, a};
-  return face;
-}
-
-PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) {
-  const PatchMesh& mesh = simulation.mesh;
-  const Field& exitance = simulation.problem.exitance;
-  struct Lamp {
-    PatchRange patches;
-    double flux;
-  };
-  std::vector<Lamp> sides;
-  const double mean = exitance.rowwise().mean().matrix().dot(simulation.problem.area) / simulation.problem.area.sum();
-  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    for (const Side side : {Side::front, Side::back}) {
-      const PatchRange patches = mesh.patches_on(polygon, side);
-      if (patches.begin == patches.end || !(exitance.row(patches.begin) > 0).any()) continue;
-      double area = 0;
-      for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) area += mesh.area[patch];
-      if (exitance.row(patches.begin).mean() > bright * mean)
-        sides.push_back({patches, area * exitance.row(patches.begin).mean()});
-    }
-  }
-  std::stable_sort(sides.begin(), sides.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
-  PictureLamps lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
-  for (const auto& [patches, flux] : sides) {
-    if (lamps.faces.size() >= most_lamps) break;
-    for (LampFace& face : lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin])) {
-      face.exitance = exitance.row(patches.begin);
-      lamps.faces.push_back(seen_from_front(std::move(face), mesh.side[patches.begin]));
-    }
-    const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
-    lamps.exitance.middleRows(patches.begin, count) = exitance.middleRows(patches.begin, count);
-  }
-  return lamps;
-}
-
-SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const Lighting& lighting) {
-  const RadiosityProblem& problem = simulation.problem;
-  PictureLamps lamps = lamps_of_picture(scene, simulation);
-  const Field sent = simulates(simulation.plan, Effect::interreflection)
-                         ? Field(std::numbers::pi * display_radiance(simulation))
-                         : problem.exitance;
-  const Bands bands = bands_of(scene);
-  Eigen::VectorXd weights(static_cast<Eigen::Index>(bands.size()));
-  for (std::size_t band = 0; band < bands.size(); ++band)
-    weights[static_cast<Eigen::Index>(band)] = luminous_efficacy * bands[band].luminous_weight;
-  return {.mesh = simulation.mesh,
-          .occluder = simulation.tracing->all_faces(scene),
-          .lights = {std::move(lamps.faces), lighting},
-          .exitance = problem.exitance,
-          .reflected = sent - lamps.exitance,
-          .reflectance = problem.scattering.reflectance,
-          .other_side = problem.scattering.other_side,
-          .transmittance = problem.scattering.transmittance,
-          .luminous_weights = weights,
-          .scene = &scene};
-}
-
 // As it is shown on a display.
 Picture shown(GatheredImage taken, const Camera& camera, PictureColors colors, const Bands& bands) {
   const Image& image = taken.image;
   Picture picture{.image = {.width = image.width, .height = image.height, .pixels = {}}, .camera = camera};
   picture.unfinished = taken.unfinished;
+  picture.reached_error = taken.error;
   if (colors == PictureColors::natural) {
     picture.exposure = exposure_for(image.pixels, weight_of_pixels(image), bands);
     picture.image.pixels = tone_map(image.pixels, picture.exposure, bands);
@@ -166,6 +81,21 @@ Picture shown(GatheredImage taken, const Camera& camera, PictureColors colors, c
   return picture;
 }
 
+// Inside the room that reflects most light, by day of those that hold it; where a side of the model is open, or no room
+// is found, a view that shows most of the model.
+Camera view_of_brightest_room(const Scene& scene, const Simulation& simulation, const Occluder& occluder) {
+  const Field reflected = std::numbers::pi * display_radiance(simulation) - simulation.problem.exitance;
+  Eigen::VectorXd light = reflected.rowwise().mean().max(0);
+  const bool by_day = (simulation.enclosed.array() > 0).any();
+  if (by_day) light = light.cwiseProduct(simulation.enclosed);
+  if (by_day || !has_open_side(scene, simulation.plan.sides, occluder)) {
+    const auto camera = inside_camera(floors_of(simulation.mesh, light, scene.up),
+                                      light_of_sides(simulation.mesh, light, scene.polygons.size()), scene, occluder);
+    if (camera) return *camera;
+  }
+  return default_camera(scene, simulation.plan.sides, occluder);
+}
+
 }  // namespace
 
 Field display_radiance(const Simulation& simulation) {
@@ -178,10 +108,20 @@ Field display_radiance(const Simulation& simulation) {
   return radiosity / std::numbers::pi;  // L = B / pi
 }
 
+double exposure_of(const Scene& scene, const Simulation& simulation) {
+  const Field radiance = display_radiance(simulation);
+  const Eigen::VectorXd& area = simulation.problem.area;
+  const Bands bands = bands_of(scene);
+  if (simulation.enclosed.size() == 0) return exposure_for(radiance, area, bands);
+  const Eigen::VectorXd inside = area.cwiseProduct(simulation.enclosed);
+  const bool is_lit = ((radiance.rowwise().maxCoeff() > 0) && (inside.array() > 0)).any();
+  return exposure_for(radiance, is_lit ? inside : area, bands);
+}
+
 Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options,
                      const Observer& observer) {
   const Occluder& occluder = simulation.tracing->all_faces(scene);
-  const Camera camera = options.camera ? *options.camera : default_camera(scene, simulation.plan.sides, occluder);
+  const Camera camera = options.camera ? *options.camera : view_of_brightest_room(scene, simulation, occluder);
   const Vector up = picture_up(camera, scene.up, scene.north);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
@@ -197,6 +137,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
                          {.width = options.width,
                           .height = options.height,
                           .error = options.error,
+                          .most_samples = options.most_samples,
                           .hemisphere = {.most_bounces = reflects_again ? HemisphereOptions().most_bounces : 0},
                           .seed = hash({simulation.plan.assembly.seed}),
                           .surroundings = surroundings},

@@ -145,7 +145,9 @@ bool has_daylight_factors(const Scene& scene) { return only_overcast_sky(scene).
 SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
   const std::vector<SensorPlace> places =
       place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
-  return {readings_at(places, scene, simulation, observer), doubtful_sensors(scene, places)};
+  std::vector<std::string> warnings = doubtful_sensors(scene, places);
+  for (std::string& warning : sensors_close_to_pictures(scene, simulation.mesh)) warnings.push_back(std::move(warning));
+  return {readings_at(places, scene, simulation, observer), std::move(warnings)};
 }
 
 }  // namespace patchlight

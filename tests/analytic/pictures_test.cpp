@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 #include "form_factor/point_polygon.h"
 #include "light/photometry.h"
-#include "render/spherical_triangle.h"
 #include "support/daylight_office.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
@@ -379,44 +378,30 @@ TEST(FinalPicture, ShowsSpheresThatEmit) {
   }
 }
 
-TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
-  // A room of 6 x 4 x 3 m with two luminous squares of 0.6 m in its ceiling, 3,000 cd/m^2 each, seen from 1.2 m. By
-  // hand: omega of each by its two triangles as seen from the eye, p at its middle by Guth's formula, and the
-  // background from the illuminance at the eye less what the squares themselves give: pi L F.
-  Scene scene = empty_scene({grey(0.6), grey(0.6, 3000 * pi / luminous_efficacy)});
-  scene = with_box(std::move(scene), Point(0, 0, 0), Point(6, 4, 3), true);
-  std::vector<Quad> squares;
-  for (const double x : {2.7, 4.4}) {
-    const Point low(x, 1.7, 2.995);
-    squares.push_back({low, low + Vector(0, 0.6, 0), low + Vector(0.6, 0.6, 0), low + Vector(0.6, 0, 0)});
-    scene = with_quad(std::move(scene), squares.back(), 1);
-  }
-  const Camera camera{Point(0.5, 2, 1.2), Point(5, 2, 1.2), 50, "desk"};
-  const Simulation simulation = solved(scene, 2000);
-  const ObserverReading found = read_observers(scene, simulation, {camera})[0];
-  EXPECT_NEAR(found.cylindrical_illuminance, found.vertical_illuminance, 0.5 * found.vertical_illuminance);
-
-  double sum = 0, from_squares = 0;
-  for (const Quad& square : squares) {
-    const double omega = SphericalTriangle(camera.eye, {square[0], square[1], square[2]}).solid_angle() +
-                         SphericalTriangle(camera.eye, {square[0], square[2], square[3]}).solid_angle();
-    const Vector way = ((square[0] + square[2]) / 2 - camera.eye).normalized();
-    // It lies straight above the line of sight: tau = 0, so p = exp(33.98e-3 sigma + 21e-5 sigma^2).
-    const double sigma = std::acos(way.x()) * 180 / pi;
-    const double p = std::exp(33.98e-3 * sigma + 21e-5 * sigma * sigma);
-    sum += 3000.0 * 3000 * omega / (p * p);
-    from_squares += pi * 3000 * point_to_polygon(camera.eye, Vector::UnitX(), square);
-  }
-  const double background = (found.vertical_illuminance - from_squares) / pi;
-  EXPECT_NEAR(found.background_luminance, background, 0.02 * background);
-  EXPECT_NEAR(*found.unified_glare_rating, 8 * std::log10(0.25 / background * sum), 0.1);
-}
-
 TEST(FinalPicture, WithoutTimeIsCancelled) {
   const Scene scene = test_room(0.5);
   const Simulation simulation = solved(scene, 400);
   EXPECT_THROW(take_picture(scene, simulation, final_options(into_room(), 40), [](const Progress&) { return false; }),
                Cancelled);
+}
+
+// A room without its wall at low x, under a sky.
+Scene room_with_an_open_end(double length) {
+  Scene scene = empty_scene({grey(0.5)});
+  const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(length, 3, 2.7), true);
+  for (std::size_t k = 0; k < 5; ++k) scene = with_quad(std::move(scene), faces[k]);
+  scene.sky = Sky{};
+  scene.sky->horizontal_irradiance = watts(20);
+  return scene;
+}
+
+// By day such a room is seen from inside.
+TEST(DefaultView, ByDayIsInsideARoomWithAnOpenEnd) {
+  for (const double length : {7.0, 9.0}) {
+    const Scene scene = room_with_an_open_end(length);
+    const Point eye = take_picture(scene, solved(scene, 300), {.width = 4, .height = 4}).camera.eye;
+    EXPECT_TRUE(bounds(scene).contains(eye)) << eye.transpose();
+  }
 }
 
 }  // namespace

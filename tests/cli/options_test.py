@@ -13,6 +13,16 @@ watts = 200
 position = [0.5, 0.5, 1.5]
 '''
 
+DAY = '''[[model]]
+file = "room.obj"
+[[material]]
+name = "*"
+exitance = 0
+[sky]
+kind = "uniform"
+illuminance = 10000
+'''
+
 
 class OptionsTest(ToolTest):
     def good(self, *arguments):
@@ -25,6 +35,44 @@ class OptionsTest(ToolTest):
         self.assertEqual(done.returncode, USAGE, (arguments, done.stderr))
         for word in named:
             self.assertIn(word, done.stderr)
+
+    def test_lengths_take_units_and_shares_percent(self):
+        def report(*words):
+            self.good("solve", "room.obj", "--unit", "cm", "--report", "report.json", "-q", *words)
+            return json.loads((self.folder / "report.json").read_text())
+
+        bare = report("--max-edge", "40", "--set", "white.reflectance=0.3")
+        stated = report("--max-edge", "4mm", "--set", "white.reflectance=30%")
+        self.assertAlmostEqual(bare["request"]["max_edge_m"], 0.4, places=12)
+        self.assertAlmostEqual(stated["request"]["max_edge_m"], 0.004, places=12)
+        walls = [[m["reflectance"] for m in r["materials"] if m["name"] == "white"] for r in (bare, stated)]
+        self.assertEqual(walls, [[[0.3] * 3]] * 2)
+
+    def test_maintained_lamps_give_their_share(self):
+        # The light is linear in the lamps, and all of it is theirs.
+        def irradiances(*words, scene="scene.toml"):
+            self.good("solve", scene, "--patches", "100", "--report", "report.json", "-q", *words)
+            report = json.loads((self.folder / "report.json").read_text())
+            return ([m["irradiance_mean_W_m2"][0] for m in report["materials"]], report["input"]["notes"])
+
+        self.write("scene.toml", SCENE)
+        new, _ = irradiances()
+        for words in (["--maintenance-factor", "0.8"], ["--maintenance-factor", "80%"]):
+            kept, notes = irradiances(*words)
+            for a, b in zip(new, kept):
+                self.assertAlmostEqual(b, 0.8 * a, delta=1e-5 * a)
+            self.assertTrue(any("maintenance factor 0.8" in note for note in notes), notes)
+        self.write("scene.toml", "maintenance_factor = 0.5\n" + SCENE)
+        half, _ = irradiances()
+        for a, b in zip(new, half):
+            self.assertAlmostEqual(b, 0.5 * a, delta=1e-5 * a)
+        # Daylight does not age.
+        self.write("day.toml", DAY)
+        day, _ = irradiances(scene="day.toml")
+        self.assertGreater(max(each for each in day if each is not None), 0)
+        self.assertEqual(irradiances("--maintenance-factor", "0.5", scene="day.toml")[0], day)
+        self.refused(["--maintenance-factor", "expected"], "solve", "scene.toml", "-o", "a.vtp", "--maintenance-factor",
+                     "1.2")
 
     def test_all_that_read_a_model_take_the_same(self):
         model = ["--format", "--unit", "--set", "--up", "--confine", "--sides"]

@@ -29,6 +29,35 @@ class PageTest(ToolTest):
     def test_page_alone_is_enough_to_write(self):
         self.assertEqual(self.made("solve", "room.obj", "--patches", 100, "--accuracy", "20%")["report"]["accuracy"][0]["samples"] > 0, True)
 
+    def test_a_single_mesh_tells_what_it_cost(self):
+        step = self.made("solve", "room.obj", "--patches", 100, "--error-bars")["report"]["accuracy"][0]
+        self.assertGreater(step["seconds"], 0)
+        self.assertGreater(step["cpu_seconds"], 0)
+
+    def test_by_day_pages_of_solve_and_render_go_by_the_same_patches(self):
+        # A room of 9 m that is open at one end.
+        self.write("open.obj", """v 0 0 0
+v 3 0 0
+v 3 9 0
+v 0 9 0
+v 0 0 3
+v 3 0 3
+v 3 9 3
+v 0 9 3
+f 1 2 3 4
+f 5 8 7 6
+f 1 5 6 2
+f 1 4 8 5
+f 2 6 7 3
+""")
+        self.write("day.toml", '[[model]]\nfile = "open.obj"\n[sky]\nkind = "uniform"\nilluminance = 10000\n')
+        solved = self.made("solve", "day.toml", "--patches", 300, "-o", "day.vtp")["model"]
+        stored = self.made("render", "day.toml", "--solution", "day.vtp", "-o", "day.png", "--quality", "draft", "--size", "32x24")["model"]
+        self.assertIn("enclosed", solved["rows"])
+        self.assertEqual(stored["rows"]["enclosed"], solved["rows"]["enclosed"])
+        self.assertEqual([look["name"] for look in stored["looks"]], [look["name"] for look in solved["looks"]])
+        self.assertEqual(len(stored["looks"]), 2)
+
     def test_sensors_have_their_values(self):
         self.write("points.txt", "0.5 0.5 0.1 0 0 1\n0.4 0.5 0.1 0 0 1\n")
         data = self.made("solve", "room.obj", "--patches", 100, "--points", "points.txt")

@@ -120,6 +120,25 @@ class RenderTest(ToolTest):
         self.good("render", "scene.toml", "--solution", "scene.vtp", "--observers", "one.csv", "--view", "plan", "-q")
         self.assertEqual((self.folder / "one.csv").read_text().splitlines()[1:], lines[2:])
 
+    def test_observers_stand_at_a_camera_without_a_picture(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        both = ["render", "scene.toml", "--solution", "scene.vtp", "-q", "--observers"]
+        self.good(*both, "view.csv", "--view", "near")
+        self.good(*both, "camera.csv", "--camera", "0.5,0.5,1.5", "0,0,1", "60")
+        view, camera = ((self.folder / name).read_text().splitlines()[1] for name in ("view.csv", "camera.csv"))
+        self.assertEqual(view.split(",")[1:], camera.split(",")[1:])
+        self.assertFalse(list(self.folder.glob("*.png")))
+
+    def test_an_error_that_is_not_reached_is_told_with_how_to_mend_it(self):
+        self.solve()
+        words = ["render", "room.obj", "--solution", "room.vtp", "-o", "room.exr", "--size", "24x16"]
+        told = self.good(*words, "--picture-error", "0.01%", "--picture-samples", "4").stderr
+        self.assertRegex(told, r"warning: room.exr: the pixels' standard error is [\d.]+% .* not the 0.01% asked for")
+        self.assertRegex(told, r"--picture-samples \d+ allows more, a larger --picture-error asks for less")
+        self.assertNotIn("standard error", self.good(*words, "--picture-error", "50%").stderr)
+        self.assertIn("power of two", self.refused(USAGE, *words, "--picture-samples", "65"))
+
     def test_two_solutions_stand_beside_each_other(self):
         self.solve()
         self.good("solve", "room.obj", "--patches", "400", "-o", "fine.vtp", "-q")
@@ -154,6 +173,8 @@ class RenderTest(ToolTest):
     def test_refuses_what_is_no_solution(self):
         self.write("text.vtp", "no file of VTK\n")
         self.assertIn("text.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "text.vtp", "-o", "a.png"))
+        grid = self.refused(USAGE, "render", "room.obj", "--solution", "room.vtu", "-o", "a.png")
+        self.assertIn("-o RESULT.vtu -o RESULT.vtp", grid)
         self.assertIn("none.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "none.vtp", "-o", "a.png"))
 
     def test_refuses_options_that_contradict_each_other(self):

@@ -1,10 +1,11 @@
-// Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT (a scene file, a photometric file, a weather file, an array
-// of numpy) are understood, or refused by an InputError of one line.
+// Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT (a scene file, a photometric file, a weather file, a
+// spectrum, an array of numpy) are understood, or refused by an InputError of one line.
 #include "patchlight/base/error.h"
 
 #include "archive/npy.h"
 #include "input/read_epw.h"
 #include "input/read_ies.h"
+#include "input/read_spectrum.h"
 #include "input/scene_file.h"
 #include "scene/photometric_web.h"
 
@@ -34,6 +35,8 @@ void read(const std::string& text) {
     parse_ies(text, fuzzed.string());
   } else if (format == "epw") {
     parse_epw(text, fuzzed.string(), {2001, 6, 21, 11});
+  } else if (format == "spd") {
+    parse_spectrum(text, fuzzed);
   } else if (format == "toml") {
     read_scene_file(fuzzed, folder);
   } else {

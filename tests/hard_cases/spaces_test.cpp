@@ -2,11 +2,14 @@
 
 #include "patchlight/simulate.h"
 
+#include "accuracy/enclosed.h"
 #include "accuracy/interest.h"
 #include "mesh/mesher.h"
 #include "support/daylight_office.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <utility>
 
 // Inside and outside of closed shells with openings.
 namespace patchlight::spaces_test {
@@ -32,8 +35,8 @@ TEST(Spaces, PatchesAreInsideWhereTheirSideLooksIntoTheRoom) {
     const Scene scene = turned(daylight_office(), unit);
     const PatchMesh mesh = tessellate(scene, both_sides(scene), unit);
     const Eigen::VectorXd inside = inside_shells(scene, mesh, Dividing::with_openings);
-    const Eigen::VectorXd of_room = interest_of(scene, mesh, {"room.inside"});
-    const Eigen::VectorXd beside = interest_of(scene, mesh, {"plaster.outside", "ground"});
+    const Eigen::VectorXd of_room = interest_of(scene, mesh, {"room.inside"}, {});
+    const Eigen::VectorXd beside = interest_of(scene, mesh, {"plaster.outside", "ground"}, {});
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       const Point p = before(mesh, i, unit);
       const bool within = Box(Point(0, 0, 0), Point(4, 5, 3)).contains(p);
@@ -46,6 +49,99 @@ TEST(Spaces, PatchesAreInsideWhereTheirSideLooksIntoTheRoom) {
     EXPECT_GT(inside.sum(), 0);
     EXPECT_LT(inside.sum(), inside.size());
   }
+}
+
+// An overhang above the window: three faces meet at its edge, so no shell is closed.
+Scene with_overhang(Scene scene) {
+  return with_quad(std::move(scene), {Point(0, -1.2, 3), Point(4, -1.2, 3), Point(4, 0, 3), Point(0, 0, 3)}, 0);
+}
+
+// Without the wall of the pane.
+Scene with_open_wall(Scene scene) {
+  scene.polygons.erase(scene.polygons.begin() + 2);
+  return scene;
+}
+
+Eigen::VectorXd enclosed_in(const Scene& scene, const PatchMesh& mesh) {
+  return enclosed_patches(scene, Occluder(scene, Occluder::Blockers::all), mesh);
+}
+
+TEST(Spaces, RoomsAreEnclosedWhateverTheirShells) {
+  // In m and in mm, and with a plain of 20 km far below, whose size rays have to bear.
+  const Scene office = with_overhang(daylight_office());
+  const Scene on_a_plain = with_quad(
+      office, {Point(-1e4, -1e4, -50), Point(1e4, -1e4, -50), Point(1e4, 1e4, -50), Point(-1e4, 1e4, -50)}, 3);
+  for (const auto& [of, unit] :
+       {std::pair(daylight_office(), 1.0), std::pair(office, 1e-3), std::pair(on_a_plain, 1.0)}) {
+    const Scene scene = turned(of, unit);
+    const PatchMesh mesh =
+        tessellate(scene, both_sides(scene), unit * (of.polygons.size() > office.polygons.size() ? 100 : 1));
+    const Eigen::VectorXd enclosed = enclosed_in(scene, mesh);
+    const Eigen::VectorXd of_room = interest_of(scene, mesh, {"room.inside"}, enclosed);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      const bool within = Box(Point(0, 0, 0), Point(4, 5, 3)).contains(before(mesh, i, unit));
+      EXPECT_EQ(enclosed[i], within ? 1 : 0) << i;
+      const bool is_of_room = scene.polygons[mesh.polygon[i]].group == 0;
+      EXPECT_EQ(of_room[i], within && is_of_room ? 1 : 0) << i;
+    }
+  }
+}
+
+TEST(Spaces, NothingIsEnclosedInTheOpen) {
+  // A table's top over a pavement.
+  Scene scene = empty_scene({named("stone", 0.5)});
+  scene = with_quad(std::move(scene), {Point(-9, -9, 0), Point(9, -9, 0), Point(9, 9, 0), Point(-9, 9, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0.8), Point(1, 0, 0.8), Point(1, 1, 0.8), Point(0, 1, 0.8)});
+  EXPECT_EQ(enclosed_in(scene, tessellate(scene, both_sides(scene), 0.5)).sum(), 0);
+}
+
+TEST(Spaces, AnOpenWallLeavesTheRoomInside) {
+  // The wall is an eighth of the room's surface, so light stays for four reflections with about (7/8)^4 = 0.59, at the
+  // back with more: sixteen walks may miss that for a patch or two. Facades are outside.
+  const Scene scene = turned(with_open_wall(daylight_office()), 1);
+  const PatchMesh mesh = tessellate(scene, both_sides(scene), 1);
+  const Eigen::VectorXd enclosed = enclosed_in(scene, mesh);
+  int at_the_back = 0;
+  int of_them_enclosed = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const Point p = before(mesh, i, 1);
+    if (!Box(Point(0, 0, 0), Point(4, 5, 3)).contains(p)) {
+      EXPECT_EQ(enclosed[i], 0) << i;
+    } else if (p.y() > 3.5) {
+      ++at_the_back;
+      of_them_enclosed += enclosed[i] == 1;
+    }
+  }
+  EXPECT_GE(of_them_enclosed, 0.9 * at_the_back);
+}
+
+TEST(Spaces, TheErrorByDaylightIsThatInside) {
+  // The overhang leaves no shell closed. Most of the light is outside, so that the error relative to all of it is less.
+  const Scene scene = with_overhang(daylight_office());
+  Request request;
+  request.mesh.patches = 600;
+  request.accuracy.error_bars = true;
+  const Simulation simulation = simulate(scene, request);
+  ASSERT_EQ(simulation.spaces.size(), 2U);
+  EXPECT_TRUE(simulation.accuracy.back().inside);
+  EXPECT_EQ(simulation.accuracy.back().total, simulation.spaces[0].errors.total);
+  request.accuracy.interest = {".inside", ".outside"};
+  const Simulation all = simulate(scene, request);
+  EXPECT_FALSE(all.accuracy.back().inside);
+  EXPECT_LT(all.accuracy.back().total, simulation.accuracy.back().total);
+}
+
+TEST(Spaces, AllCountsWhereNoDaylightGetsIn) {
+  // The pane is boarded up, and the luminaire is off.
+  Scene scene = daylight_office();
+  scene.polygons[2].material = 0;
+  scene.luminaires.clear();
+  Request request;
+  request.mesh.patches = 300;
+  request.accuracy.error_bars = true;
+  const Simulation simulation = simulate(scene, request);
+  EXPECT_FALSE(simulation.accuracy.back().inside);
+  EXPECT_TRUE(std::isfinite(simulation.accuracy.back().total));
 }
 
 TEST(Spaces, ErrorsAreStatedApart) {
@@ -62,7 +158,7 @@ TEST(Spaces, ErrorsAreStatedApart) {
   const Simulation inside = simulate(scene, request);
   EXPECT_NEAR(simulation.spaces[0].errors.total, inside.accuracy.back().total, 1e-9);
   EXPECT_TRUE(inside.spaces.empty());
-  EXPECT_GT(simulation.spaces[0].errors.total, simulation.accuracy.back().total);
+  EXPECT_EQ(simulation.spaces[0].errors.total, simulation.accuracy.back().total);
 }
 
 TEST(Spaces, AreOneWhereNothingDividesThem) {

@@ -38,14 +38,14 @@ def main(build, version, cmake, compiler):
         # Of what the whole library is linked with, the core has what meshes and rays need.
         core = folder / "consumer_of_core" / "consumer_of_core"
         run(core)
-        of_files = {"vtk", "cairo", "assimp", "tinygltf", "crypto"}
+        of_files = {"vtk", "cairo", "assimp", "tinygltf", "stb", "crypto"}
         assert linked(folder / "consumer" / "consumer", of_files | {"embree"}) == of_files | {"embree"}
         assert linked(core, of_files | {"embree"}) == {"embree"}, linked(core, of_files)
 
         # What is installed is the tool, its manual and every public header, and it is moved as a whole.
         shown = subprocess.run([installed / "bin" / "patchlight", "--version"], check=True, capture_output=True, text=True)
         assert shown.stdout == f"patchlight {version}\n", shown.stdout
-        assert (installed / "share" / "man" / "man1" / "patchlight.1").is_file()
+        assert (installed / "share" / "man" / "man1" / "patchlight.1.gz").is_file()
         public = HERE.parent.parent / "include"
         for header in public.rglob("*.h"):
             assert (installed / "include" / header.relative_to(public)).is_file(), header

@@ -2,6 +2,11 @@
 // without it, on a scene made for it.
 #include "patchlight/simulate.h"
 
+#include "light/colour.h"
+#include "light/photometry.h"
+#include "light/spectra.h"
+#include "scene/joined_bands.h"
+#include "scene/spectral_bands.h"
 #include "support/effect_scenes.h"
 
 #include <cmath>
@@ -245,6 +250,51 @@ TEST(Closure, MattersWithInterreflection) {
   EXPECT_GT(difference(raw, closed), 100 * solver_error);
   EXPECT_LT(lost(closed), solver_error);
   EXPECT_GT(lost(raw), 100 * solver_error);
+}
+
+// The furnished room in linear RGB, its lamp like a black body of 2700 K, or white.
+Scene room_with_walls(const Spectrum& walls, bool is_warm) {
+  Scene scene = furnished_room(0.5);
+  scene.materials = {{"wall", walls, Spectrum::Zero(3)}, {"lamp", Spectrum::Zero(3), Spectrum::Constant(3, 10)}};
+  if (is_warm) scene.materials[1].spectra.light = planckian_spectrum(2700);
+  return scene;
+}
+
+// ||XYZ_a - XYZ_b||_A / ||XYZ_b||_A of what is sent out, of the worst of X, Y and Z.
+double colour_difference_of(const Scene& a, const Scene& b) {
+  const Simulation one = simulate(a, coarse()), other = simulate(b, coarse());
+  const Field xyz = xyz_rows(other.solution.radiosity, bands_of(b));
+  const Field apart = xyz_rows(one.solution.radiosity, bands_of(a)) - xyz;
+  return (area_norm(apart, other.problem.area) / area_norm(xyz, other.problem.area)).maxCoeff();
+}
+
+TEST(Spectra, BandsThatNothingTellsApartAreNotNeeded) {
+  const Scene all = in_wavelength_bands(room_with_walls(rgb(0.5, 0.5, 0.5), true), equal_edges(16));
+  const Scene joined = with_alike_bands_joined(all);
+  EXPECT_EQ(number_of_bands(joined), 1);
+  EXPECT_LT(colour_difference_of(joined, all), solver_error);
+}
+
+// White light is D65 in bands of wavelengths, so that a grey scene is the same as in linear RGB.
+TEST(Spectra, AreNotNeededInAGreyScene) {
+  const Scene grey_room = room_with_walls(rgb(0.5, 0.5, 0.5), false);
+  EXPECT_LT(colour_difference_of(in_wavelength_bands(grey_room, equal_edges(16)), grey_room),
+            5e-4);  // white of Rec. 709
+  const Simulation spectral = simulate(in_wavelength_bands(grey_room, equal_edges(16)), coarse());
+  const Simulation in_colours = simulate(grey_room, coarse());
+  const Bands bands = in_wavelength_bands(grey_room, equal_edges(16)).bands;
+  for (Eigen::Index i = 0; i < spectral.solution.radiosity.rows(); ++i) {
+    EXPECT_NEAR(luminance(spectral.solution.radiosity.row(i), bands) / luminance(in_colours.solution.radiosity.row(i)),
+                1, 1e-6);
+    const Eigen::Vector3d shown =
+        rgb_from_xyz() * xyz_of(spectral.solution.radiosity.row(i), bands) / luminous_efficacy;
+    EXPECT_LT((shown.transpose().array() / in_colours.solution.radiosity.row(i) - 1).abs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(Spectra, MatterWithColouredWallsUnderAWarmLamp) {
+  const Scene scene = room_with_walls(rgb(0.8, 0.2, 0.05), true);
+  EXPECT_GT(colour_difference_of(in_rgb(scene), in_wavelength_bands(scene, equal_edges(32))), clear_difference);
 }
 
 }  // namespace

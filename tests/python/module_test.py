@@ -4,7 +4,10 @@ usage: module_test.py TOOL MESHES, with the module's folder in PYTHONPATH. Ends 
 """
 import _thread
 import json
+import os
 import pathlib
+import re
+import signal
 import struct
 import subprocess
 import sys
@@ -44,6 +47,14 @@ class ModuleTest(unittest.TestCase):
             report = json.loads((folder / "tool.json").read_text())
         self.assertEqual(report["energy_balance"], self.solved.report()["energy_balance"])
         self.assertEqual(report["materials"], self.solved.report()["materials"])
+
+    def test_a_scene_shows_itself_and_its_materials_have_names(self):
+        scene = pl.read(BOX)
+        self.assertIn("23 polygons; materials white, red, green, light", repr(scene))
+        scene.materials["red"].reflectance = 0.3
+        self.assertEqual(list(scene.materials[1].reflectance), [0.3, 0.3, 0.3])
+        with self.assertRaisesRegex(KeyError, "found 'whit'; expected one of white, red, green, light"):
+            scene.materials["whit"]
 
     def test_arrays_are_the_solvers_own_memory(self):
         irradiance = self.solved.irradiance
@@ -244,15 +255,60 @@ class ModuleTest(unittest.TestCase):
         self.assertIn("form factors", " ".join(stages))
 
     def test_ctrl_c_ends_the_work(self):
-        import os
-        import signal
-
         timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
         timer.start()
         begin = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             pl.solve(self.scene, patches=20000)
         self.assertLess(time.monotonic() - begin, 10)
+
+    def test_ctrl_c_ends_a_solver_of_ones_own(self):
+        asked = []
+
+        def endless(apply, exitance, reflectance, direct):
+            os.kill(os.getpid(), signal.SIGINT)
+            while not asked:
+                apply(exitance)
+
+        # A run that does not hear of Ctrl-C fails and does not hang.
+        guard = threading.Timer(20, lambda: asked.append(True))
+        guard.start()
+        before = signal.getsignal(signal.SIGINT)
+        with self.assertRaises(KeyboardInterrupt):
+            pl.solve(self.scene, own=endless, patches=60, no_error_bars=True)
+        guard.cancel()
+        self.assertEqual(asked, [])
+        # Nothing of it stays: signals are Python's, and the next run is as ever.
+        self.assertIs(signal.getsignal(signal.SIGINT), before)
+        with self.assertRaises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+            time.sleep(1)
+        again = pl.solve(self.scene, patches=400, no_error_bars=True)
+        numpy.testing.assert_array_equal(again.irradiance, self.solved.irradiance)
+
+    def test_a_page_tells_what_its_command_does_not(self):
+        def data_of(solved):
+            return json.loads(re.search(r'id="data">(.*?)</script>', solved.page().decode(), re.DOTALL)[1])
+
+        plain = data_of(pl.solve(BOX, unit="cm", patches=60))
+        self.assertEqual(plain["changes"], [])
+        self.assertEqual(plain["command_line"], f"patchlight solve {BOX} --unit cm --patches 60")
+        scene = pl.read(BOX).copy()
+        scene.materials["red"].reflectance = [0.25, 0.5, 0.75]
+        scene.materials["light"].exitance = 3
+
+        def nothing(apply, exitance, reflectance, direct):
+            return apply(exitance)
+
+        changed = data_of(pl.solve(scene, own=nothing, patches=60))
+        self.assertEqual(changed["changes"], ["red.reflectance was set to 0.25, 0.5, 0.75", "light.exitance was set to 3, 3, 3",
+                                              "solved by nothing() in place of the solver"])
+
+    def test_a_scene_that_is_read_takes_no_options_of_reading(self):
+        with self.assertRaisesRegex(pl.InputError, r"found sky: a scene that is read stays as it is; expected pl.read\(FILE, sky=...\)"):
+            pl.solve(self.scene, sky="overcast:10000lx")
+        in_centimetres = pl.solve(BOX, unit="cm", patches=60).area.sum()
+        self.assertAlmostEqual(in_centimetres / pl.solve(BOX, unit="m", patches=60).area.sum(), 1e-4, 9)
 
     def test_plan_page_picture_and_docs(self):
         self.assertIn("occlusion", [decision["effect"] for decision in pl.plan(self.scene, patches=400)["decisions"]])

@@ -8,7 +8,7 @@ namespace patchlight {
 /// Memory that starts at a multiple of 64 bytes; large pieces in pages of 2 MiB where the system has them, so that a
 /// pass over them misses fewer addresses. \throws std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
-void free_pages(void* memory) noexcept;
+void free_pages(void* memory) noexcept;  ///< gives it back
 
 /// The allocator of such memory.
 template <typename T>

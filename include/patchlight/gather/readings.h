@@ -58,6 +58,7 @@ struct GroupReadings {
   double min = 0;
   double mean = 0;
   double max = 0;
+  double standard_error_of_mean = 0;             ///< an upper bound: as if all errors went together
   double uniformity = 0;                         ///< U0 = min / mean; 0 in the dark
   double largest_standard_error = 0;             ///< of a sensor; not a number where one is not known
   std::optional<double> mean_daylight_factor{};  ///< percent

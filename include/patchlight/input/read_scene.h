@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,7 +20,8 @@ struct MaterialSetting {
     transmittance,
     index,
     specular_reflectance,
-    diffuse_transmittance
+    diffuse_transmittance,
+    light_spectrum  ///< how what is emitted is spread over wavelengths; `sampled` alone
   };
   std::string material;  ///< a name, or a pattern with * for any letters and ? for one
   Quantity quantity = Quantity::reflectance;
@@ -27,6 +29,7 @@ struct MaterialSetting {
   std::string where = "read.settings";  ///< where it is asked for, for messages
   std::string of = {};                  ///< of the faces of these objects, groups or files alone, a name or a pattern;
                                         ///< empty: of all
+  std::shared_ptr<const SampledSpectrum> sampled{};  ///< by wavelength; `value` is its linear RGB
 };
 
 /// Parses MATERIAL.reflectance=R,G,B (or one value for all bands), .exitance=, .radiance=, .transmittance=,
@@ -59,6 +62,14 @@ struct DaylightSetting {
   std::optional<double> ground_reflectance = {};  ///< 0.2 if not given, where there is a sky
 };
 
+/// The bands that a scene is taken to.
+struct BandsAsked {
+  bool rgb = false;                   ///< linear RGB, whatever has a spectrum
+  std::vector<double> edges_nm = {};  ///< of bands, growing; empty and not rgb: RGB where nothing has a spectrum, else
+                                      ///< as many as keep colours within color_error
+  double color_error = 1;             ///< CIE dE00
+};
+
 /// How a model file is to be taken.
 struct ReadOptions {
   double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
@@ -71,7 +82,10 @@ struct ReadOptions {
   bool keep_faces = false;  ///< coplanar neighbours of one object and material stay apart, see
                             ///< with_joined_faces()
   DaylightSetting daylight = {};
-  std::string format = {};  ///< an extension without its dot; if empty, that of the file
+  std::optional<double> maintenance_factor = {};  ///< above 0, up to 1: the share of their light when new that lamps
+                                                  ///< and luminaires give; if not given, what a scene file says, else 1
+  std::optional<BandsAsked> bands = {};           ///< if not given, what the scene file says, else BandsAsked{}
+  std::string format = {};                        ///< an extension without its dot; if empty, that of the file
 };
 
 /// The extensions of the formats that can be read, without dots.
@@ -86,7 +100,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options =
 
 /// A scene that was read before, with the settings, the upright axis and the daylight of these options, which takes the
 /// place of its own. \throws InputError when no material bears the name of a setting, or settings make a material that
-/// check() refuses.
+/// check() refuses, or ask for light of other lamps in bands of wavelengths.
 Scene with_options(Scene scene, const ReadOptions& options);
 
 /// Reads several models as one scene. Materials with the same name and values become one; those that only share the

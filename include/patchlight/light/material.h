@@ -21,6 +21,7 @@ inline constexpr double usual_index = 1.52;
 struct StatedSurface {
   std::string by;             ///< the statement, for messages: "d 0.3"
   Spectrum matt_reflectance;  ///< what the surface reflects diffusely if it is taken for opaque and matt
+  Spectrum matt_exitance{};   ///< what it emits then, W/m^2; empty: as much as otherwise
 };
 
 /// A picture on surfaces, as wide and as high as 1 in its coordinates: u runs from its left to its right, v from its
@@ -46,6 +47,15 @@ struct TexturedReflectance {
   std::array<Wrap, 2> wrap{};            ///< beyond u and beyond v of 0 to 1
 };
 
+/// What is known of a material by wavelength; null where its spectrum of colours counts.
+struct MaterialSpectra {
+  std::shared_ptr<const SampledSpectrum> reflectance{};
+  std::shared_ptr<const SampledSpectrum> specular_reflectance{};
+  std::shared_ptr<const SampledSpectrum> transmittance{};
+  std::shared_ptr<const SampledSpectrum> diffuse_transmittance{};
+  std::shared_ptr<const SampledSpectrum> light{};  ///< how what it emits is spread; any multiple of it
+};
+
 /// A surface that scatters diffusely (Lambertian), and may let light through or reflect it as a mirror besides; all
 /// spectra have the scene's number of bands.
 struct Material {
@@ -55,7 +65,7 @@ struct Material {
   Spectrum transmittance{};  ///< tau, in [0, 1]: the share of light that goes straight through at normal incidence, as
                              ///< through the glass of a window; empty or 0: opaque
   double index = usual_index;  ///< n, 1 or more: the index of refraction, by which a clear material lets less through
-                               ///< at an angle
+                               ///< at an angle; 1: a sheet with holes, which lets the same through at all angles
   Spectrum specular_reflectance{};   ///< in [0, 1]: the share of light that is reflected as by a mirror, at all angles
                                      ///< alike; empty or 0: none, but for what a clear material reflects by its index
   Spectrum diffuse_transmittance{};  ///< tau, in [0, 1]: the share of light that a translucent sheet scatters out of
@@ -63,8 +73,9 @@ struct Material {
   std::optional<StatedSurface> stated_pane{};    ///< where a model file makes it a pane, and no setting has another say
   std::optional<StatedSurface> stated_mirror{};  ///< the same of a mirror
   std::optional<TexturedReflectance>
-      texture{};             ///< where a polygon has a TextureMap: what `reflectance` is the mean of
-  bool second_face = false;  ///< made up, clear in full: that of the second faces of solid panes
+      texture{};              ///< where a polygon has a TextureMap: what `reflectance` is the mean of
+  bool second_face = false;   ///< made up, clear in full: that of the second faces of solid panes
+  MaterialSpectra spectra{};  ///< until the scene has its bands, see read_scene()
 };
 
 }  // namespace patchlight

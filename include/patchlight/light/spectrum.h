@@ -20,13 +20,22 @@ inline Spectrum rgb(double red, double green, double blue) {
 /// What one band stands for.
 struct Band {
   std::string name;             ///< in tables: "r", "550 nm"
-  double luminous_weight = 0;   ///< the share of its radiance in luminance; those of all bands sum up to 1
-  std::array<double, 3> rgb{};  ///< the linear RGB (Rec. 709) that a radiance of 1 is shown as; those of all bands sum
-                                ///< up to white
+  double luminous_weight = 0;   ///< the luminance of a radiance of 1 W/(m^2 sr), in 179 cd/m^2; for colours a share,
+                                ///< those of all bands sum up to 1
+  std::array<double, 3> rgb{};  ///< the linear RGB (Rec. 709) that a radiance of 1 is shown as, where white of 179
+                                ///< cd/m^2 is 1, 1, 1
+  std::array<double, 2> edges_nm{};  ///< its wavelengths; both 0 where it has none, as a colour
 };
 
 /// What the bands of a scene's spectra, and the columns of its fields, stand for, in their order.
 using Bands = std::vector<Band>;
+
+/// Values by wavelength, linear between those given.
+struct SampledSpectrum {
+  std::string name;                 ///< of its file, or "D65"
+  std::vector<double> wavelengths;  ///< nm, growing; one or more
+  std::vector<double> values;       ///< one for each
+};
 
 /// What so many bands stand for when nothing is said of them: three are linear RGB with Rec. 709 primaries, "r", "g"
 /// and "b"; any other number are equal parts of the visible light, "1", "2", and so on.

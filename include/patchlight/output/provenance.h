@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -15,6 +16,7 @@ struct Provenance {
   double exposure = 1;       ///< of the colours beside the values
   std::string scene_hash{};  ///< of faces, materials and lights; empty: not recorded, and pictures of the result cannot
                              ///< be taken later
+  std::vector<std::string> changes{};  ///< what was done besides, which the command line does not say
 };
 
 }  // namespace patchlight

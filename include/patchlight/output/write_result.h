@@ -10,7 +10,7 @@
 
 namespace patchlight {
 
-/// The extensions write_result() knows: ".vtp", ".ply", ".glb".
+/// The extensions write_result() knows: ".vtp", ".vtu", ".ply", ".glb".
 const std::vector<std::string>& result_extensions();
 
 /// Writes the solved patches in the format that the extension names. \throws OutputError, also for an unknown one.

@@ -21,11 +21,12 @@ enum class Effect : std::uint8_t {
   closure,         ///< correction of form factors so that rows sum up to what is seen
   bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors: by rows
                    ///< of rays alone
+  spectra,         ///< bands of wavelengths instead of linear RGB; decided when the scene is read
   gloss,           ///< of materials that a file says are partly mirrors; not simulated, so below
   glass            ///< of materials that a file says are transparent
 };
 
-/// The effects that a user may force or skip, in this order: all but the last three.
+/// The effects that a user may force or skip, in this order: all but the last four.
 std::vector<Effect> simulated_effects();
 
 /// The effect's name as on the command line.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/base/geometry.h"
 
 #include <array>
 #include <cstdint>
@@ -25,6 +26,36 @@ struct DisplayImage {
   int width = 0;
   int height = 0;
   std::vector<std::array<std::uint8_t, 3>> pixels;
+};
+
+/// Faces in one plane, and their place in a map of texels. What the texel in column x and row y of the chart covers
+/// begins at corner + texel (x right + y down).
+struct LightmapChart {
+  std::vector<PatchIndex> patches;
+  Point corner = Point::Zero();    ///< metres, of its upper left texel
+  Vector right = Vector::Zero();   ///< unit, along rows
+  Vector down = Vector::Zero();    ///< unit, along columns
+  std::array<double, 2> extent{};  ///< along both, metres
+  std::array<double, 2> texel{};   ///< edges, metres: the extent is a whole number of them
+  int left = 0, top = 0;           ///< of that texel in the map
+  int width = 0, height = 0;       ///< texels
+};
+
+/// A value per texel (row) and band (column).
+using TexelField = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The light on surfaces at texels, means over what of each is a surface. Texels from the upper left corner, row by
+/// row. Around charts, and where a chart has no surface, texels go on what is beside them.
+struct Lightmap {
+  int width = 0;
+  int height = 0;
+  double texel = 0;  ///< longest edge, metres; those of charts may be shorter
+  std::vector<LightmapChart> charts;
+  std::vector<PatchIndex> patch;  ///< one that lies on the texel; no_patch where none does
+  TexelField direct;              ///< irradiance straight from lamps that are bright, luminaires, sun and sky, W/m^2
+  TexelField indirect;            ///< irradiance by all other light
+  TexelField radiance;            ///< that leaves the surface, W/(m^2 sr)
+  Eigen::ArrayXf error;           ///< standard error of the indirect illuminance by the rays that gather it, lx
 };
 
 }  // namespace patchlight

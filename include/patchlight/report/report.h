@@ -23,6 +23,7 @@ struct SceneFacts {
   Vector up = Vector::UnitZ();
   Vector size = Vector::Zero();  ///< of the bounds, m
   std::vector<std::string> notes;
+  Bands bands = {};  ///< what spectra are of
 };
 
 /// What the patches of one material add up to; spectra have a value per band.
@@ -36,6 +37,7 @@ struct MaterialLight {
   Spectrum lowest;       ///< irradiance, W/m^2; infinite without patches
   Spectrum mean;         ///< irradiance by area, W/m^2; not a number without patches
   Spectrum highest;      ///< irradiance, W/m^2; minus infinity without patches
+  Spectrum radiance;     ///< by area, W/(m^2 sr); not a number without patches
 };
 
 /// What the sensors read.
@@ -44,6 +46,27 @@ struct SensorFacts {
   std::string unit;                   ///< of their values
   bool daylight = false;              ///< they have daylight factors
   std::vector<std::string> warnings;  ///< a sentence for each sensor whose place is in doubt
+};
+
+/// What bounds a room, by the way it faces.
+enum class RoomSurface : std::uint8_t { floor, walls, ceiling };
+
+/// "floor", "walls" or "ceiling".
+const char* name_of(RoomSurface surface);
+
+/// Illuminance of one of them, as EN 12464-1 has it, in Report::unit.
+struct SurfaceLight {
+  RoomSurface surface = RoomSurface::floor;
+  double area = 0;        ///< of its patches, m^2; 0: there is none
+  double min = 0;         ///< of the patches' means
+  double mean = 0;        ///< by area
+  double uniformity = 0;  ///< U0 = min / mean; 0 in the dark
+};
+
+/// What the surfaces of a room get.
+struct RoomLight {
+  std::string name;
+  std::array<SurfaceLight, 3> surfaces{};  ///< at the place of each RoomSurface
 };
 
 /// How far the sampled form factors are off, as shares of the unoccluded form factor.
@@ -124,6 +147,8 @@ struct Report {
   std::size_t vertices = 0;
   double area = 0;  ///< of all patches, m^2
   std::vector<MaterialLight> materials;
+  std::vector<RoomLight> rooms;
+  std::string unit;  ///< of their illuminance: "lx", or "W/m^2" where lights are not photometric
   SensorFacts sensors;
   FormFactorFacts form_factors;
   EnergyBalance balance;  ///< its defect is the row sums' and means nothing where these are not known

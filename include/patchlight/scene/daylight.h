@@ -4,14 +4,16 @@
 #include "patchlight/light/spectrum.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace patchlight {
 
 /// The sun: parallel light.
 struct Sun {
-  Vector direction = Vector::UnitZ();  ///< unit, towards the sun
-  Spectrum normal_irradiance;          ///< on a plane across its rays, W/m^2
+  Vector direction = Vector::UnitZ();                 ///< unit, towards the sun
+  Spectrum normal_irradiance;                         ///< on a plane across its rays, W/m^2
+  std::shared_ptr<const SampledSpectrum> spectrum{};  ///< as Luminaire::spectrum
 };
 
 /// How the radiance of a sky varies over its hemisphere.
@@ -27,6 +29,7 @@ struct Sky {
   double clearness = 1;                    ///< Perez's epsilon, from 1 (overcast) up; for perez
   double brightness = 0.1;                 ///< Perez's Delta, above 0; for perez
   Spectrum ground_radiance{};              ///< below the horizon, W/(m^2 sr); empty: black
+  std::shared_ptr<const SampledSpectrum> spectrum{};  ///< as Luminaire::spectrum
 };
 
 /// What weather stations measure, over the whole solar spectrum.

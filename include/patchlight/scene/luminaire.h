@@ -43,6 +43,8 @@ struct Luminaire {
   Vector aim = -Vector::UnitZ();        ///< unit; the nadir of its photometry, the axis of a spot
   Vector zero_plane = Vector::UnitX();  ///< unit, at right angles to the aim; towards the horizontal angle 0
   std::variant<PointLight, SpotLight, WebLight, SphericalLamp> light;
+  std::shared_ptr<const SampledSpectrum> spectrum{};  ///< how its light is spread, until the scene has its bands; any
+                                                      ///< multiple of it; null: as its colour
 };
 
 /// The intensity of a spot, as a share of that on its axis, at an angle with this cosine:

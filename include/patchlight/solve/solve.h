@@ -66,6 +66,7 @@ struct SolverOptions {
                                                ///< found, so that there is no bound
   std::optional<Field> reference = {};  ///< a solution to be met, radiosity in W/m^2 of all bands: stop when ||B_ref -
                                         ///< B_k||_A / ||B_ref - E||_A, worst band, is below relative_error
+  bool patch_bounds = true;             ///< bound every patch also where kappa is below 1: more applications
   bool every_band = false;              ///< solve bands that follow from others, too
   bool keeps_unfinished = false;        ///< an observer that returns false ends the iterations with the last iterate,
                                         ///< Solution::stopped, instead of throwing Cancelled

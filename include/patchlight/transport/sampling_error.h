@@ -16,9 +16,9 @@ struct AuditedPairs {
   bool operator==(const AuditedPairs&) const = default;
 };
 
-/// What sampling_effort() is at most, 2^(sampling_efforts - 1), and how many values it takes.
+/// What sampling_effort() is at most, 2^(sampling_efforts - 1).
 inline constexpr std::uint32_t most_effort = 32;
-inline constexpr std::size_t sampling_efforts = 6;
+inline constexpr std::size_t sampling_efforts = 6;  ///< how many values it takes
 
 /// How far the sampled entries of a matrix of exchange areas are off, found from a random share of the pairs that are
 /// sampled a second time. Variances are relative to the square of the unoccluded exchange area U, and pooled over pairs

@@ -51,8 +51,8 @@ struct ObserverReading {
 };
 
 /// What observers read in a solved scene. Windows, and what is brighter than 500 cd/m^2 and four times the mean of the
-/// half space that is seen, glares. Luminaires without faces give light, and glare does not count them: they have no
-/// extent. \throws Cancelled.
+/// half space that is seen, glares, and so do measured luminaires by the sides of their luminous openings, with I / A_p
+/// as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
 std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation& simulation,
                                             const std::vector<Camera>& cameras, const Observer& observer = {});
 

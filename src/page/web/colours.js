@@ -22,16 +22,40 @@ function valueAt(share, scale) {
   return low * Math.pow(scale.high / low, share);
 }
 
-// From 0 to a round number with a twentieth of the area above it: lamps are so much brighter than what they light.
-function usualScale(values, areas) {
-  const order = Array.from(values.keys()).filter((k) => values[k] > 0 && Number.isFinite(values[k])).sort((a, b) => values[a] - values[b]);
-  const total = order.reduce((sum, k) => sum + areas[k], 0);
+// The rows with known values, by day only those of enclosed patches as long as some light is there, from the lowest to
+// the highest: {row, value, area}.
+function ranked(values, areas, enclosed) {
+  const known = Array.from(values.keys()).filter((row) => Number.isFinite(values[row]));
+  const inside = enclosed ? known.filter((row) => enclosed[row] === 1) : [];
+  const counted = inside.some((row) => values[row] > 0) ? inside : known;
+  return counted.map((row) => ({row, value: values[row], area: areas[row]})).sort((a, b) => a.value - b.value);
+}
+
+// The value that a share of the area stays at or below.
+function quantile(order, share) {
+  const total = order.reduce((sum, {area}) => sum + area, 0);
   let below = 0;
-  for (const k of order) {
-    below += areas[k];
-    if (below >= 0.95 * total) return {low: 0, high: roundedUp(values[k]), logarithmic: false};
+  for (const {value, area} of order) {
+    below += area;
+    if (below >= share * total) return value;
   }
-  return {low: 0, high: 1, logarithmic: false};
+  return order.length > 0 ? order[order.length - 1].value : NaN;
+}
+
+// From 0 to a round number with a twentieth of the lit area above it: lamps are so much brighter than what they light.
+function usualScale(order) {
+  const high = quantile(order.filter(({value}) => value > 0), 0.95);
+  return {low: 0, high: high > 0 ? roundedUp(high) : 1, logarithmic: false};
+}
+
+// All but the lowest and the highest half percent of the area: single patches do not decide.
+function widerScale(order) {
+  return {low: quantile(order, 0.005), high: quantile(order, 0.995)};
+}
+
+function shareBeyond(order, scale) {
+  const total = order.reduce((sum, {area}) => sum + area, 0);
+  return order.reduce((sum, {value, area}) => sum + (value < scale.low || value > scale.high ? area : 0), 0) / total;
 }
 
 function drawBar(canvas) {

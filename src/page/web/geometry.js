@@ -1,5 +1,17 @@
-// The faces of the page as triangles, three corners each, around the middle of their bounds.
-function triangles(faces) {
+// Faces of one opacity together, opaque ones first: {opacity, faces}.
+function byOpacity(faces, opacityOf) {
+  const groups = new Map([[1, []]]);
+  faces.row.forEach((row, face) => {
+    const opacity = opacityOf(row);
+    if (!groups.has(opacity)) groups.set(opacity, []);
+    groups.get(opacity).push(face);
+  });
+  return [...groups].map(([opacity, own]) => ({opacity, faces: own}));
+}
+
+// The faces of the page as triangles, three corners each, around the middle of their bounds. `groups` says which
+// triangles have which opacity.
+function triangles(faces, opacityOf) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
   const at = (vertex, axis) => low[axis] - middle[axis] + faces.positions[3 * vertex + axis] / 65535 * (high[axis] - low[axis]);
@@ -17,12 +29,16 @@ function triangles(faces) {
     });
     faceOf[next++] = face;
   };
-  for (let face = 0; face < count; ++face) {
-    const [a, b, c, d] = faces.corners.subarray(4 * face, 4 * face + 4);
-    add(face, [a, b, c]);
-    if (c !== d) add(face, [a, c, d]);
-  }
-  return {positions, vertices, faceOf, middle, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
+  const groups = byOpacity(faces, opacityOf).map(({opacity, faces: own}) => {
+    const first = next;
+    for (const face of own) {
+      const [a, b, c, d] = faces.corners.subarray(4 * face, 4 * face + 4);
+      add(face, [a, b, c]);
+      if (c !== d) add(face, [a, c, d]);
+    }
+    return {opacity, first, count: next - first};
+  });
+  return {positions, vertices, faceOf, groups, middle, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
 }
 
 // The lines around faces, two ends each.
@@ -40,10 +56,23 @@ function outlines(faces, mesh, chosen) {
 }
 
 // Colours of the corners of all triangles, a byte per channel.
-function naturalColours(faces, mesh) {
+function naturalColours(ofVertices, mesh) {
   const colours = new Uint8Array(3 * mesh.vertices.length);
-  mesh.vertices.forEach((vertex, k) => colours.set(faces.colours.subarray(3 * vertex, 3 * vertex + 3), 3 * k));
+  mesh.vertices.forEach((vertex, k) => colours.set(ofVertices.subarray(3 * vertex, 3 * vertex + 3), 3 * k));
   return colours;
+}
+
+// Rings of directions as triangles of a sphere, seen from inside.
+function dome(directions, inARing) {
+  const rings = directions.length / 3 / inARing;
+  const corners = [];
+  for (let ring = 0; ring + 1 < rings; ++ring) {
+    for (let k = 0; k < inARing; ++k) {
+      const a = ring * inARing + k, b = ring * inARing + (k + 1) % inARing;
+      corners.push(a, b, b + inARing, a, b + inARing, a + inARing);
+    }
+  }
+  return corners;
 }
 
 function falseColours(faces, mesh, values, scale) {

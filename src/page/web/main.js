@@ -8,7 +8,7 @@ function writeHead() {
   if (report) {
     const error = report.relative_error;
     parts.push(`${report.mesh.patches.toLocaleString("en")} patches on ${shown(report.mesh.area_m2)} m².`);
-    parts.push(error ? `Light that is reflected is known to ${percent(error.total)}.` : "How far the values may be off is not known: the run was made without error bars.");
+    parts.push(error ? `Light that is reflected ${error.inside ? "inside " : ""}is known to ${percent(error.total)}.` : "How far the values may be off is not known: the run was made without error bars.");
   } else if (model) {
     parts.push(`${model.patches.toLocaleString("en")} patches.`);
   }
@@ -40,17 +40,20 @@ async function writeTables(show) {
   const {report} = data;
   if (data.comparison) section("comparison", "Solvers side by side", ...comparisonParts(data.comparison));
   if (data.study) section("study", "What accuracy costs", ...studyParts(data.study));
-  const notes = report ? [...report.input.notes, ...report.plan.notes] : data.scene_notes;
+  // Problems stand among the notes of their scene as well.
+  const isProblem = (note) => data.problems.some((problem) => problem.what === note);
+  const notes = (report ? [...report.input.notes, ...report.plan.notes] : data.scene_notes).filter((note) => !isProblem(note));
   const warnings = report && report.sensors ? report.sensors.warnings : [];
   section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
   if (report) {
     section("accuracy", "What accuracy cost", ...accuracyParts(report));
     if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch((fault) => [element("p", {}, "The maps cannot be drawn: " + fault.message)]) : []));
+    if (report.room_surfaces && report.room_surfaces.rooms.length > 0) section("rooms", "Rooms", roomTable(report.room_surfaces));
     section("materials", "Materials", materialsTable(report));
     section("energy", "Energy balance", energyTable(report.energy_balance));
     section("convergence", "Convergence", ...convergenceParts(report.solution));
     section("plan", "Plan", ...planTable(report.plan));
-    section("costs", "Time", table("Seconds of each stage", ["stage", "seconds", "CPU s"], report.costs.map((cost) => [cost.stage, cost.seconds, cost.cpu_seconds])));
+    section("costs", "Time", table("Seconds of each stage", ["stage", "seconds", "CPU s"], report.costs.map((cost) => [cost.stage, duration(cost.seconds), duration(cost.cpu_seconds)])));
   }
   section("repeat", "How to repeat it", ...repeatParts(data));
 }
@@ -81,20 +84,35 @@ function views(model) {
 
 async function unpackedModel() {
   const {model} = data;
-  const arrays = await unpackedAll({positions: model.positions, colours: model.colours, corners: model.corners, row: model.row});
-  return {...model, faces: {...arrays, low: model.positions.low, high: model.positions.high}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
+  const arrays = await unpackedAll({positions: model.positions, corners: model.corners, row: model.row});
+  const looks = [];
+  for (const {name, colours, sky} of model.looks) looks.push({name, ...await unpackedAll(sky ? {colours, sky} : {colours})});
+  const sky = model.sky ? {inARing: model.sky.in_a_ring, directions: await unpacked(model.sky.directions)} : null;
+  return {...model, looks, sky, faces: {...arrays, low: model.positions.low, high: model.positions.high}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
+}
+
+// What the range does not show.
+function extremes(model, order, scale, unit) {
+  if (order.length === 0) return "No value is known.";
+  const least = order[0], most = order[order.length - 1];
+  const told = ({row, value}) => `${shown(value)} ${unit} (patch ${model.rows.patch[row]})`;
+  const inside = order.length < model.rows.area.length && model.rows.enclosed;
+  return `Least ${told(least)}, most ${told(most)}${inside ? " inside, which the range goes by" : ""}; ${percent(shareBeyond(order, scale))} of ${inside ? "that" : "the"} area lies beyond the range.`;
 }
 
 function listenToColours(model, view) {
-  const choices = [["natural", "natural"], ...Object.keys(model.values).filter((name) => model.values[name].length === model.rows.area.length).map((name) => [name, `${names[name]}, ${units[name]}`])];
+  const looks = model.looks.map((look, k) => [k === 0 ? "natural" : `natural-${k}`, look.name]);
+  const choices = [...looks, ...Object.keys(model.values).filter((name) => model.values[name].length === model.rows.area.length).map((name) => [name, `${names[name]}, ${units[name]}`])];
   for (const [value, words] of choices) byId("quantity").append(element("option", {value}, words));
-  let scale = null;
+  let scale = null, order = [];
   const paint = () => {
     const name = byId("quantity").value;
-    byId("legend").hidden = name === "natural";
-    if (name === "natural") return view.colour(naturalColours(model.faces, view.mesh));
-    view.colour(falseColours(model.faces, view.mesh, model.values[name], scale));
+    const look = model.looks[looks.findIndex(([value]) => value === name)];
+    byId("legend").hidden = look !== undefined;
+    if (look) return view.colour(naturalColours(look.colours, view.mesh), true, look.sky);
+    view.colour(falseColours(model.faces, view.mesh, model.values[name], scale), false);
     byId("ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", {}, shown(valueAt(share, scale), 3))));
+    byId("extremes").textContent = extremes(model, order, scale, units[name]);
   };
   const setScale = (to) => {
     scale = {...to, logarithmic: byId("logarithmic").checked};
@@ -104,12 +122,14 @@ function listenToColours(model, view) {
   };
   const fromInputs = () => setScale({low: Number(byId("low").value) || 0, high: Number(byId("high").value) || 0});
   const chosen = () => model.values[byId("quantity").value];
-  byId("quantity").addEventListener("change", () => chosen() ? setScale(usualScale(chosen(), model.rows.area)) : paint());
-  for (const id of ["low", "high", "logarithmic"]) byId(id).addEventListener("change", fromInputs);
-  byId("whole-range").addEventListener("click", () => {
-    const known = chosen().filter((value) => Number.isFinite(value));
-    setScale({low: known.reduce((least, value) => Math.min(least, value), Infinity), high: known.reduce((most, value) => Math.max(most, value), -Infinity)});
+  byId("quantity").addEventListener("change", () => {
+    if (!chosen()) return paint();
+    order = ranked(chosen(), model.rows.area, model.rows.enclosed);
+    setScale(usualScale(order));
   });
+  for (const id of ["low", "high", "logarithmic"]) byId(id).addEventListener("change", fromInputs);
+  byId("wider-range").addEventListener("click", () => order.length > 0 && setScale(widerScale(order)));
+  byId("whole-range").addEventListener("click", () => order.length > 0 && setScale({low: order[0].value, high: order[order.length - 1].value}));
   drawBar(byId("bar"));
   paint();
 }
@@ -145,7 +165,17 @@ function listenToView(model, view) {
     const box = view.canvas.getBoundingClientRect();
     choose(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height);
   });
-  for (const name of ["home", "above", "outside"]) byId(name).addEventListener("click", () => view.look(...from[name]));
+  // What is seen from outside is exposed for the outside, where the model has both.
+  const outdoors = model.looks.findIndex(({name}) => name.endsWith("outside"));
+  for (const name of ["home", "above", "outside"]) {
+    byId(name).addEventListener("click", () => {
+      view.look(...from[name]);
+      const quantity = byId("quantity");
+      if (outdoors < 0 || quantity.selectedIndex >= model.looks.length) return;
+      quantity.selectedIndex = name === "home" ? 0 : outdoors;
+      quantity.dispatchEvent(new Event("change"));
+    });
+  }
   byId("edges").addEventListener("change", () => {
     if (edges) edges.remove();
     edges = byId("edges").checked ? view.lines(outlines(model.faces, view.mesh, model.faces.row.keys()), 0x555555) : null;
@@ -174,6 +204,7 @@ function showOutlines(view) {
 
 function tellFewer(model) {
   if (!model.photometric) byId("fewer").textContent = "Photometric values are 179 lm/W times the bands by their luminous weights: the lights of this scene are stated in watts. ";
+  if (model.textured.length > 0) byId("fewer").textContent += `Surfaces with a picture (${model.textured.join(", ")}) are drawn with the mean colour of each patch. `;
   if (model.faces.row.length === model.patches) return;
   const left = model.patches_left_out;
   byId("fewer").textContent += `The model has ${model.patches.toLocaleString("en")} patches and is drawn with ${model.faces.row.length.toLocaleString("en")} faces: where patches differ least, whole faces stand in their place with their means.`
@@ -187,7 +218,7 @@ async function showModel() {
     const model = await unpackedModel();
     await loadThree(data.three);
     tellFewer(model);
-    const view = modelView(byId("canvas"), model.faces, model.up);
+    const view = modelView(byId("canvas"), model);
     listenToColours(model, view);
     listenToCut(model, view);
     listenToView(model, view);

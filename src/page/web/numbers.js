@@ -10,7 +10,12 @@ function shown(value, digits = 4) {
 
 function percent(share) {
   if (share === null || share === undefined || !Number.isFinite(share)) return shown(share);
-  return shown(100 * share, 3) + " %";
+  return shown(100 * share, 3) + "\u00a0%";
+}
+
+// Two digits say enough of how long something took, or all digits of whole seconds.
+function duration(seconds) {
+  return Number.isFinite(seconds) && seconds >= 100 ? shown(Math.round(seconds), 9) : shown(seconds, 2);
 }
 
 function spectrum(values) {

@@ -55,9 +55,12 @@ function sensorMap(name, unit, axes, group, values) {
   const to = ([x, y]) => [((x - low[0]) * scaleFactor).toFixed(1), (height - (y - low[1]) * scaleFactor).toFixed(1)];
   const known = Array.from(values).filter((value) => Number.isFinite(value));
   const least = known.reduce((a, b) => Math.min(a, b), Infinity), most = known.reduce((a, b) => Math.max(a, b), -Infinity);
-  const top = most > 0 ? roundedUp(most) : 1;
+  // As of patches: a place in the sun, or before a lamp, does not decide.
+  const order = ranked(values, new Float32Array(values.length).fill(1));
+  const {high: top} = usualScale(order);
   const scale = {low: 0, high: top, logarithmic: false};
-  const label = `Map of ${name}, ${unit}: from ${shown(least)} to ${shown(most)}`;
+  const range = least <= most ? `from ${shown(least)} to ${shown(most)}` : "no value is known";
+  const label = `Map of ${name}, ${unit}: ${range}`;
   const drawn = svg("svg", {viewBox: `0 0 ${(width + 90).toFixed(0)} ${(height + 10).toFixed(0)}`, width: (width + 90).toFixed(0), height: (height + 10).toFixed(0), role: "img", "aria-label": label});
   outlines.forEach((outline, k) => {
     const colour = "rgb(" + falseColour(shareOf(values[k], scale)).join(",") + ")";
@@ -78,7 +81,7 @@ function sensorMap(name, unit, axes, group, values) {
     drawn.append(svg("rect", {x: width + 8, y: y - 10, width: 14, height: 12, fill: "rgb(" + falseColour(share).join(",") + ")"}));
     drawn.append(svg("text", {x: width + 27, y}, shown(share * top, 3)));
   });
-  return element("figure", {}, drawn, element("figcaption", {}, `${name}, ${unit}` + (lattice ? `; a contour line every ${shown(top / 10)} ${unit}` : "")));
+  return element("figure", {}, drawn, element("figcaption", {}, `${name}, ${unit}: ${range}` + (lattice ? `; a contour line every ${shown(top / 10)} ${unit}` : "")));
 }
 
 async function sensorMaps(groups) {

@@ -29,16 +29,21 @@ function convergenceParts(solution) {
 
 function accuracyParts(report) {
   if (report.accuracy.length === 0) return [];
-  const rows = report.accuracy.map((step) => [step.patches, step.samples, percent(step.mesh), percent(step.form_factor), percent(step.solver), percent(step.total), percent(step.display), step.seconds, step.cpu_seconds]);
+  const rows = report.accuracy.map((step) => [step.patches, step.samples, percent(step.mesh), percent(step.form_factor), percent(step.solver), percent(step.total), percent(step.display), duration(step.seconds), duration(step.cpu_seconds)]);
   const curve = (name, key) => ({name, points: report.accuracy.map((step) => [step.patches, step[key]])});
   return [table("Meshes on the way; errors as shares of the reflected light", ["patches", "samples", "mesh", "form factors", "solver", "total", "of points", "seconds", "CPU s"], rows),
     report.accuracy.length > 1 ? chart("What accuracy cost", [curve("total", "total"), curve("mesh", "mesh"), curve("form factors", "form_factor"), curve("solver", "solver")], {label: "patches", logarithmic: true}, {label: "relative error", logarithmic: true}) : null];
 }
 
+function roomTable(light) {
+  const rows = light.rooms.flatMap((room) => ["floor", "walls", "ceiling"].filter((surface) => room[surface]).map((surface) => [room.name, surface, room[surface].area_m2, room[surface].min, room[surface].mean, room[surface].uniformity]));
+  return table("Illuminance of what bounds each room, in " + light.unit, ["room", "surface", "area, m²", "min", "mean", "uniformity"], rows);
+}
+
 function sensorTable(sensors) {
   const daylight = sensors.groups.some((group) => group.mean_daylight_factor_percent !== undefined);
-  const heads = ["group", "sensors", "inside walls", "min", "mean", "max", "uniformity", "largest standard error"];
-  const rows = sensors.groups.map((group) => [group.name, group.sensors, group.inside_walls, group.min, group.mean, group.max, group.uniformity, group.largest_standard_error, ...(daylight ? [group.mean_daylight_factor_percent] : [])]);
+  const heads = ["group", "sensors", "inside walls", "min", "mean", "its standard error", "max", "uniformity", "largest standard error"];
+  const rows = sensors.groups.map((group) => [group.name, group.sensors, group.inside_walls, group.min, group.mean, group.standard_error_of_mean, group.max, group.uniformity, group.largest_standard_error, ...(daylight ? [group.mean_daylight_factor_percent] : [])]);
   return table("Values in " + sensors.unit, daylight ? [...heads, "mean daylight factor, %"] : heads, rows);
 }
 
@@ -62,5 +67,6 @@ function studyParts(study) {
 function repeatParts(data) {
   const rows = [["patchlight", data.version], ["scene file", data.file], ["SHA-256 of its files", data.sha256]];
   if (data.scene_hash) rows.push(["hash of faces, materials and lights", data.scene_hash]);
-  return [element("pre", {}, data.command_line || "no command is recorded"), table("With the same version and files the same command gives the same bits", ["", ""], rows)];
+  const changes = data.changes.length === 0 ? [] : [element("p", {}, "Done by Python besides, which the command does not say:"), list(data.changes)];
+  return [element("pre", {}, data.command_line || "no command is recorded"), ...changes, table(changes.length > 0 ? "With the same version, files and changes the same command gives the same bits" : "With the same version and files the same command gives the same bits", ["", ""], rows)];
 }

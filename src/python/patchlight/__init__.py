@@ -11,8 +11,9 @@ their units. Lengths are metres but in read(), whose `unit` is that of the model
 """
 from patchlight import _core
 from patchlight._core import InputError, Material, OutputError, Scene, Simulation, Solution, Transport, solvers
-from patchlight.options import arguments_of
+from patchlight.options import arguments_of, command_of, parted
 from patchlight.transport import sensitivities, sensor_sensitivities
+from patchlight import scene as _scene
 from patchlight import simulation as _simulation
 
 __version__ = _core.version()
@@ -23,7 +24,7 @@ __all__ = ["InputError", "Material", "OutputError", "Scene", "Simulation", "Solu
 def read(*models, **options):
     """Reads one model, or several that together are one scene. Options say how: unit, up, set, only, leave_out, detail,
     keep_faces, sky, sun, ground, weather, points (a file of sensors)."""
-    return _core.read(arguments_of(models, options))
+    return _scene.remember(_core.read(arguments_of(models, options)), models, options)
 
 
 def check(scene):
@@ -36,7 +37,18 @@ def plan(scene, **options):
     """What solve() would do, and why: effects with their reasons, expected patches, seconds and bytes."""
     import json
 
-    return json.loads(_core.plan(scene, arguments_of([scene.file or "scene"], options)))
+    return json.loads(_core.plan(scene, _arguments(scene, options)))
+
+
+def _arguments(scene, options):
+    """Those of a scene that is there, with the command line that says most of what is done."""
+    reading, _ = parted(options)
+    if reading:
+        names = ", ".join(sorted(reading))
+        raise InputError(f"found {names}: a scene that is read stays as it is; expected pl.read(FILE, {names.split(',')[0]}=...)")
+    arguments = arguments_of([scene.file or "scene"], options)
+    arguments.command_line = command_of(scene._models, {**scene._options, **options})
+    return arguments
 
 
 def _progress(show):
@@ -57,10 +69,18 @@ def _progress(show):
     return tell, bar
 
 
+def _read_first(scene, options):
+    """A scene, which is read where a file is named, and the options that are left."""
+    if isinstance(scene, Scene):
+        return scene, options
+    reading, others = parted(options)
+    return read(scene, **reading), others
+
+
 def _run(work, scene, options, progress, *more):
     tell, bar = _progress(progress)
     try:
-        return work(scene, arguments_of([scene.file or "scene"], options), *more, tell)
+        return work(scene, _arguments(scene, options), *more, tell)
     finally:
         if bar is not None:
             bar.close()
@@ -75,13 +95,17 @@ def solve(scene, own=None, progress=None, **options):
     Options, as those of the tool:
 
     """
-    return _run(_core.solve, read(scene) if not isinstance(scene, Scene) else scene, options, progress, own)
+    scene, options = _read_first(scene, options)
+    changes = _scene.changes(scene)
+    if own is not None:
+        changes.append(f"solved by {getattr(own, '__name__', 'a function')}() in place of the solver")
+    return _run(_core.solve, scene, options, progress, own, changes)
 
 
 def transport(scene, progress=None, **options):
     """Form factors between the patches of a scene, closed, kept in memory: apply(), operator, form_factors(), solve() by
     any of patchlight.solvers. Options as of solve()."""
-    return _run(_core.transport, read(scene) if not isinstance(scene, Scene) else scene, options, progress)
+    return _run(_core.transport, *_read_first(scene, options), progress)
 
 
 solve.__doc__ += "\n".join("    " + line for line in _core.help("solve").splitlines())

@@ -1,4 +1,6 @@
 """Keywords of Python as options of the command line: max_edge=0.1 is --max-edge 0.1."""
+import shlex
+
 from patchlight import _core
 
 
@@ -21,6 +23,22 @@ def words_of(command, models, options):
 
 # Options whose one value has commas in it.
 TRIPLES = {"skip", "force", "up", "size"}
+
+
+# Options that say how a model is read and lit: read() takes them.
+OF_READING = {"format", "unit", "confine", "up", "set", "only", "leave_out", "detail", "keep_faces", "maintenance_factor", "bands",
+              "color_error", "sky", "sun", "ground", "weather", "points"}
+
+
+def parted(options):
+    """Those of reading, and the others."""
+    reading = {name: value for name, value in options.items() if name.rstrip("_") in OF_READING}
+    return reading, {name: value for name, value in options.items() if name not in reading}
+
+
+def command_of(models, options):
+    """The command line that does the same, as far as one can."""
+    return shlex.join(words_of("solve", models, options))
 
 
 def arguments_of(models, options):

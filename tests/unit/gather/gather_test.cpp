@@ -179,11 +179,17 @@ TEST(ByGroup, TellsMinMeanMaxAndUniformity) {
   ASSERT_EQ(in_watts.size(), 2U);
   EXPECT_NEAR(in_watts[0].min, 1, 1e-15);
   EXPECT_NEAR(in_watts[0].mean, 2, 1e-15);
+  EXPECT_NEAR(in_watts[0].standard_error_of_mean, 0.2, 1e-15);
   EXPECT_NEAR(in_watts[0].max, 3, 1e-15);
   EXPECT_NEAR(in_watts[0].uniformity, 0.5, 1e-15);
   EXPECT_NEAR(in_watts[0].largest_standard_error, 0.3, 1e-15);
   EXPECT_NEAR(in_watts[1].mean, 8, 1e-14);
   EXPECT_FALSE(in_watts[1].mean_daylight_factor.has_value());
+
+  Readings unknown = readings;
+  unknown.standard_error(1, 0) = std::nan("");
+  EXPECT_TRUE(std::isnan(by_group(groups, unknown)[0].standard_error_of_mean));
+  EXPECT_NEAR(by_group(groups, unknown)[1].standard_error_of_mean, 0.8, 1e-15);
 
   readings.photometric = true;  // 179 lm/W
   readings.outside_by_sky = Spectrum::Constant(1, 100);
@@ -230,6 +236,27 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
       << found[0];
   EXPECT_EQ(found[1].rfind("sensor 3 of 'desk' (room.toml:3) at 1, 1.4, 0.8 m lies in a surface", 0), 0U) << found[1];
+}
+
+// Over a floor with a picture in patches of 1 x 1 m, 1.41 m from corner to corner.
+TEST(SensorsCloseToPictures, AreThoseThatSeeSuchAPatchFromNearItsWidth) {
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  const auto told = [&](const Point& point, const Vector& normal) {
+    scene.sensors = {{.name = "a", .sensors = {{point, normal}}}};
+    return sensors_close_to_pictures(scene, tessellate(scene, kept_sides(scene, Sides::front), 1)).size();
+  };
+  const Vector down = -Vector::UnitZ();
+  EXPECT_EQ(told({1.5, 1.5, 1}, down), 0U) << "the floor has no picture";
+  scene.materials[0].texture = TexturedReflectance{};
+  EXPECT_EQ(told({1.5, 1.5, 1}, down), 0U) << "its place on the floor is not known";
+  scene.texture_maps = {{}};
+  scene.polygons[0].texture_map = 0;
+  EXPECT_EQ(told({1.5, 1.5, 1}, down), 1U);
+  EXPECT_EQ(told({1.5, 1.5, 0.2}, Vector::UnitX()), 1U);
+  EXPECT_EQ(told({1.5, 1.5, 1}, Vector::UnitZ()), 0U) << "looks away";
+  EXPECT_EQ(told({1.5, 1.5, 0}, Vector::UnitZ()), 0U) << "lies in the floor";
+  EXPECT_EQ(told({1.5, 1.5, -1}, Vector::UnitZ()), 0U) << "sees the back";
+  EXPECT_EQ(told({1.5, 1.5, 2.2}, down), 0U) << "is 2.12 m away or more";
 }
 
 TEST(DoubtfulSensors, ManyAreCounted) {

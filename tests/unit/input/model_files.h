@@ -41,9 +41,10 @@ inline std::string two_pixels() {
   return bytes;
 }
 
-/// A PNG of 8 bits per channel, its pixels as red, green and blue, row by row, in sRGB. PNG specification, sections 5
-/// and 10, with blocks that are stored (RFC 1951, section 3.2.4).
-inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& pixels) {
+/// A PNG of 8 bits per channel, its pixels as red, green and blue, and alpha if there are four, row by row, in sRGB.
+/// PNG specification, sections 5 and 10, with blocks that are stored (RFC 1951, section 3.2.4).
+inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& pixels,
+                          std::size_t channels = 3) {
   const auto number = [](std::uint32_t value) {
     std::string bytes;
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFFU);
@@ -59,7 +60,7 @@ inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::
   };
   std::string rows;
   for (std::uint32_t row = 0; row < height; ++row)
-    rows += std::string(1, '\0') + pixels.substr(std::size_t{3} * row * width, std::size_t{3} * width);
+    rows += std::string(1, '\0') + pixels.substr(channels * row * width, channels * width);
   std::uint32_t low = 1;
   std::uint32_t high = 0;
   for (const char byte : rows) {
@@ -73,7 +74,7 @@ inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::
     stored += static_cast<char>(value >> 8U & 0xFFU);
   }
   stored += rows + number(high << 16U | low);
-  const std::string form("\x08\x02\0\0\0", 5);
+  const std::string form(channels == 4 ? "\x08\x06\0\0\0" : "\x08\x02\0\0\0", 5);
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + number(width) + number(height) + form) + chunk("IDAT" + stored) +
          chunk("IEND");
 }

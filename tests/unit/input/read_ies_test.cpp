@@ -56,6 +56,21 @@ TEST(ReadIes, HasWhatTheFileSays) {
   EXPECT_EQ(tilt_factor(web, 20), 1);
 }
 
+TEST(ReadIes, KnowsRoundOpeningsByTheirSigns) {
+  const auto read = [](const std::string& opening) {
+    return parse_ies(with(downlight(), "0.5 0.25 0.1", opening), "lamp.ies");
+  };
+  EXPECT_EQ(read("0.5 0.25 0.1").shape, OpeningShape::box);
+  EXPECT_EQ(read("-0.5 -0.5 0.1").shape, OpeningShape::upright_cylinder);
+  EXPECT_EQ(read("-0.5 -0.5 -0.5").shape, OpeningShape::ellipsoid);
+  EXPECT_EQ(read("-0.1 1.2 -0.1").shape, OpeningShape::cylinder_by_length);
+  EXPECT_EQ(read("1.2 -0.1 -0.1").shape, OpeningShape::cylinder_by_width);
+  EXPECT_EQ(read("-0.5 0 -0.5").shape, OpeningShape::ellipsoid);
+  // LM-63-1995 states a circle by its diameter alone.
+  EXPECT_EQ(read("-0.5 0 0").shape, OpeningShape::upright_cylinder);
+  EXPECT_EQ(read("-0.5 0 0").opening, Vector(0.5, 0.5, 0));
+}
+
 TEST(ReadIes, MultipliesTheFactors) {
   // 2 (multiplier) x 0.9 (ballast) x 0.5 (ballast-lamp)
   std::string text = with(downlight(), "1 100 1 3", "2 100 2 3");

@@ -179,7 +179,7 @@ TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
   EXPECT_LT((scene.materials[2].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_EQ(scene.materials[3].reflectance[0], .4);
   EXPECT_TRUE(any_contains(scene.notes, "no good place in their picture, whose mean counts: 3 (first at "));
-  EXPECT_TRUE(any_contains(scene.notes, "bad.png of material 'bad' (map_Kd, line 11 of its material file) cannot be"));
+  EXPECT_TRUE(any_contains(scene.notes, "bad.png of material 'bad' (map_Kd, line 11 of its material file) is cut off"));
   EXPECT_TRUE(any_contains(scene.notes, "Kd is used instead: bad"));
 }
 

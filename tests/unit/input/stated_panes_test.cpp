@@ -153,7 +153,7 @@ TEST_F(StatedPanes, GltfAlphaIsWhatIsCovered) {
   for (const char* mode : {R"(, "alphaMode": "MASK")", R"(, "alphaMode": "OPAQUE")", ""})
     expect_opaque(of_gltf(base_color + std::string(mode)).materials[0]);
   const Scene masked = of_gltf(std::string(base_color) + R"(, "alphaMode": "MASK")");
-  EXPECT_TRUE(any_contains(masked.notes, "textures and masks is ignored, factors alone count: wall"));
+  EXPECT_TRUE(any_contains(masked.notes, "masks that leave nothing of a surface are ignored: it is opaque: wall"));
   ASSERT_EQ(masked.unsimulated.size(), 2U) << "metal, mask";
 }
 

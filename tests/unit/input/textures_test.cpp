@@ -85,19 +85,6 @@ TEST_F(Textures, WithBadPlacesCountByTheirMeanAndNameTheLine) {
   }
 }
 
-TEST_F(Textures, ThatAreDamagedAreNamedWithTheirFault) {
-  const std::string good = png_of(2, 2, four_colours);
-  for (const auto& [bytes, fault] : std::vector<std::pair<std::string, std::string>>{
-           {good.substr(0, 20), "is cut off"},
-           {good.substr(0, 50), "cannot be decoded"},
-           {"P6 1 1 255 abc", "is neither PNG nor JPEG"},
-           {good.substr(0, 16) + std::string("\0\0\x4E\x20\0\0\x4E\x20", 8), "more than 8192"}}) {
-    const DecodedPicture decoded = decoded_picture(bytes, 100);
-    EXPECT_FALSE(decoded.mean);
-    EXPECT_NE(decoded.fault.find(fault), std::string::npos) << decoded.fault;
-  }
-}
-
 // A picture that is reduced keeps its mean: each texel is the mean of the part that it takes the place of.
 TEST_F(Textures, ThatAreReducedKeepTheirMeansOverParts) {
   std::string pixels;

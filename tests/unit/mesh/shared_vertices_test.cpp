@@ -98,6 +98,36 @@ TEST(SharedVertices, AnEdgeOfThreePolygonsSeparates) {
   EXPECT_EQ(shared_at_hinge(scene), 0u);
 }
 
+// As a ceiling that ends at the walls of two storeys, of its own paint, whichever of its sides are kept.
+TEST(SharedVertices, AWallOnTheEdgeSeparatesTheSideOnWhichItStands) {
+  for (const double degrees : {0.0, 25.0, -25.0}) {
+    Scene scene = hinge(degrees);
+    scene.vertices.insert(scene.vertices.end(), {{1, 0, 1}, {1, 1, 1}});
+    scene.materials.resize(2);
+    scene.polygons.push_back(scene.polygons[1]);
+    scene.polygons[2].material = 1;
+    for (const tiny::Corners& corners : {tiny::Corners{1, 6, 7, 2}, tiny::Corners{2, 7, 6, 1}}) {
+      scene.polygons[2].corners = corners;
+      for (const bool is_kept : {true, false}) {
+        KeptSides sides = tiny::both_sides(scene);
+        sides.front[2] = sides.back[2] = is_kept ? 1 : 0;
+        const PatchMesh mesh = tessellate(scene, sides, 0.1);
+        EXPECT_EQ(shared_vertices(mesh, 0, 1, Side::front), 0U) << degrees;
+        EXPECT_EQ(shared_vertices(mesh, 0, 1, Side::back), 11U) << degrees;
+      }
+    }
+  }
+}
+
+// A sheet of another paint in the plane of both takes no light from either.
+TEST(SharedVertices, AThirdPolygonInTheirPlaneDoesNotSeparate) {
+  Scene scene = hinge(0);
+  scene.materials.resize(2);
+  scene.polygons.push_back(scene.polygons[1]);
+  scene.polygons[2].material = 1;
+  EXPECT_EQ(shared_at_hinge(scene), 11U);
+}
+
 TEST(SharedVertices, PositionsCountAndNotIndices) {
   Scene scene = hinge(0);
   scene.vertices.insert(scene.vertices.end(), {scene.vertices[1], scene.vertices[2]});

@@ -119,5 +119,33 @@ TEST(SensorMap, TakesARangeAndRefusesWhatHasNoMap) {
   EXPECT_THROW(write_sensor_map(folder.path() / "c.svg", points, some.readings), OutputError);
 }
 
+// Scale, north and walls stand in the file where they are known; what is far off does not.
+// How far the first line of this kind goes to the right: from the first group's place to the last one's.
+double length_of(const std::string& svg, const std::string& kind) {
+  std::smatch found;
+  EXPECT_TRUE(std::regex_search(svg, found, std::regex(kind)));
+  return std::stod(found[found.size() - 1]) - std::stod(found[1]);
+}
+
+TEST(SensorMap, ShowsTheWallsAroundAGridAndItsScale) {
+  const TemporaryFolder folder;
+  const Grid some = grid(Vector::UnitX(), Vector::UnitY());
+  const auto drawn = [&](const MapOptions& options) {
+    write_sensor_map(folder.path() / "map.svg", some.groups, some.readings, options);
+    return content_of(folder.path() / "map.svg");
+  };
+  const std::string plain = drawn({});
+  EXPECT_NE(drawn({.north_known = true}), plain);
+  const std::array<Point, 2> wall = {Point(0, -0.2, 1), Point(3, -0.2, 1)};
+  const std::array<Point, 2> far_off = {Point(0, -90, 1), Point(3, -90, 1)};
+  const std::string walls = drawn({.sections = {{wall}}});
+  EXPECT_EQ(drawn({.sections = {{wall, far_off}}}), walls);
+  EXPECT_NE(drawn({.sections = {{far_off}}}), walls);
+  // The bar is a round part of the wall's three metres: 0.5 m.
+  const double of_wall = length_of(walls, R"-(d="M ([\d.]+) ([\d.]+) L (?=[\d.]+ \2 "/)([\d.]+))-");
+  const double of_bar = length_of(walls, R"-(M ([\d.]+) [\d.]+ L \1 [\d.]+ M \1 ([\d.]+) L (?=[\d.]+ \2 M)([\d.]+))-");
+  EXPECT_NEAR(3 * of_bar / of_wall, 0.5, 1e-3);
+}
+
 }  // namespace
 }  // namespace patchlight::sensor_map_test

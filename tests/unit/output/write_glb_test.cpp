@@ -1,5 +1,6 @@
 #include "output/write_glb.h"
 
+#include "glb_parts.h"
 #include "render/smooth.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"
@@ -7,7 +8,6 @@
 #include "visibility/occluder.h"
 
 #include <cmath>
-#include <cstring>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,38 +16,11 @@ namespace patchlight::write_glb_test {
 namespace {
 
 using Json = nlohmann::json;
+using test::Glb;
+using test::number_at;
+using test::taken_apart;
 
 constexpr double exposure = 0.125;
-
-// A .glb file taken apart.
-struct Glb {
-  Json json;
-  std::string binary;
-};
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t offset) {
-  Number number{};
-  EXPECT_LE(offset + sizeof number, bytes.size());
-  std::memcpy(&number, bytes.data() + offset, sizeof number);
-  return number;
-}
-
-// The container of the glTF 2.0 specification, section 4.4: header of 12 bytes, chunks of length, type and data, each
-// a multiple of four bytes.
-Glb taken_apart(const std::string& bytes) {
-  EXPECT_EQ(bytes.substr(0, 4), "glTF");
-  EXPECT_EQ(number_at<std::uint32_t>(bytes, 4), 2U);
-  EXPECT_EQ(number_at<std::uint32_t>(bytes, 8), bytes.size());
-  const std::size_t json_size = number_at<std::uint32_t>(bytes, 12);
-  EXPECT_EQ(bytes.substr(16, 4), "JSON");
-  EXPECT_EQ(json_size % 4, 0U);
-  const std::size_t binary_size = number_at<std::uint32_t>(bytes, 20 + json_size);
-  EXPECT_EQ(bytes.substr(24 + json_size, 4), std::string("BIN\0", 4));
-  EXPECT_EQ(binary_size % 4, 0U);
-  EXPECT_EQ(28 + json_size + binary_size, bytes.size());
-  return {Json::parse(bytes.substr(20, json_size)), bytes.substr(28 + json_size)};
-}
 
 Glb written(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
@@ -86,6 +59,8 @@ TEST(WriteGlb, IsUnlitOneSidedGltf) {
   EXPECT_EQ(glb.json["buffers"][0]["byteLength"], glb.binary.size());
   EXPECT_EQ(glb.json["scenes"][glb.json["scene"].get<int>()]["nodes"], Json::array({0}));
 }
+
+TEST(WriteGlb, KeepsTheRulesOfTheFormat) { test::expect_valid(written(tiny_scene(), tiny_simulation())); }
 
 // What counts as up in the model is y afterwards; a rotation keeps lengths and the winding.
 TEST(WriteGlb, TurnsTheUprightAxisToY) {

@@ -1,14 +1,20 @@
 #include "output/write_picture.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/simulate.h"
+#include "patchlight/views/picture.h"
 
 #include "light/photometry.h"
+#include "render/tone_map.h"
+#include "support/scenes.h"
 #include "temporary_folder.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -19,6 +25,7 @@
 #include <vtkHDRReader.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkPNGReader.h>
 
 namespace patchlight::write_picture_test {
 namespace {
@@ -123,6 +130,78 @@ TEST(WritePicture, PngFilesSayTheirExposure) {
                                   "0.25",
                                   13)),
             std::string::npos);
+}
+
+std::vector<std::array<std::uint8_t, 3>> row_of_png(const std::filesystem::path& file, int from_top, int pixels) {
+  const vtkNew<vtkPNGReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkImageData* const read = reader->GetOutput();
+  std::vector<std::array<std::uint8_t, 3>> row;
+  for (int x = 0; x < pixels; ++x) {
+    const int y = read->GetDimensions()[1] - 1 - from_top;  // VTK begins with the lowest row
+    const auto* const pixel = static_cast<const std::uint8_t*>(read->GetScalarPointer(x, y, 0));
+    row.push_back({pixel[0], pixel[1], pixel[2]});
+  }
+  return row;
+}
+
+// A picture of four pixels with these radiances, all exposed alike.
+Picture of_radiances(const std::vector<double>& radiances) {
+  Picture picture;
+  picture.radiance = {4, 1, Field::Zero(4, 3), Eigen::VectorXd::Zero(4)};
+  for (Eigen::Index k = 0; k < 4; ++k) picture.radiance.pixels.row(k) = radiances[static_cast<std::size_t>(k)];
+  picture.image = {4, 1, tone_map(picture.radiance.pixels, picture.exposure, usual_bands(3))};
+  return picture;
+}
+
+TEST(WriteDifference, ShowsBothAndWhatTheirLuminancesDiffer) {
+  const TemporaryFolder folder;
+  const Picture first = of_radiances({0.1, 0.2, 0.3, 0.5}), second = of_radiances({0.1, 0.3, 0.1, 0.1});
+  write_difference(folder.path() / "both.png", first, second, usual_bands(3));
+  const auto row = row_of_png(folder.path() / "both.png", 0, 12);
+  // 0, 17.9, 35.8 and 71.6 cd/m^2; colours end where all but one in twenty pixels lie below, at the third of four.
+  const Eigen::Vector4d differences = luminous_efficacy * Eigen::Vector4d(0, 0.1, 0.2, 0.4);
+  const auto colours = false_color(differences, 0, differences[2]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(row[k], first.image.pixels[k]);
+    EXPECT_EQ(row[4 + k], second.image.pixels[k]);
+    EXPECT_EQ(row[8 + k], colours[k]) << k;
+  }
+  // None where both are the same.
+  write_difference(folder.path() / "same.png", first, first, usual_bands(3));
+  const auto same = row_of_png(folder.path() / "same.png", 0, 12);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(same[8 + k], false_color(Eigen::Vector4d::Zero(), 0, 1)[0]);
+}
+
+// Light is linear in what lamps emit: one and a half times of it differs from it by half of the first picture, pixel by
+// pixel.
+TEST(WriteDifference, OfSolutionsThatDifferByAFactorIsThatShareOfTheFirst) {
+  const TemporaryFolder folder;
+  Scene scene = test::furnished_room(0.5);
+  const PictureOptions options{
+      .camera = Camera{Point(0.3, 0.3, 1.6), Point(3, 2.2, 0.9), 60}, .width = 16, .height = 12};
+  Request request;
+  request.mesh.max_edge = 0.5;
+  const Picture first = take_picture(scene, simulate(scene, request), options);
+  for (Material& material : scene.materials) material.exitance *= 1.5;
+  const Picture second = take_picture(scene, simulate(scene, request), options);
+  write_difference(folder.path() / "both.png", first, second, bands_of(scene));
+
+  const Eigen::VectorXd half = 0.5 * luminous_efficacy * first.radiance.pixels.col(0).matrix();
+  ASSERT_GT(half.minCoeff(), 0);
+  std::vector<double> sorted(half.begin(), half.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double end = sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
+  const auto colours = false_color(half, 0, end);
+  for (int y = 0; y < 12; ++y) {
+    const auto row = row_of_png(folder.path() / "both.png", y, 48);
+    for (std::size_t x = 0; x < 16; ++x) {
+      // The solver stops by relative errors of 1e-6: a colour may be rounded the other way.
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(row[32 + x][c], colours[static_cast<std::size_t>(y) * 16 + x][c], 1) << x << ' ' << y;
+    }
+  }
 }
 
 TEST(WritePicture, RefusesOtherNames) {

@@ -1,12 +1,12 @@
 #include "output/write_ply.h"
 
+#include "number_at.h"
 #include "render/smooth.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"
 #include "visibility/occluder.h"
 
-#include <cstring>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <vtkCell.h>
@@ -18,19 +18,13 @@
 namespace patchlight::write_ply_test {
 namespace {
 
+using test::number_at;
+
 constexpr double exposure = 0.125;
 
 std::string written(const std::filesystem::path& file) {
   write_ply(file, tiny_surface(), {"patchlight solve tiny.obj\nend_header", exposure});
   return content_of(file);
-}
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t offset) {
-  Number number{};
-  EXPECT_LE(offset + sizeof number, bytes.size());
-  std::memcpy(&number, bytes.data() + offset, sizeof number);
-  return number;
 }
 
 // The layout that the header promises, byte for byte.

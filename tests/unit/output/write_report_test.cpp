@@ -71,9 +71,12 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
 
 TEST(WriteReport, TellsWhatAccuracyHasCost) {
   const nlohmann::json report = written_report(tiny_scene(), tiny_simulation_with_bars());
-  EXPECT_EQ(
-      report["relative_error"],
-      (nlohmann::json{{"mesh", 0.03}, {"form_factor", 0.04}, {"solver", 0.001}, {"total", 0.05}, {"display", 0.25}}));
+  EXPECT_EQ(report["relative_error"], (nlohmann::json{{"mesh", 0.03},
+                                                      {"form_factor", 0.04},
+                                                      {"solver", 0.001},
+                                                      {"total", 0.05},
+                                                      {"display", 0.25},
+                                                      {"inside", false}}));
   ASSERT_EQ(report["accuracy"].size(), 2U);
   EXPECT_EQ(report["accuracy"][0]["mesh"], 0.5);
   const nlohmann::json last = report["accuracy"][1];

@@ -15,13 +15,18 @@
 #include <numbers>
 #include <vtkCell.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkVariant.h>
 #include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
 namespace patchlight::write_vtk_test {
 namespace {
@@ -81,6 +86,47 @@ TEST(WriteVtk, KeepsTrianglesAndQuadrilaterals) {
       EXPECT_EQ(polygons->GetCell(cell)->GetPointId(k), corners[static_cast<std::size_t>(k)]);
     }
   }
+}
+
+bool are_alike(vtkDataSetAttributes& a, vtkDataSetAttributes& b) {
+  if (a.GetNumberOfArrays() != b.GetNumberOfArrays()) return false;
+  for (int k = 0; k < a.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const first = a.GetArray(k);
+    vtkDataArray* const second = b.GetArray(first->GetName());
+    if (second == nullptr || first->GetDataType() != second->GetDataType()) return false;
+    const vtkIdType count = first->GetNumberOfValues();
+    if (second->GetNumberOfValues() != count) return false;
+    for (vtkIdType v = 0; v < count; ++v) {
+      if (first->GetVariantValue(v) != second->GetVariantValue(v)) return false;
+    }
+  }
+  return true;
+}
+
+// A grid has the patches of the polygons, and all of their values.
+TEST(WriteVtk, AnUnstructuredGridHoldsTheSame) {
+  const TemporaryFolder folder;
+  for (const char* name : {"result.vtp", "result.vtu"})
+    write_vtk(folder.path() / name, tiny_surface(), {"a command", exposure});
+  const vtkSmartPointer<vtkPolyData> polygons = read(folder.path() / "result.vtp");
+  const vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder.path() / "result.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  ASSERT_EQ(grid.GetNumberOfCells(), polygons->GetNumberOfCells());
+  ASSERT_EQ(grid.GetNumberOfPoints(), polygons->GetNumberOfPoints());
+  EXPECT_EQ(grid.GetCellType(0), VTK_QUAD);
+  EXPECT_EQ(grid.GetCellType(1), VTK_TRIANGLE);
+  for (vtkIdType k = 0; k < grid.GetNumberOfCells(); ++k) {
+    vtkIdList& corners = *grid.GetCell(k)->GetPointIds();
+    vtkIdList& expected = *polygons->GetCell(k)->GetPointIds();
+    ASSERT_EQ(corners.GetNumberOfIds(), expected.GetNumberOfIds());
+    for (vtkIdType c = 0; c < corners.GetNumberOfIds(); ++c) EXPECT_EQ(corners.GetId(c), expected.GetId(c));
+  }
+  EXPECT_GT(grid.GetCellData()->GetNumberOfArrays(), 10);
+  EXPECT_TRUE(are_alike(*polygons->GetCellData(), *grid.GetCellData()));
+  EXPECT_TRUE(are_alike(*polygons->GetPointData(), *grid.GetPointData()));
+  EXPECT_EQ(grid.GetFieldData()->GetArray("exposure")->GetComponent(0, 0), exposure);
 }
 
 TEST(WriteVtk, LeavesOutRowSumsThatAreNotKnown) {

@@ -43,6 +43,26 @@ TEST(WritePage, HoldsTheModelAndTheReport) {
     EXPECT_TRUE(data["model"]["values"].contains(name)) << name;
 }
 
+// 0.5 of the radiance behind a pane is 0.5^(1/2.2) of its display value.
+TEST(WritePage, TellsHowOpaqueMaterialsAreAndWhichHaveAPicture) {
+  Scene scene = tiny_scene();
+  scene.materials[1].transmittance = rgb(0.5, 0.5, 0.5);
+  scene.materials[0].texture = TexturedReflectance{};
+  const Json model = data_in(page_with(scene, tiny_simulation()))["model"];
+  EXPECT_EQ(model["opacity"][0], 1);
+  EXPECT_NEAR(model["opacity"][1].get<double>(), 1 - 0.72974, 1e-5);
+  EXPECT_EQ(model["textured"], Json::array({"floor"}));
+  EXPECT_FALSE(model["rows"].contains("enclosed"));
+}
+
+TEST(WritePage, TellsWhichPatchesAreEnclosedByDay) {
+  Simulation simulation = tiny_simulation();
+  simulation.enclosed = Eigen::Vector3d(1, 0, 0);
+  const Json model = data_in(page_with(tiny_scene(), simulation))["model"];
+  EXPECT_EQ(model["rows"]["enclosed"]["components"], 1);
+  EXPECT_EQ(model["looks"].size(), 2U);
+}
+
 TEST(WritePage, IsOneFileWithTheLicenceOfWhatItTakesIn) {
   const std::string page = page_with(tiny_scene(), tiny_simulation());
   for (const char* word : {" src=\"http", "href=\"http", "<link", "import("}) EXPECT_EQ(count(page, word), 0U) << word;

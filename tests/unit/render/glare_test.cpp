@@ -1,5 +1,7 @@
 #include "render/glare.h"
 
+#include "views/luminaire_glare.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -29,6 +31,34 @@ TEST(PositionIndex, HasTheValuesOfItsFormula) {
   EXPECT_NEAR(position_index(toward(20, 90), Vector::UnitY(), Vector::UnitZ()), std::exp(0.129998 + 0.084), 1e-5);
   // The tables of CIE 117 by H / R and T / R: at H / R = 1, T / R = 0 the index is 7.0.. to two figures of Guth's data.
   EXPECT_NEAR(position_index(toward(45, 0), Vector::UnitY(), Vector::UnitZ()), 7.0, 0.25);
+}
+
+TEST(ProjectedOpening, IsTheShadowOfItsShape) {
+  // Aim down, length 2 along x, width 1 along y, height 0.5.
+  const LuminaireFrame frame{-Vector::UnitZ(), Vector::UnitX()};
+  PhotometricWeb web;
+  web.opening = Vector(1, 2, 0.5);
+  const Vector slanted = Vector(1, 2, -2) / 3;
+  EXPECT_NEAR(projected_opening(web, frame, -Vector::UnitZ()), 2, 1e-12);
+  EXPECT_NEAR(projected_opening(web, frame, Vector::UnitX()), 0.5, 1e-12);
+  EXPECT_NEAR(projected_opening(web, frame, Vector::UnitY()), 1, 1e-12);
+  EXPECT_NEAR(projected_opening(web, frame, slanted), 2 * 2 / 3.0 + 0.5 / 3 + 1 * 2 / 3.0, 1e-12);
+  // A drum of diameter 1: its disc, and a rectangle from the side.
+  web.shape = OpeningShape::upright_cylinder;
+  web.opening = Vector(1, 1, 0.5);
+  EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4 * 2 / 3 + 0.5 * std::sqrt(5.0) / 3, 1e-12);
+  // A tube along x, of length 2 and diameter 0.5: its ends, and a rectangle from beside.
+  web.shape = OpeningShape::cylinder_by_length;
+  web.opening = Vector(0.5, 2, 0.5);
+  EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4 * 0.25 / 3 + 2 * 0.5 * std::sqrt(8.0) / 3,
+              1e-12);
+  web.shape = OpeningShape::cylinder_by_width;
+  web.opening = Vector(2, 0.5, 0.5);
+  EXPECT_NEAR(projected_opening(web, frame, Vector::UnitX()), 1, 1e-12);
+  // A sphere is a disc from everywhere.
+  web.shape = OpeningShape::ellipsoid;
+  web.opening = Vector(1, 1, 1);
+  EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4, 1e-12);
 }
 
 TEST(PositionIndex, BelowTheLineOfSightGrowsWithTheAngle) {

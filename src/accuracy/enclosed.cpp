@@ -1,0 +1,68 @@
+#include "accuracy/enclosed.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+constexpr std::uint32_t reflections = 4;
+
+// Walks from each patch. Fewer where there are very many patches: only those at a space's border are then less sure.
+constexpr std::uint32_t usual_walks = 16;
+constexpr std::uint32_t few_walks = 4;
+constexpr PatchIndex many_patches = 50000;
+
+constexpr std::uint32_t purpose = 0x656e636c;
+
+// Where a walk of diffuse reflections has come to.
+struct Place {
+  Point point;
+  Vector normal;
+  PolygonIndex polygon = no_polygon;
+};
+
+std::vector<Ray> onward(const std::vector<Place>& places, std::uint32_t walks, std::uint32_t key) {
+  const auto samples = scrambled_sobol(walks, key);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vector direction = cosine_direction(places[k].normal, samples[k][0], samples[k][1]);
+    rays.push_back({places[k].point, direction, places[k].polygon});
+  }
+  return rays;
+}
+
+// True when fewer than half of the walks from a patch leave the scene.
+bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mesh, PatchIndex patch,
+                 std::uint32_t walks) {
+  std::vector<Place> places(walks, {mesh.centroid[patch], mesh.normal[patch], mesh.polygon[patch]});
+  for (std::uint32_t k = 0; k < reflections; ++k) {
+    std::vector<Place> next;
+    for (const std::optional<Hit>& hit : faces.first_hits(onward(places, walks, hash({purpose, patch, k})))) {
+      if (!hit) continue;
+      const Vector front = front_normal(scene, hit->polygon);
+      next.push_back({hit->point, hit->side == Side::front ? front : Vector(-front), hit->polygon});
+    }
+    places = std::move(next);
+    if (2 * places.size() <= walks) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
+  const std::uint32_t walks = mesh.size() > many_patches ? few_walks : usual_walks;
+  Eigen::VectorXd enclosed(mesh.size());
+  parallel_for(mesh.size(), [&](std::size_t k) {
+    const auto patch = static_cast<PatchIndex>(k);
+    enclosed[patch] = is_enclosed(scene, faces, mesh, patch, walks) ? 1 : 0;
+  });
+  return enclosed;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,283 @@
+#include "render/lightmap.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "render/lightmap_neighbours.h"
+#include "render/lightmap_padding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+constexpr int bake_block_edge = 16;  // texels that are baked at once
+
+// Places on a texel are the middles of its parts, so many along each edge, in an order in which each four that follow
+// one another lie in all rows and columns and around the texel's middle.
+constexpr int parts_per_edge = 4;
+constexpr std::array<std::array<int, 2>, 16> order_of_parts = {{{1, 0},
+                                                                {3, 1},
+                                                                {0, 2},
+                                                                {2, 3},
+                                                                {2, 0},
+                                                                {0, 1},
+                                                                {3, 2},
+                                                                {1, 3},
+                                                                {0, 0},
+                                                                {2, 1},
+                                                                {1, 2},
+                                                                {3, 3},
+                                                                {3, 0},
+                                                                {1, 1},
+                                                                {2, 2},
+                                                                {0, 3}}};
+
+constexpr std::size_t parts_of_texel = order_of_parts.size();
+
+// Some texels of a chart, and the patches that reach there.
+struct BakeBlock {
+  std::size_t chart = 0;
+  int left = 0, top = 0;  // in the chart
+  std::vector<PatchIndex> patches;
+};
+
+// A place of a texel that is on a surface.
+struct BakePlace {
+  std::size_t texel = 0;  // of the block, row by row
+  std::uint32_t part = 0;
+  PatchPoint at;
+};
+
+Eigen::Vector2d in_texels(const LightmapChart& chart, const Point& point) {
+  const Vector from = point - chart.corner;
+  return {chart.right.dot(from) / chart.texel[0], chart.down.dot(from) / chart.texel[1]};
+}
+
+Eigen::AlignedBox2d box_in_texels(const LightmapChart& chart, const PatchCorners& corners) {
+  Eigen::AlignedBox2d box;
+  for (int k = 0; k < corners.count; ++k) box.extend(in_texels(chart, corners.points[static_cast<std::size_t>(k)]));
+  return box;
+}
+
+std::vector<BakeBlock> blocks_of_chart(const LightmapChart& chart, std::size_t number, const PatchMesh& mesh) {
+  const int columns = (chart.width + bake_block_edge - 1) / bake_block_edge;
+  const int rows = (chart.height + bake_block_edge - 1) / bake_block_edge;
+  std::vector<BakeBlock> blocks;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) blocks.push_back({number, x * bake_block_edge, y * bake_block_edge, {}});
+  for (const PatchIndex patch : chart.patches) {
+    const Eigen::AlignedBox2d box = box_in_texels(chart, mesh.corner_points(patch));
+    const auto block_at = [](double place, int count) {
+      return std::clamp(static_cast<int>(std::floor(place / bake_block_edge)), 0, count - 1);
+    };
+    for (int y = block_at(box.min().y(), rows); y <= block_at(box.max().y(), rows); ++y)
+      for (int x = block_at(box.min().x(), columns); x <= block_at(box.max().x(), columns); ++x)
+        blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)]
+            .patches.push_back(patch);
+  }
+  std::erase_if(blocks, [](const BakeBlock& block) { return block.patches.empty(); });
+  return blocks;
+}
+
+// Whether a point of a convex patch's plane is in it, or on its edge.
+bool lies_in(const PatchCorners& corners, const Vector& normal, const Point& point) {
+  for (int k = 0; k < corners.count; ++k) {
+    const Point& a = corners.points[static_cast<std::size_t>(k)];
+    const Point& b = corners.points[static_cast<std::size_t>((k + 1) % corners.count)];
+    if (normal.dot((b - a).cross(point - a)) < 0) return false;
+  }
+  return true;
+}
+
+class Bake {
+ public:
+  Bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options);
+
+  void run(const Observer& observer);
+  Lightmap lightmap() && { return std::move(map_); }
+
+ private:
+  std::vector<BakePlace> places_of(const BakeBlock& block) const;
+  std::vector<PatchIndex> patches_at_parts(const BakeBlock& block) const;
+  Point place_on(const LightmapChart& chart, int x, int y, std::size_t part) const;
+  Field direct_at(const BakeBlock& block, const std::vector<BakePlace>& places) const;
+  void bake_block(const BakeBlock& block);
+  std::size_t texel_of(const BakeBlock& block, std::size_t of_block) const;
+  IrradianceRecord gathered(std::span<const BakePlace> places, std::size_t texel) const;
+  std::uint32_t key_of(std::size_t texel) const { return hash({options_.seed, texel}); }
+
+  const SolvedLight& solved_;
+  const Field sent_besides_;
+  const BakeOptions& options_;
+  GatheredLight gather_;
+  Lightmap map_;
+  std::vector<BakeBlock> blocks_;
+};
+
+Bake::Bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options)
+    : solved_(solved), sent_besides_(sent_besides), options_(options), gather_(solved) {
+  map_.width = charts.width;
+  map_.height = charts.height;
+  map_.texel = charts.texel;
+  map_.charts = std::move(charts.charts);
+  const Eigen::Index count = static_cast<Eigen::Index>(map_.width) * map_.height;
+  map_.patch.assign(static_cast<std::size_t>(count), no_patch);
+  for (TexelField* field : {&map_.direct, &map_.indirect, &map_.radiance})
+    *field = TexelField::Zero(count, solved.exitance.cols());
+  map_.error = Eigen::ArrayXf::Zero(count);
+  for (std::size_t c = 0; c < map_.charts.size(); ++c) {
+    for (BakeBlock& block : blocks_of_chart(map_.charts[c], c, solved.mesh)) blocks_.push_back(std::move(block));
+  }
+}
+
+Point Bake::place_on(const LightmapChart& chart, int x, int y, std::size_t part) const {
+  const auto [column, row] = order_of_parts[part];
+  const double u = x + (column + 0.5) / parts_per_edge, v = y + (row + 0.5) / parts_per_edge;
+  return chart.corner + u * chart.texel[0] * chart.right + v * chart.texel[1] * chart.down;
+}
+
+// Which patch is at each part of each texel of a block.
+std::vector<PatchIndex> Bake::patches_at_parts(const BakeBlock& block) const {
+  const LightmapChart& chart = map_.charts[block.chart];
+  std::vector<PatchIndex> at(std::size_t{bake_block_edge} * bake_block_edge * parts_of_texel, no_patch);
+  const auto range = [](double lower, double upper, int from, int size) {
+    const int begin = std::max(0, static_cast<int>(std::floor(lower)) - from);
+    return std::array<int, 2>{begin,
+                              std::min({bake_block_edge, size - from, static_cast<int>(std::floor(upper)) + 1 - from})};
+  };
+  for (const PatchIndex patch : block.patches) {
+    const PatchCorners corners = solved_.mesh.corner_points(patch);
+    const Eigen::AlignedBox2d box = box_in_texels(chart, corners);
+    const auto columns = range(box.min().x(), box.max().x(), block.left, chart.width);
+    const auto rows = range(box.min().y(), box.max().y(), block.top, chart.height);
+    for (int y = rows[0]; y < rows[1]; ++y) {
+      for (int x = columns[0]; x < columns[1]; ++x) {
+        for (std::size_t part = 0; part < parts_of_texel; ++part) {
+          PatchIndex& there = at[static_cast<std::size_t>(y * bake_block_edge + x) * parts_of_texel + part];
+          const Point point = place_on(chart, block.left + x, block.top + y, part);
+          if (there == no_patch && lies_in(corners, solved_.mesh.normal[patch], point)) there = patch;
+        }
+      }
+    }
+  }
+  return at;
+}
+
+// In the order of texels and parts.
+std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
+  const LightmapChart& chart = map_.charts[block.chart];
+  const std::vector<PatchIndex> at = patches_at_parts(block);
+  std::vector<BakePlace> places;
+  std::vector<std::uint8_t> has_place(std::size_t{bake_block_edge} * bake_block_edge);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (at[k] == no_patch) continue;
+    const std::size_t texel = k / parts_of_texel, part = k % parts_of_texel;
+    const int x = block.left + static_cast<int>(texel) % bake_block_edge;
+    const int y = block.top + static_cast<int>(texel) / bake_block_edge;
+    places.push_back({texel, static_cast<std::uint32_t>(part), {place_on(chart, x, y, part), at[k]}});
+    has_place[texel] = 1;
+  }
+  // Of what is smaller than parts are apart, the middle
+  for (const PatchIndex patch : block.patches) {
+    const Eigen::Vector2d middle = in_texels(chart, solved_.mesh.centroid[patch]);
+    const int x = std::clamp(static_cast<int>(std::floor(middle.x())), 0, chart.width - 1) - block.left;
+    const int y = std::clamp(static_cast<int>(std::floor(middle.y())), 0, chart.height - 1) - block.top;
+    if (std::min(x, y) < 0 || std::max(x, y) >= bake_block_edge) continue;
+    const auto texel = static_cast<std::size_t>(y * bake_block_edge + x);
+    if (has_place[texel]) continue;
+    has_place[texel] = 1;
+    places.push_back({texel, 0, {solved_.mesh.centroid[patch], patch}});
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const BakePlace& a, const BakePlace& b) { return a.texel < b.texel; });
+  return places;
+}
+
+std::size_t Bake::texel_of(const BakeBlock& block, std::size_t of_block) const {
+  const LightmapChart& chart = map_.charts[block.chart];
+  const int x = chart.left + block.left + static_cast<int>(of_block) % bake_block_edge;
+  const int y = chart.top + block.top + static_cast<int>(of_block) / bake_block_edge;
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(map_.width) + static_cast<std::size_t>(x);
+}
+
+Field Bake::direct_at(const BakeBlock& block, const std::vector<BakePlace>& places) const {
+  std::map<PatchIndex, SkyAim> aims;
+  std::vector<LitPoint> points;
+  for (const BakePlace& place : places) {
+    const PatchIndex patch = place.at.patch;
+    const SkyAim* aim = nullptr;
+    if (solved_.lights.lighting.sky) {
+      auto known = aims.find(patch);
+      if (known == aims.end()) known = aims.emplace(patch, gather_.aim_at(patch)).first;
+      aim = &known->second;
+    }
+    const SurfacePoint at{place.at.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
+    points.push_back({at, place.part, hash({key_of(texel_of(block, place.texel)), 1}), aim});
+  }
+  return light_samples(solved_.lights, points, static_cast<std::uint32_t>(options_.rays_to_lights));
+}
+
+// The mean of the gathers at the first places of a texel.
+IrradianceRecord Bake::gathered(std::span<const BakePlace> places, std::size_t texel) const {
+  IrradianceRecord mean;
+  mean.irradiance = Spectrum::Zero(solved_.exitance.cols());
+  double variance = 0;
+  const std::size_t count = std::min(places.size(), static_cast<std::size_t>(options_.gathers));
+  for (std::size_t k = 0; k < count; ++k) {
+    const IrradianceRecord one =
+        gather_.record_at(places[k].at, hash({key_of(texel), 2, k}), 1, 1, options_.hemisphere);
+    mean.irradiance += one.irradiance / static_cast<double>(count);
+    variance += one.uncertainty * one.uncertainty;
+  }
+  mean.uncertainty = std::sqrt(variance) / static_cast<double>(count);
+  return mean;
+}
+
+void Bake::bake_block(const BakeBlock& block) {
+  const std::vector<BakePlace> places = places_of(block);
+  const Field direct = direct_at(block, places);
+  for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+    while (end < places.size() && places[end].texel == places[begin].texel) ++end;
+    const std::size_t texel = texel_of(block, places[begin].texel);
+    const IrradianceRecord record = gathered(std::span(places).subspan(begin, end - begin), texel);
+    Spectrum straight = Spectrum::Zero(direct.cols()), radiance = straight;
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto& [point, patch] = places[k].at;
+      const Spectrum here = direct.row(static_cast<Eigen::Index>(k));
+      straight += here;
+      // L = (E + rho H + t H_behind) / pi
+      radiance += (sent_besides_.row(patch) + reflectance_at(solved_, patch, point) * (here + record.irradiance)) /
+                  std::numbers::pi;
+    }
+    const auto count = static_cast<double>(end - begin);
+    const auto row = static_cast<Eigen::Index>(texel);
+    map_.patch[texel] = places[begin].at.patch;
+    map_.direct.row(row) = (straight / count).max(0).cast<float>();
+    map_.indirect.row(row) = record.irradiance.max(0).cast<float>();
+    map_.radiance.row(row) = (radiance / count).max(0).cast<float>();
+    map_.error[row] = static_cast<float>(record.uncertainty);
+  }
+}
+
+void Bake::run(const Observer& observer) {
+  parallel_for(blocks_.size(), Stage::render, observer, [&](std::size_t b) { bake_block(blocks_[b]); });
+}
+
+}  // namespace
+
+Lightmap bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options,
+              const Observer& observer) {
+  Bake baking(solved, sent_besides, std::move(charts), options);
+  baking.run(observer);
+  const PatchLookup lookup(solved.mesh);
+  return with_neighbours(with_padding(std::move(baking).lightmap(), lightmap_padding), solved, lookup);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,156 @@
+#include "report/room_light.h"
+
+#include "light/photometry.h"
+#include "scene/room_body.h"
+#include "scene/shells.h"
+#include "scene/solids.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// What bounds a room.
+struct RoomBounds {
+  std::string room;
+  std::vector<PatchIndex> patches;
+};
+
+// The bodies of some models (gbXML) end at the inner sides of walls and ceilings whose faces stand in the middle of
+// these: of a room that is not bounded all around, patches count as well that bound no room and face it from farther
+// off, metres.
+constexpr std::array<double, 5> farther_off = {0.1, 0.2, 0.3, 0.4, 0.5};
+constexpr double bounded_all_around = 0.8;
+
+// A patch bounds a room when the room is before it and not behind it: furniture stands in the room.
+std::vector<PatchIndex> patches_at(const RoomBody& body, const PatchMesh& mesh) {
+  std::vector<PatchIndex> found;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const Vector step = body.step() * mesh.normal[i];
+    if (body.holds(mesh.centroid[i] + step) && !body.holds(mesh.centroid[i] - step)) found.push_back(i);
+  }
+  return found;
+}
+
+bool is_bounded_all_around(const NamedRoom& room, const std::vector<PatchIndex>& patches, const PatchMesh& mesh) {
+  double whole = 0;
+  for (const std::vector<Point>& face : room.faces) whole += area_vector(face).norm();
+  double bounded = 0;
+  for (const PatchIndex i : patches) bounded += mesh.area[i];
+  return bounded >= bounded_all_around * whole;
+}
+
+// Patches that are neither of a room nor stand in this one.
+std::vector<PatchIndex> patches_farther_off(const RoomBody& body, const PatchMesh& mesh,
+                                            const std::vector<char>& has_room) {
+  const auto is_before = [&](PatchIndex i, double distance) {
+    return body.holds(mesh.centroid[i] + distance * mesh.normal[i]);
+  };
+  std::vector<PatchIndex> found;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (has_room[i] != 0 || is_before(i, -body.step())) continue;
+    if (std::any_of(farther_off.begin(), farther_off.end(), [&](double distance) { return is_before(i, distance); }))
+      found.push_back(i);
+  }
+  return found;
+}
+
+std::vector<RoomBounds> bounds_by_names(const std::vector<NamedRoom>& rooms, const PatchMesh& mesh) {
+  std::vector<RoomBounds> all;
+  std::vector<char> has_room(mesh.size(), 0);
+  for (const NamedRoom& room : rooms) {
+    all.push_back({room.name, patches_at(RoomBody(room.faces), mesh)});
+    for (const PatchIndex i : all.back().patches) has_room[i] = 1;
+  }
+  for (std::size_t k = 0; k < rooms.size(); ++k) {
+    std::vector<PatchIndex>& patches = all[k].patches;
+    if (is_bounded_all_around(rooms[k], patches, mesh)) continue;
+    const std::vector<PatchIndex> others = patches_farther_off(RoomBody(rooms[k].faces), mesh, has_room);
+    patches.insert(patches.end(), others.begin(), others.end());
+  }
+  std::erase_if(all, [](const RoomBounds& bounds) { return bounds.patches.empty(); });
+  return all;
+}
+
+// The closed shells that have patches on their inside, with these.
+std::vector<RoomBounds> bounds_by_shells(const Scene& scene, const PatchMesh& mesh) {
+  const Shells shells = shells_of(scene);
+  constexpr std::size_t none = ~std::size_t{0};
+  std::vector<std::size_t> of_side(2 * scene.polygons.size(), none);
+  const std::vector<Solid> solids = closed_solids(scene, shells);
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    for (const PolygonIndex p : solids[k].polygons)
+      of_side[std::size_t{2} * p + static_cast<std::size_t>(inner_side(solids[k], shells, p))] = k;
+  }
+  std::vector<RoomBounds> all(solids.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const std::size_t k = of_side[std::size_t{2} * mesh.polygon[i] + static_cast<std::size_t>(mesh.side[i])];
+    if (k != none) all[k].patches.push_back(i);
+  }
+  std::erase_if(all, [](const RoomBounds& bounds) { return bounds.patches.empty(); });
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].room = all.size() == 1 ? "room" : "room " + std::to_string(k + 1);
+  return all;
+}
+
+std::vector<RoomBounds> bounds_of_rooms(const Scene& scene, const Simulation& simulation) {
+  const PatchMesh& mesh = simulation.mesh;
+  std::vector<RoomBounds> all = bounds_by_names(scene.rooms, mesh);
+  if (all.empty()) all = bounds_by_shells(scene, mesh);
+  if (!all.empty()) return all;
+  const Eigen::VectorXd& enclosed = simulation.enclosed;
+  const bool some = enclosed.size() > 0 && enclosed.maxCoeff() > 0;
+  all.push_back({"room", {}});
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (!some || enclosed[i] > 0) all[0].patches.push_back(i);
+  }
+  return all;
+}
+
+// Floors face up within 45 degrees, ceilings down; walls are all others.
+RoomSurface surface_facing(const Vector& normal, const Vector& up) {
+  const double steepest = std::sqrt(0.5);
+  const double upward = normal.dot(up);
+  return upward > steepest ? RoomSurface::floor : upward < -steepest ? RoomSurface::ceiling : RoomSurface::walls;
+}
+
+void add_patch(SurfaceLight& surface, double area, double value) {
+  surface.min = surface.area > 0 ? std::min(surface.min, value) : value;
+  surface.mean += area * value;
+  surface.area += area;
+}
+
+RoomLight light_of(const RoomBounds& bounds, const Scene& scene, const Simulation& simulation) {
+  const double in_unit = scene.photometric ? 1 : 1 / luminous_efficacy;
+  const Bands bands = bands_of(scene);
+  RoomLight light{bounds.room, {{{RoomSurface::floor}, {RoomSurface::walls}, {RoomSurface::ceiling}}}};
+  for (const PatchIndex i : bounds.patches) {
+    const double area = simulation.problem.area[i];
+    if (!(area > 0) || is_opening(scene, simulation.mesh.polygon[i])) continue;
+    // Where no light at all comes nobody sees a surface: within a hollow wall that stands on the floor.
+    if ((simulation.solution.irradiance.row(i) == 0).all()) continue;
+    const auto surface = static_cast<std::size_t>(surface_facing(simulation.mesh.normal[i], scene.up));
+    add_patch(light.surfaces[surface], area, in_unit * luminance(simulation.solution.irradiance.row(i), bands));
+  }
+  for (SurfaceLight& surface : light.surfaces) {
+    if (surface.area > 0) surface.mean /= surface.area;
+    if (surface.mean > 0) surface.uniformity = surface.min / surface.mean;
+  }
+  return light;
+}
+
+}  // namespace
+
+std::vector<RoomLight> room_light(const Scene& scene, const Simulation& simulation) {
+  std::vector<RoomLight> all;
+  for (const RoomBounds& bounds : bounds_of_rooms(scene, simulation))
+    all.push_back(light_of(bounds, scene, simulation));
+  std::erase_if(all, [](const RoomLight& light) {
+    return std::all_of(light.surfaces.begin(), light.surfaces.end(), [](const SurfaceLight& s) { return s.area == 0; });
+  });
+  return all;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include "light/spectra.h"
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+namespace patchlight {
+
+/// Bands of wavelengths, inside of which light is spread in one way.
+class WavelengthBands {
+ public:
+  /// From edges in nm, growing, two or more, within 380 and 780; `light` is how light is spread in each.
+  WavelengthBands(const std::vector<double>& edges_nm, const Cells& light);
+
+  /// The mean over each band, by the light there.
+  Spectrum mean_of(const Cells& share) const { return (share_weights_ * share.matrix()).transpose().array(); }
+
+  /// What light there is in each band, where `light` is per nm.
+  Spectrum sum_of(const Cells& light) const { return (overlap_ * light.matrix()).transpose().array(); }
+
+  /// What they stand for.
+  Bands bands() const;
+
+  /// True when they reach from 380 to 780 nm.
+  bool are_of_all_light() const { return edges_nm_.front() <= 380 && edges_nm_.back() >= 780; }
+
+ private:
+  std::vector<double> edges_nm_;
+  Eigen::Matrix<double, Eigen::Dynamic, number_of_cells> overlap_;        // the part of each cell, 0 to 1
+  Eigen::Matrix<double, Eigen::Dynamic, number_of_cells> share_weights_;  // rows sum up to 1
+};
+
+/// True for whole numbers from 1 to 400, a band for each nm.
+bool is_number_of_bands(double number);
+
+/// `number` bands of one width from 380 to 780 nm.
+std::vector<double> equal_edges(Eigen::Index number);
+
+/// A light of a scene in linear RGB, per nm, such that its luminance is that of its colour: spread as the spectrum, or
+/// where there is none, D65 times the smooth reflectance of that colour.
+Cells light_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum);
+
+/// A reflectance or transmittance in linear RGB, or as its spectrum is where there is one. One of grey is even.
+Cells share_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum);
+
+/// How all lights of a scene in linear RGB are spread, a luminance of 1 each; of several alike one.
+std::vector<Cells> spread_of_lights(const Scene& scene);
+
+/// What is told of a quantity of a scene that has a spectrum for each band: its values, and its spectrum or null.
+using OfQuantity = std::function<void(const Spectrum& values, const SampledSpectrum* spectrum)>;
+
+/// Calls one for all reflectances and transmittances, the other for all that gives light. Empty spectra are left out.
+void for_all_spectra(const Scene& scene, const OfQuantity& of_share, const OfQuantity& of_light);
+
+/// True when something has a spectrum by wavelength.
+bool has_spectra(const Scene& scene);
+
+/// The scene, which is in linear RGB, in bands of wavelengths, and without the spectra it had.
+Scene in_wavelength_bands(Scene scene, const std::vector<double>& edges_nm);
+
+/// A light in linear RGB, or as its spectrum is where there is one, in the bands of wavelengths of a scene.
+Spectrum light_in_bands(const Bands& bands, const Spectrum& rgb, const SampledSpectrum* spectrum);
+
+/// The scene, which is in bands of wavelengths, with its sun and its sky, which are in linear RGB, in these as well.
+Scene with_daylight_in_bands(Scene scene);
+
+/// The scene, which is in linear RGB, with the colours of its spectra, and without these.
+Scene in_rgb(Scene scene);
+
+}  // namespace patchlight

@@ -1,0 +1,94 @@
+#include "views/solved_light.h"
+
+#include "patchlight/views/picture.h"
+
+#include "light/photometry.h"
+#include "lighting/mirrored_irradiance.h"
+#include "pipeline/lamps_apart.h"
+#include "visibility/occluder.h"
+#include "visibility/tracing.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// A picture looks at so many emitting faces by shadow rays.
+constexpr std::size_t most_lamps = 256;
+
+// The faces that emit much more than most do, the brightest first. The light of those left out is gathered like that of
+// patches which reflect.
+struct PictureLamps {
+  std::vector<LampFace> faces;
+  Field exitance;  // of their patches, 0 of all others
+};
+
+// Seen from its front, a face's corners go round counter-clockwise.
+LampFace seen_from_front(LampFace face, Side side) {
+  if (side == Side::front) return face;
+  const auto [a, b, c, d] = face.corners;
+  face.corners = c == d ? std::array<Point, 4>{c, b, a, a} : std::array<Point, 4>{d, c, b, a};
+  return face;
+}
+
+PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) {
+  const PatchMesh& mesh = simulation.mesh;
+  const Field& exitance = simulation.problem.exitance;
+  struct Lamp {
+    PatchRange patches;
+    double flux;
+  };
+  std::vector<Lamp> sides;
+  const double mean = exitance.rowwise().mean().matrix().dot(simulation.problem.area) / simulation.problem.area.sum();
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    for (const Side side : {Side::front, Side::back}) {
+      const PatchRange patches = mesh.patches_on(polygon, side);
+      if (patches.begin == patches.end || !(exitance.row(patches.begin) > 0).any()) continue;
+      double area = 0;
+      for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) area += mesh.area[patch];
+      if (exitance.row(patches.begin).mean() > bright * mean)
+        sides.push_back({patches, area * exitance.row(patches.begin).mean()});
+    }
+  }
+  std::stable_sort(sides.begin(), sides.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
+  PictureLamps lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
+  for (const auto& [patches, flux] : sides) {
+    if (lamps.faces.size() >= most_lamps) break;
+    for (LampFace& face : lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin])) {
+      face.exitance = exitance.row(patches.begin);
+      lamps.faces.push_back(seen_from_front(std::move(face), mesh.side[patches.begin]));
+    }
+    const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
+    lamps.exitance.middleRows(patches.begin, count) = exitance.middleRows(patches.begin, count);
+  }
+  return lamps;
+}
+
+}  // namespace
+
+SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const Lighting& lighting) {
+  const RadiosityProblem& problem = simulation.problem;
+  PictureLamps lamps = lamps_of_picture(scene, simulation);
+  const Field sent = simulates(simulation.plan, Effect::interreflection)
+                         ? Field(std::numbers::pi * display_radiance(simulation))
+                         : problem.exitance;
+  const Bands bands = bands_of(scene);
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(bands.size()));
+  for (std::size_t band = 0; band < bands.size(); ++band)
+    weights[static_cast<Eigen::Index>(band)] = luminous_efficacy * bands[band].luminous_weight;
+  return {.mesh = simulation.mesh,
+          .occluder = simulation.tracing->all_faces(scene),
+          .lights = {std::move(lamps.faces), lighting},
+          .exitance = problem.exitance,
+          .reflected = sent - lamps.exitance,
+          .reflectance = problem.scattering.reflectance,
+          .other_side = problem.scattering.other_side,
+          .transmittance = problem.scattering.transmittance,
+          .luminous_weights = weights,
+          .scene = &scene};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,52 @@
+#include "lighting/mirrored_irradiance.h"
+
+#include "patchlight/scene/sides.h"
+
+#include "mesh/mesher.h"
+#include "support/scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight::mirrored_irradiance_test {
+namespace {
+
+using namespace test;
+
+// A floor of one patch, 3 x 1 m, a third of it under a rug, before a mirror that throws the sun onto all of it.
+Scene floor_before_mirror() {
+  Material mirror = grey(0);
+  mirror.specular_reflectance = Spectrum::Constant(1, 0.9);
+  Scene scene =
+      with_quad(empty_scene({grey(0.5), mirror}), {Point(0, 0, 0), Point(3, 0, 0), Point(3, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(4, -9, -9), Point(4, -9, 9), Point(4, 9, 9), Point(4, 9, -9)}, 1);
+  scene.sun = Sun{Vector(-1, 0, 1).normalized(), Spectrum::Constant(1, 10)};
+  return scene;
+}
+
+TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
+  const Scene scene = floor_before_mirror();
+  const KeptSides sides = kept_sides(scene, Sides::front);
+  const PatchMesh mesh = tessellate(scene, sides, 20);
+  const Tracing tracing(scene, find_coverings(scene, sides), Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(scene, tracing);
+  ASSERT_TRUE(lighting.mirrors);
+  const double everywhere = 0.9 * 10 * std::sqrt(0.5);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    for (const int samples : {2, 4, 16, 64}) {
+      const DirectIrradiance direct =
+          mirrored_irradiance(lighting, {}, mesh, {.mirrored_samples = samples, .seed = seed});
+      const double irradiance = direct.irradiance(0, 0);
+      // Two samples, in replicates of one, may both lie on the rug.
+      if (samples == 2 && irradiance == 0) continue;
+      EXPECT_NEAR(irradiance, everywhere, 1e-12 * everywhere) << samples << " samples, seed " << seed;
+      found += samples == 2;
+    }
+  }
+  EXPECT_GT(found, 15);
+}
+
+}  // namespace
+}  // namespace patchlight::mirrored_irradiance_test
