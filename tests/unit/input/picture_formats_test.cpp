@@ -20,10 +20,10 @@ std::string many_colours() {
   return pixels;
 }
 
-// A number of two or four bytes, the least significant first.
+// A number of as many bytes, the least significant first.
 std::string little_endian(std::size_t value, std::size_t bytes) {
   std::string text;
-  for (std::size_t k = 0; k < bytes; ++k) text += static_cast<char>(value >> (8 * k) & 0xFFU);
+  for (std::size_t k = 0; k < bytes; ++k, value >>= 8U) text += static_cast<char>(value & 0xFFU);
   return text;
 }
 
