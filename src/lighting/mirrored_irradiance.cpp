@@ -41,9 +41,8 @@ std::optional<MirroredArrival> arrived(const SurfacePoint& at, const Arrival& ar
 }
 
 // E G A: one point of the lamp.
-std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const SurfacePoint& at, const SurfacePoint& image,
-                                         const Eigen::Vector2d& uv) {
-  const Point y = square_to_quad(lamp.corners, uv.x(), uv.y());
+std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const Point& y, const SurfacePoint& at,
+                                         const SurfacePoint& image) {
   const Vector toward = y - image.point;
   const double cosine = image.normal.dot(toward);
   const double cosine_there = -lamp.normal.dot(toward);
@@ -78,8 +77,9 @@ std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span
                        },
                        {lighting.sun->direction, {}}});
   for (const LampFace& lamp : lamps)
-    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
-                         return from_lamp(lamp, at, image, uv);
+    sources.push_back({[&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
+                                                                  const Eigen::Vector2d& uv) {
+                         return from_lamp(lamp, points.at(uv.x(), uv.y()), at, image);
                        },
                        {{}, ball_around(lamp.corners)}});
   return sources;

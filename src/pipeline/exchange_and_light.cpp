@@ -18,12 +18,15 @@
 namespace patchlight {
 namespace {
 
-// Half as many towards bright patches as over the hemisphere, in packets of both halves.
-RayOptions rays_as_planned(const AssemblyOptions& assembly) {
+// Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that look at
+// backs most lie inside of solids, which few rays tell as well.
+RayOptions rays_as_planned(const AssemblyOptions& assembly, const PatchMesh& mesh) {
   constexpr int packets = 32;
+  constexpr int to_backs_of_many = 64;
   return {.rays = assembly.rays,
           .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
-          .lost_share_rays = assembly.lost_share_rays,
+          .lost_share_rays = mesh.size() > many_patches ? std::min(assembly.lost_share_rays, to_backs_of_many)
+                                                        : assembly.lost_share_rays,
           .seed = assembly.seed};
 }
 
@@ -83,7 +86,7 @@ BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const Ray
 TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
-  const RayOptions options = rays_as_planned(plan.assembly);
+  const RayOptions options = rays_as_planned(plan.assembly, mesh);
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
   return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);

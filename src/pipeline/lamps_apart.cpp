@@ -4,6 +4,7 @@
 
 #include "base/vectors.h"
 #include "lighting/mirrored_irradiance.h"
+#include "pipeline/lit_problem.h"
 
 #include <algorithm>
 #include <string>
@@ -139,7 +140,7 @@ DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchM
     const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
-  DirectIrradiance found = mirrored_irradiance(lighting, faces, mesh, {.seed = plan.assembly.seed}, run.observer);
+  DirectIrradiance found = mirrored_irradiance(lighting, faces, mesh, lighting_options(plan, mesh), run.observer);
   found.standard_error = with_errors_around(mesh, found.standard_error);
   return found;
 }

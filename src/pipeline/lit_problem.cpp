@@ -29,10 +29,17 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 
 }  // namespace
 
+LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
+  constexpr int over_mirrors_of_many = 16;
+  LightingOptions options{.seed = plan.assembly.seed};
+  if (mesh.size() > many_patches) options.mirrored_samples = over_mirrors_of_many;
+  return options;
+}
+
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
-  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, {.seed = plan.assembly.seed});
+  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, lighting_options(plan, mesh));
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = with_errors_around(mesh, direct.standard_error);
   return lit;
@@ -47,8 +54,9 @@ LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostSh
 }
 
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed, int rays) {
-  const LightingOptions few{.lamp_samples = 8,
-                            .sun_samples = 8,
+  const int to_lights = std::clamp(rays, 4, 8);
+  const LightingOptions few{.lamp_samples = to_lights,
+                            .sun_samples = to_lights,
                             .mirrored_samples = std::clamp(rays / 2, 2, 8),
                             .sky_samples = 64,
                             .seed = seed};

@@ -3,6 +3,7 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/lost_share.h"
 
+#include "lighting/direct_irradiance.h"
 #include "pipeline/run.h"
 
 #include <cstdint>
@@ -15,6 +16,12 @@ struct LitProblem {
   Field direct_standard_error;  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };
 
+/// From so many patches on, noise of single ones is taken away by those around.
+inline constexpr PatchIndex many_patches = 20'000;
+
+/// How light of luminaires, sun and sky is looked for on these patches.
+LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
+
 /// `exposed_area` as problem_of() takes it. Where one band stands for all, direct light is found once. \throws
 /// Cancelled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
@@ -23,9 +30,9 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
 /// found as means over all but what other polygons lie over.
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);
 
-/// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with 8 rays to each luminaire,
-/// 8 to the sun and 64 to the sky, and over each way by mirrors half of `rays`, from 2 to 8; `seed` chooses them.
-/// \throws Cancelled.
+/// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with `rays`, from 4 to 8, to
+/// each luminaire and the sun, 64 to the sky, and over each way by mirrors half of `rays`, from 2 to 8; `seed` chooses
+/// them. \throws Cancelled.
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed, int rays);
 
 }  // namespace patchlight

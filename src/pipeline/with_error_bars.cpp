@@ -9,6 +9,7 @@
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "pipeline/light_of_lamps.h"
+#include "pipeline/lit_problem.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/unseen_differences_of.h"
 #include "transport/closure.h"
@@ -29,7 +30,6 @@ namespace {
 constexpr int rays_from_quarters = 16;
 constexpr int few_rays_from_quarters = 4;
 constexpr int fewest_rays_from_quarters = 2;
-constexpr PatchIndex many_patches = 20'000;
 constexpr PatchIndex very_many_patches = 400'000;
 
 // The same light on the parents, with the exchange areas of their patches summed up.
