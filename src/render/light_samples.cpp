@@ -18,8 +18,11 @@ namespace {
 // So many lamps or luminaires get rays each; of more, some are chosen for each point.
 constexpr std::size_t few_lights = 4;
 
-// A lamp that is chosen gets so many, each of which says how the others count.
+// A lamp that is chosen gets so many, each of which says how the other counts.
 constexpr std::uint32_t rays_of_lamp = 2;
+
+// Rays to a lamp are in two halves, by turns, whose random numbers have nothing to do with each other.
+constexpr std::uint32_t halves = 2;
 
 // Seeds of what one point asks for.
 enum Purpose : std::uint32_t { choice_of_lamp = 11, place_on_lamp, choice_of_luminaire, place_on_luminaire };
@@ -102,7 +105,9 @@ void add_lamp(Rays& to, const LampFace& lamp, std::size_t index, const LitPoint&
   to.lamps.push_back({index, to.to_lamps.size(), choice.rays, form_factor, &lamp, choice.factor});
   const QuadPoints points(lamp.corners);
   for (std::uint32_t k = 0; k < choice.rays; ++k) {
-    const auto u = pixel_sample_2d(point.sample * choice.rays + k, choice.seed);
+    const std::uint32_t half = k % halves;
+    const std::uint32_t rays_of_half = (choice.rays + halves - 1 - half) / halves;
+    const auto u = pixel_sample_2d(point.sample * rays_of_half + k / halves, hash({choice.seed, half}));
     const Point place = points.at(u[0], u[1]);
     to.kernels.push_back(kernel(lamp, point.at, place));
     to.to_lamps.push_back({point.at.point, place, point.at.polygon, lamp.polygon});
@@ -164,20 +169,27 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
 
 // E F V of a lamp, from the rays i = 1 ... n to it with kernels g_i and the shares V_i that get through:
 //
-//   E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i = sum_{j != i} V_j / (n - 1).
+//   E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i the mean V_j of the other half, of rays with g_j > 0.
 //
-// F, the form factor without shadows, is the mean of g: a control variate whose coefficient comes from the other rays
-// keeps the mean, and leaves no variance where the lamp is seen as a whole or not at all.
+// F, the form factor without shadows, is the mean of g: a control variate whose coefficient is independent of the ray
+// keeps the mean, and leaves no variance where the lamp is seen as a whole or not at all. Rays of one half are spread
+// evenly, and so depend on each other.
 double lamp_irradiance(const LampRays& rays, const Field& through, std::span<const double> kernels, Eigen::Index band) {
   const auto n = static_cast<Eigen::Index>(rays.count);
   const auto shares = through.col(band).segment(static_cast<Eigen::Index>(rays.first), n);
-  const double all = shares.sum();
-  double sum = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double g = kernels[rays.first + static_cast<std::size_t>(i)];
-    sum += g * shares[i];
-    if (n > 1) sum -= (g - rays.form_factor) / static_cast<double>(n - 1) * (all - shares[i]);
+  const auto g = kernels.subspan(rays.first, rays.count);
+  std::array<double, halves> seen{};
+  std::array<double, halves> before{};  // rays above the horizon of both
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    if (!(g[i] > 0)) continue;
+    seen[i % halves] += shares[static_cast<Eigen::Index>(i)];
+    before[i % halves] += 1;
   }
+  const auto c = [&](std::size_t half) { return before[half] > 0 ? seen[half] / before[half] : 1; };
+  const std::array<double, halves> of_other{c(1), c(0)};
+  double sum = 0;
+  for (std::size_t i = 0; i < rays.count; ++i)
+    sum += g[i] * shares[static_cast<Eigen::Index>(i)] - of_other[i % halves] * (g[i] - rays.form_factor);
   return rays.factor * rays.lamp->exitance[band] * sum / static_cast<double>(n);
 }
 
