@@ -7,6 +7,7 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
+#include "transport/ray_transport.h"
 
 #include <cstdint>
 
@@ -74,6 +75,9 @@ Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
 /// is the share of the hemisphere that faces take which are nearer than 0.6 edges and look back: 0.35 is what one face
 /// at that distance takes, and the half is measured. 0 where s is smaller. `S` as the transport has it, m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
+
+/// The same, s as rows of rays have it. O(rays).
+Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
 /// sqrt(3) of those inside a patch where the irradiance is linear.

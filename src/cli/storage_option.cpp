@@ -36,8 +36,11 @@ void add_storage_options(CLI::App& command, Request& request) {
   add(command, "--storage", "auto|tiles|rays|on-demand",
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
       "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
-      "for more than 10,000 patches or where the\nmemory is too small; always pairs where something is asked for\nthat "
-      "rays do not have: a solver, another estimator and the like",
+      "for more than 10,000 patches, where faces\nhave few patches each, for mirrors and panes, and where the\nmemory "
+      "is "
+      "too small; always pairs where something is asked for\nthat rays do not have: a solver, another estimator and "
+      "the "
+      "like",
       [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
   add_rays_option(command, request);
 }

@@ -154,15 +154,24 @@ int rays_of_quarters(const Simulation& simulation) {
   return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(more)));
 }
 
-// What may be refined: parents by what their patches do, and none by its noise, which more rays take away.
-SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen) {
+// What the size of the patches errs by rows of rays.
+struct BarsOfRays {
+  Field of_light;  // that differs inside patches and parents
+  Field in_gaps;   // that are narrower than their patches
+};
+
+// What may be refined: parents by what their patches do, and by what errs in gaps, which is their own; none by its
+// noise, which more rays take away.
+SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen,
+                        const BarsOfRays& bars) {
   const Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
   const auto relative = [&](const Field& bar) {
     return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
   };
-  result.effects = scaled_to(squares_of_parents(result.mesh, solved, simulation.error_bars->mesh, weight),
-                             summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
+  result.effects = scaled_to(squares_of_parents(result.mesh, solved, bars.of_light, weight),
+                             summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0)) +
+                   squares_of_parents(result.mesh, solved, bars.in_gaps, weight);
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   result.noise_bar = relative(simulation.ray_standard_error);
   if (simulation.direct_standard_error.size() == 0) return result;
@@ -189,12 +198,13 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
     return expanded(errors_within_parents(result.mesh, transport, needed.solved()), needed.bands);
   };
   const bool has_parents = result.mesh.parents.size() > 0;
-  const Field mesh = has_parents ? Field(unseen.error.max(within_parents())) : unseen.error;
-  simulation.error_bars = {.mesh = mesh,
+  const BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
+                        gap_errors(simulation.mesh, transport, solved)};
+  simulation.error_bars = {.mesh = (bars.of_light.square() + bars.in_gaps.square()).sqrt(),
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
-  return refines(run.plan.accuracy) ? with_effects(std::move(result), weight, unseen) : result;
+  return refines(run.plan.accuracy) ? with_effects(std::move(result), weight, unseen, bars) : result;
 }
 
 }  // namespace

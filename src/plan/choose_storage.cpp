@@ -49,12 +49,22 @@ Plan by_rays(Plan plan) {
 
 namespace {
 
-// Rays of a patch where pairs would be taken but for mirrors: they are to be about as accurate.
-constexpr int rays_for_mirrors = 256;
+// Rays of a patch where pairs would be taken for so few patches: they are to be about as accurate.
+constexpr int more_rays = 256;
 constexpr std::size_t most_patches_with_more_rays = 40000;
+
+// Where lit faces are cut more finely on the way to an accuracy, the noise of rays is to become as small as pairs err.
+bool has_coarse_sides(const StoredLight& light, const Request& request) {
+  return light.patches >= least_coarse_patches && light.patches < patches_of_coarse_sides * light.sides &&
+         !refines(request.accuracy);
+}
 
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
   if (light.is_mirrored) return "as only they follow light that mirrors and clear faces reflect";
+  if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
+    return "as " + std::to_string(light.sides) +
+           " sides of faces have few patches each: what the size of these errs is "
+           "more than rays do, and pairs would take ten times as long or more";
   const bool fits = bytes <= usable_memory(request.resources);
   return "as all pairs of " + std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
          (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken");
@@ -91,13 +101,15 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   chosen.request.assembly.storage = Storage::tiles;
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
   const bool too_many = light.patches > most_patches_in_pairs || bytes > usable_memory(request.resources);
-  const bool pays = light.is_reflected && (too_many || light.is_mirrored);
+  const bool is_coarse = has_coarse_sides(light, request);
+  const bool pays = light.is_reflected && (too_many || is_coarse || light.is_mirrored);
   const bool has_to = light.is_mirrored && !has_error_bars(request.accuracy);
   if (!(pays || has_to) || takes_pairs(request, given)) return with_cheap_bars(std::move(chosen), given, light);
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
-  if (light.is_mirrored && light.patches <= most_patches_with_more_rays)
-    chosen.request.assembly.rays = rays_for_mirrors;
+  const bool is_of_pairs = light.patches <= most_patches_in_pairs && is_coarse;
+  if (is_of_pairs || (light.is_mirrored && light.patches <= most_patches_with_more_rays))
+    chosen.request.assembly.rays = more_rays;
   chosen.note = "form factors are rows of rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
                 "; assembly.storage=tiles takes pairs";
   return chosen;

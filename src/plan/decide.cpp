@@ -171,13 +171,13 @@ Decision textures(const EffectFacts& facts) {
 std::string counted_specular(const EffectFacts& facts) {
   std::string list;
   if (facts.mirrors > 0) list = counted(facts.mirrors, "mirror");
-  if (facts.openings > 0) list += (list.empty() ? "" : " and ") + counted(facts.openings, "clear face");
+  if (facts.reflecting > 0) list += (list.empty() ? "" : " and ") + counted(facts.reflecting, "clear face");
   return list;
 }
 
 // Shadow rays between pairs of patches do not see by way of mirrors.
 Decision mirrors(const EffectFacts& facts, const Request& request) {
-  if (facts.mirrors == 0 && facts.openings == 0)
+  if (!has_reflections(facts))
     return {Effect::mirrors, false, "no face reflects light without scattering it", "rays that go on from mirrors"};
   const std::string what = counted_specular(facts);
   if (request.assembly.storage != Storage::rays)
@@ -229,7 +229,7 @@ bool is_there(Effect effect, const EffectFacts& facts) {
     case Effect::textures:
       return facts.textured > 0;
     case Effect::mirrors:
-      return facts.mirrors > 0 || facts.openings > 0;
+      return has_reflections(facts);
     default:
       return true;
   }

@@ -2,6 +2,7 @@
 
 #include "light/texture.h"
 #include "scene/solids.h"
+#include "scene/transmittance.h"
 #include "visibility/convex_hull.h"
 
 #include <algorithm>
@@ -138,10 +139,23 @@ EffectFacts with_texture_facts(EffectFacts facts, const Scene& scene, const Kept
   return facts;
 }
 
+// What reflects nothing at a slant, where it would most, reflects nothing at all.
+bool reflects(const Material& clear) {
+  constexpr double slant = 0.1;
+  const std::vector<Pane> panes = panes_of(clear);
+  return std::any_of(panes.begin(), panes.end(),
+                     [](const Pane& pane) { return specular_reflectance(pane, slant) > 0; });
+}
+
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
+  std::vector<std::uint8_t> is_reflecting;
+  for (const Material& material : scene.materials) is_reflecting.push_back(reflects(material) ? 1 : 0);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
-    facts.openings += is_opening(scene, p) && !scene.materials[scene.polygons[p].material].second_face;
+    const MaterialIndex material = scene.polygons[p].material;
+    const bool is_clear = is_opening(scene, p) && !scene.materials[material].second_face;
+    facts.openings += is_clear;
+    facts.reflecting += is_clear && is_reflecting[material] != 0;
     facts.sheets += is_sheet(scene, p);
     facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
   }

@@ -27,6 +27,7 @@ struct EffectFacts {
   std::optional<double> sun_altitude;  ///< degrees above the horizon; nothing where there is no sun
   bool sky = false;
   std::size_t openings = 0;           ///< clear faces, of a solid pane one
+  std::size_t reflecting = 0;         ///< of these, those that reflect, as nothing with the index 1 does
   bool sees_out = true;               ///< some kept side does not face the inside of a closed solid
   std::size_t sheets = 0;             ///< translucent polygons
   std::size_t mirrors = 0;            ///< polygons of which a side is a mirror
@@ -38,6 +39,9 @@ struct EffectFacts {
   std::optional<BandChoice> band_choice = {};  ///< Scene::band_choice
   std::size_t glass = 0;                       ///< materials that a file says are transparent, taken for opaque
 };
+
+/// True when some face reflects light without scattering it.
+inline bool has_reflections(const EffectFacts& facts) { return facts.mirrors > 0 || facts.reflecting > 0; }
 
 /// Looks at a scene of which these sides are kept. Pure. O(n log n) for n corners, and what on_convex_hull() takes.
 EffectFacts survey_effects(const Scene& scene, const KeptSides& kept);

@@ -159,6 +159,13 @@ std::size_t expected_patches(const Outlined& of, const Request& request) {
   return patches_wanted(patches_asked(request), of.search.least_patches(), request);
 }
 
+std::size_t number_of(const KeptSides& sides) {
+  const auto kept = [](const std::vector<std::uint8_t>& side) {
+    return static_cast<std::size_t>(std::count(side.begin(), side.end(), std::uint8_t{1}));
+  };
+  return kept(sides.front) + kept(sides.back);
+}
+
 // The largest edge for the number of patches that is asked for.
 PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& request) {
   const std::size_t least = of.search.least_patches();
@@ -233,11 +240,11 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
-  const bool mirrors = (facts.mirrors > 0 || facts.openings > 0) && !contains(asked.effects.skip, Effect::mirrors);
+  const bool mirrors = has_reflections(facts) && !contains(asked.effects.skip, Effect::mirrors);
   EdgeSearch search(scene, sides, contacts);
   const Outlined outlined{scene, sides, contacts, search};
   const auto [request, note_on_storage] =
-      choose_storage(asked, given, {expected_patches(outlined, asked), reflects, mirrors});
+      choose_storage(asked, given, {expected_patches(outlined, asked), number_of(sides), reflects, mirrors});
   PatchSize size = patch_size(outlined, request);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);

@@ -4,12 +4,16 @@
 #include "base/sampling.h"
 #include "render/lightmap_neighbours.h"
 #include "render/lightmap_padding.h"
+#include "render/pixel_samples.h"
+#include "visibility/occluder.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -106,6 +110,7 @@ class Bake {
  private:
   std::vector<BakePlace> places_of(const BakeBlock& block) const;
   std::vector<PatchIndex> patches_at_parts(const BakeBlock& block) const;
+  bool is_buried(const BakePlace& place, std::uint32_t seed) const;
   Point place_on(const LightmapChart& chart, int x, int y, std::size_t part) const;
   Field direct_at(const BakeBlock& block, const std::vector<BakePlace>& places) const;
   void bake_block(const BakeBlock& block);
@@ -170,7 +175,27 @@ std::vector<PatchIndex> Bake::patches_at_parts(const BakeBlock& block) const {
   return at;
 }
 
-// In the order of texels and parts.
+// Whether a place is inside of a solid that stands on its face, as a wall on a floor that runs on under it: of all rays
+// from there three in four or more meet sides without patches, the others perhaps faces that run on under it as well.
+// The first three tell of most places that they are not.
+bool Bake::is_buried(const BakePlace& place, std::uint32_t seed) const {
+  constexpr std::uint32_t rays_of_place = 8;
+  constexpr std::uint32_t most_at_patches = 2;
+  std::uint32_t at_patches = 0;
+  const auto& [point, patch] = place.at;
+  const auto upright = Eigen::Quaterniond::FromTwoVectors(Vector::UnitZ(), solved_.mesh.normal[patch]);
+  for (std::uint32_t k = 0; k < rays_of_place; ++k) {
+    const auto u = pixel_sample_2d(k, seed);
+    const Ray ray{point, upright * square_to_cosine_hemisphere(u[0], u[1]), solved_.mesh.polygon[patch]};
+    const std::optional<Hit> hit = solved_.occluder.first_hits({&ray, 1})[0];
+    if (!hit) return false;
+    const PatchRange there = solved_.mesh.patches_on(hit->polygon, hit->side);
+    if (there.begin != there.end && ++at_patches > most_at_patches) return false;
+  }
+  return true;
+}
+
+// In the order of texels and parts, without those that are buried.
 std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
   const LightmapChart& chart = map_.charts[block.chart];
   const std::vector<PatchIndex> at = patches_at_parts(block);
@@ -195,6 +220,9 @@ std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
     has_place[texel] = 1;
     places.push_back({texel, 0, {solved_.mesh.centroid[patch], patch}});
   }
+  std::erase_if(places, [&](const BakePlace& place) {
+    return is_buried(place, hash({key_of(texel_of(block, place.texel)), 3, place.part}));
+  });
   std::stable_sort(places.begin(), places.end(),
                    [](const BakePlace& a, const BakePlace& b) { return a.texel < b.texel; });
   return places;

@@ -158,6 +158,24 @@ TEST(Lightmap, LeaksNothingUnderAWallOnASeam) {
   EXPECT_EQ(interpolated(map, dark, point), 0);
 }
 
+// Under a solid wall in the middle of a chart it is dark, and none of that is interpolated into what shows beside it.
+TEST(Lightmap, IsNotDarkBesideAWallInTheMiddleOfAChart) {
+  const Scene scene = with_box(furnished_room(0.5), Point(1.98, 0.4, 0), Point(2.17, 2.6, 1.2), false);
+  Request request;
+  request.mesh.max_edge = 0.25;
+  request.mesh.contact_lines = false;
+  const Simulation simulation = simulate(scene, request);
+  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.05});
+  const LightmapChart floor = chart_on_floor(map, simulation.mesh, 0);
+  for (const double y : {0.8, 1.2, 1.8, 2.2}) {
+    for (const auto& [foot, away] : {std::pair{1.98, 1.88}, std::pair{2.17, 2.27}}) {
+      const double beside = interpolated(map, floor, Point(away, y, 0));
+      EXPECT_GT(beside, 0);
+      EXPECT_GT(interpolated(map, floor, Point(foot, y, 0)), 0.75 * beside) << foot << ", " << y;
+    }
+  }
+}
+
 TEST(Lightmap, HasTheSameBitsForAnyNumberOfThreads) {
   const Scene scene = furnished_room(0.5);
   const Simulation simulation = solved_with_edge(scene, 0.5);

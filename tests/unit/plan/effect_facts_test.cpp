@@ -82,6 +82,20 @@ TEST(SurveyEffects, DaylightNeedsAnOpeningOrASideThatSeesOut) {
   EXPECT_EQ(facts_of(scene, Sides::front).openings, 0U) << "counted with the first face of its pane";
 }
 
+// By Fresnel's equations what has the index of air reflects nothing, at no angle.
+TEST(SurveyEffects, NothingReflectsWithTheIndexOfAir) {
+  Scene scene = coloured_room(rgb(0.5, 0.5, 0.5), rgb(10, 8, 5));
+  Material net = scene.materials[0];
+  net.transmittance = rgb(0.4, 0.4, 0.4);
+  scene.materials.push_back(net);
+  scene.polygons[1].material = 2;
+  EXPECT_EQ(facts_of(scene, Sides::front).reflecting, 1U);
+  EXPECT_TRUE(has_reflections(facts_of(scene, Sides::front)));
+  scene.materials[2].index = 1;
+  EXPECT_EQ(facts_of(scene, Sides::front).openings, 1U);
+  EXPECT_FALSE(has_reflections(facts_of(scene, Sides::front)));
+}
+
 TEST(SurveyEffects, CountsMaterialsThatAreNotSimulated) {
   Scene scene = cube_room(0.5, 1);
   scene.unsimulated = {

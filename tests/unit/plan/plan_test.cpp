@@ -4,6 +4,7 @@
 
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "plan/choose_storage.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -89,6 +90,21 @@ TEST(MakePlan, RefusesToSkipAllLight) {
   EXPECT_THROW(make_plan(scene, request), InputError);
 }
 
+// Of two scenes with as many patches the one with more faces has larger errors of their size, which rays do not exceed.
+TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
+  const auto chosen = [](std::size_t patches, std::size_t sides, const Request& request = {}) {
+    return choose_storage(request, {}, {.patches = patches, .sides = sides}).request.assembly;
+  };
+  EXPECT_EQ(chosen(2000, 62).storage, Storage::tiles);
+  EXPECT_EQ(chosen(2000, 63).storage, Storage::rays);
+  EXPECT_EQ(chosen(2000, 63).rays, 256) << "about as accurate as pairs";
+  EXPECT_EQ(chosen(999, 500).storage, Storage::tiles) << "takes no time";
+  EXPECT_EQ(chosen(20000, 63).rays, AssemblyOptions().rays);
+  Request refined;
+  refined.accuracy.relative_error = 0.01;
+  EXPECT_EQ(chosen(2000, 63, refined).storage, Storage::tiles) << "faces get more patches where it matters";
+}
+
 // Many patches are not solved by pairs, unless something that is asked for takes these; what is asked for stays.
 TEST(MakePlan, TakesRaysForManyPatches) {
   const Scene scene = furnished_room(0.5);
@@ -171,7 +187,8 @@ TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
   request.mesh.patches = 500;
   request.mesh.sides = Sides::front;
   const Plan plan = make_plan(scene, request);
-  EXPECT_EQ(plan.notes.size(), 1U);
+  EXPECT_EQ(plan.assembly.storage, Storage::rays) << "most faces have one patch";
+  EXPECT_EQ(plan.notes.size(), 2U);
   const PatchMesh mesh = tessellate(scene, plan.sides, plan.max_edge, plan.contacts);
   EXPECT_GT(mesh.patches_on(0, Side::front).end - mesh.patches_on(0, Side::front).begin, 30U);
   EXPECT_NEAR(static_cast<double>(mesh.size()), 2006 * 1.25, 250);
