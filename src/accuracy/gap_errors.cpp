@@ -24,7 +24,7 @@ constexpr double opposed = -0.5;
 bool is_near(const PatchMesh& mesh, PatchIndex i, PatchIndex j) {
   if (mesh.normal[i].dot(mesh.normal[j]) > opposed) return false;
   const double distance = (mesh.centroid[i] - mesh.centroid[j]).dot(mesh.normal[j]);
-  return distance < near * std::sqrt(mesh.area[i]);
+  return distance >= 0 && distance < near * std::sqrt(mesh.area[i]);
 }
 
 // The share of the hemisphere of patch i in which there are near faces that look back.

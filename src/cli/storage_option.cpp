@@ -18,7 +18,7 @@ Storage storage_named(const std::string& text) {
 void add_rays_option(CLI::App& command, Request& request) {
   add(command, "--rays", "N",
       "with --storage rays, which it implies: rays of a patch in the mean;\nfour times as many halve their error; "
-      "default 64; 256 where the plan takes rays for mirrors",
+      "default 64; 256 where the plan takes rays for mirrors,\npanes or faces with few patches",
       [&request](const std::string& text) {
         request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
         if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
@@ -35,12 +35,10 @@ void add_storage_options(CLI::App& command, Request& request) {
       "picture early; by\nprogressive refinement; default: all are computed and kept");
   add(command, "--storage", "auto|tiles|rays|on-demand",
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
-      "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs, and rays "
-      "for more than 10,000 patches, where faces\nhave few patches each, for mirrors and panes, and where the\nmemory "
-      "is "
-      "too small; always pairs where something is asked for\nthat rays do not have: a solver, another estimator and "
-      "the "
-      "like",
+      "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs; rays for "
+      "more than 10,000 patches, from 1,000 where\nfaces have few each, for mirrors and panes, and where the memory\n"
+      "is too small; always pairs where something is asked for that\nrays do not have: a solver, another estimator and "
+      "the like",
       [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
   add_rays_option(command, request);
 }

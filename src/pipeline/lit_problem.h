@@ -16,7 +16,7 @@ struct LitProblem {
   Field direct_standard_error;  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
 };
 
-/// From so many patches on, noise of single ones is taken away by those around.
+/// Above so many patches fewer rays are taken of each: those around take the noise away.
 inline constexpr PatchIndex many_patches = 20'000;
 
 /// How light of luminaires, sun and sky is looked for on these patches.

@@ -49,22 +49,23 @@ Plan by_rays(Plan plan) {
 
 namespace {
 
-// Rays of a patch where pairs would be taken for so few patches: they are to be about as accurate.
-constexpr int more_rays = 256;
+// Rays of a patch where pairs would be taken otherwise: about as accurate.
+constexpr int rays_replacing_pairs = 256;
 constexpr std::size_t most_patches_with_more_rays = 40000;
 
-// Where lit faces are cut more finely on the way to an accuracy, the noise of rays is to become as small as pairs err.
+// Not on the way to an accuracy: there faces are cut where it matters, and the noise of rays would limit.
 bool has_coarse_sides(const StoredLight& light, const Request& request) {
   return light.patches >= least_coarse_patches && light.patches < patches_of_coarse_sides * light.sides &&
          !refines(request.accuracy);
 }
 
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
-  if (light.is_mirrored) return "as only they follow light that mirrors and clear faces reflect";
+  if (light.is_mirrored)
+    return "as only they follow light that mirrors and clear faces reflect, and tell its colours apart";
   if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
     return "as " + std::to_string(light.sides) +
-           " sides of faces have few patches each: what the size of these errs is "
-           "more than rays do, and pairs would take ten times as long or more";
+           " sides of faces have few patches each: the size of these errs more than rays do, and pairs would take much "
+           "longer";
   const bool fits = bytes <= usable_memory(request.resources);
   return "as all pairs of " + std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
          (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken");
@@ -107,9 +108,9 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   if (!(pays || has_to) || takes_pairs(request, given)) return with_cheap_bars(std::move(chosen), given, light);
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
-  const bool is_of_pairs = light.patches <= most_patches_in_pairs && is_coarse;
-  if (is_of_pairs || (light.is_mirrored && light.patches <= most_patches_with_more_rays))
-    chosen.request.assembly.rays = more_rays;
+  const bool replaces_pairs = light.patches <= most_patches_in_pairs && is_coarse;
+  if (replaces_pairs || (light.is_mirrored && light.patches <= most_patches_with_more_rays))
+    chosen.request.assembly.rays = rays_replacing_pairs;
   chosen.note = "form factors are rows of rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
                 "; assembly.storage=tiles takes pairs";
   return chosen;

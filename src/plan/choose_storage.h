@@ -13,7 +13,7 @@ inline constexpr std::size_t most_patches_in_pairs = 10000;
 
 /// From so many patches on rows of rays are taken where the sides of the polygons have but few patches each, fewer than
 /// patches_of_coarse_sides in the mean: what the size of patches errs is then larger than the noise of rays, which take
-/// a tenth to a fortieth of the time of pairs, docs/theory.md section 12.
+/// much less time than pairs, docs/theory.md section 12.
 inline constexpr std::size_t least_coarse_patches = 1000;
 inline constexpr std::size_t patches_of_coarse_sides = 32;
 
@@ -37,7 +37,7 @@ struct ChosenStorage {
 /// What there is to be stored.
 struct StoredLight {
   std::size_t patches = 0;
-  std::size_t sides = 0;     ///< of polygons, that have them
+  std::size_t sides = 0;     ///< kept sides of polygons, which have the patches
   bool is_reflected = true;  ///< between them, more than once
   bool is_mirrored = false;  ///< also without being scattered, which is to be followed
 };
@@ -46,8 +46,8 @@ struct StoredLight {
 /// have few patches that are not refined, and where all pairs do not fit into the memory, unless something that is
 /// asked for takes_pairs() or no light is reflected in either way. Another storage stays, but rays where error bars are
 /// wanted of light that is not reflected: that takes tiles. Rows of rays have error bars where light is reflected, and
-/// with these nested meshes. Small meshes that have rays because of mirrors get more of them. Pairs have error bars
-/// where AccuracyOptions::cheap_error_bars wants them.
+/// with these nested meshes. Small meshes that have rays because of mirrors or of few patches a side get more of them.
+/// Pairs have error bars where AccuracyOptions::cheap_error_bars wants them.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

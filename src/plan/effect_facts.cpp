@@ -139,23 +139,21 @@ EffectFacts with_texture_facts(EffectFacts facts, const Scene& scene, const Kept
   return facts;
 }
 
-// What reflects nothing at a slant, where it would most, reflects nothing at all.
+// What reflects nothing at a narrow angle, where it would most, reflects nothing at all.
 bool reflects(const Material& clear) {
-  constexpr double slant = 0.1;
+  constexpr double grazing_cosine = 0.1;
   const std::vector<Pane> panes = panes_of(clear);
   return std::any_of(panes.begin(), panes.end(),
-                     [](const Pane& pane) { return specular_reflectance(pane, slant) > 0; });
+                     [](const Pane& pane) { return specular_reflectance(pane, grazing_cosine) > 0; });
 }
 
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
-  std::vector<std::uint8_t> is_reflecting;
-  for (const Material& material : scene.materials) is_reflecting.push_back(reflects(material) ? 1 : 0);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     facts.lamps += (kept.front[p] && emits(scene, p, Side::front)) || (kept.back[p] && emits(scene, p, Side::back));
     const MaterialIndex material = scene.polygons[p].material;
     const bool is_clear = is_opening(scene, p) && !scene.materials[material].second_face;
     facts.openings += is_clear;
-    facts.reflecting += is_clear && is_reflecting[material] != 0;
+    facts.reflecting += is_clear && is_reflecting_pane(scene, p);
     facts.sheets += is_sheet(scene, p);
     facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
   }
@@ -170,6 +168,12 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
 }
 
 }  // namespace
+
+bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon) {
+  const Polygon& face = scene.polygons[polygon];
+  return is_opening(scene, polygon) && (reflects(scene.materials[material_on(face, Side::front)]) ||
+                                        reflects(scene.materials[material_on(face, Side::back)]));
+}
 
 EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   EffectFacts facts;

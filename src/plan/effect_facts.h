@@ -40,6 +40,9 @@ struct EffectFacts {
   std::size_t glass = 0;                       ///< materials that a file says are transparent, taken for opaque
 };
 
+/// True for a clear face that reflects light: its index is not 1.
+bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon);
+
 /// True when some face reflects light without scattering it.
 inline bool has_reflections(const EffectFacts& facts) { return facts.mirrors > 0 || facts.reflecting > 0; }
 

@@ -72,7 +72,7 @@ std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
 std::vector<std::string> notes_on_pairs(const Scene& scene, const Request& request) {
   if (!keeps_entries(request.assembly.storage)) return {};
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_opening(scene, p) || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back))
+    if (is_reflecting_pane(scene, p) || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back))
       return {
           "form factors of pairs do not see what clear faces and mirrors reflect: that light is missing; "
           "assembly.storage=rays follows it, as a solve does by itself"};
@@ -159,7 +159,7 @@ std::size_t expected_patches(const Outlined& of, const Request& request) {
   return patches_wanted(patches_asked(request), of.search.least_patches(), request);
 }
 
-std::size_t number_of(const KeptSides& sides) {
+std::size_t kept_side_count(const KeptSides& sides) {
   const auto kept = [](const std::vector<std::uint8_t>& side) {
     return static_cast<std::size_t>(std::count(side.begin(), side.end(), std::uint8_t{1}));
   };
@@ -240,11 +240,13 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
-  const bool mirrors = has_reflections(facts) && !contains(asked.effects.skip, Effect::mirrors);
+  // Pairs let the same share of all bands through what is clear.
+  const bool mirrors =
+      (has_reflections(facts) || facts.coloured_specular > 0) && !contains(asked.effects.skip, Effect::mirrors);
   EdgeSearch search(scene, sides, contacts);
   const Outlined outlined{scene, sides, contacts, search};
   const auto [request, note_on_storage] =
-      choose_storage(asked, given, {expected_patches(outlined, asked), number_of(sides), reflects, mirrors});
+      choose_storage(asked, given, {expected_patches(outlined, asked), kept_side_count(sides), reflects, mirrors});
   PatchSize size = patch_size(outlined, request);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);

@@ -169,11 +169,11 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
 
 // E F V of a lamp, from the rays i = 1 ... n to it with kernels g_i and the shares V_i that get through:
 //
-//   E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i the mean V_j of the other half, of rays with g_j > 0.
+//   E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i the mean V_j of the other half, of rays with g_j > 0; 1 if none.
 //
 // F, the form factor without shadows, is the mean of g: a control variate whose coefficient is independent of the ray
-// keeps the mean, and leaves no variance where the lamp is seen as a whole or not at all. Rays of one half are spread
-// evenly, and so depend on each other.
+// keeps the mean, and leaves no variance where the lamp is seen as a whole, or not at all and each half has a ray above
+// the horizon. Rays of one half are spread evenly, and so depend on each other.
 double lamp_irradiance(const LampRays& rays, const Field& through, std::span<const double> kernels, Eigen::Index band) {
   const auto n = static_cast<Eigen::Index>(rays.count);
   const auto shares = through.col(band).segment(static_cast<Eigen::Index>(rays.first), n);

@@ -110,6 +110,7 @@ class Bake {
  private:
   std::vector<BakePlace> places_of(const BakeBlock& block) const;
   std::vector<PatchIndex> patches_at_parts(const BakeBlock& block) const;
+  bool sees_backs(const BakePlace& place, std::span<const Vector> directions) const;
   bool is_buried(const BakePlace& place, std::uint32_t seed) const;
   Point place_on(const LightmapChart& chart, int x, int y, std::size_t part) const;
   Field direct_at(const BakeBlock& block, const std::vector<BakePlace>& places) const;
@@ -175,24 +176,40 @@ std::vector<PatchIndex> Bake::patches_at_parts(const BakeBlock& block) const {
   return at;
 }
 
-// Whether a place is inside of a solid that stands on its face, as a wall on a floor that runs on under it: of all rays
-// from there three in four or more meet sides without patches, the others perhaps faces that run on under it as well.
-// The first three tell of most places that they are not.
-bool Bake::is_buried(const BakePlace& place, std::uint32_t seed) const {
-  constexpr std::uint32_t rays_of_place = 8;
-  constexpr std::uint32_t most_at_patches = 2;
-  std::uint32_t at_patches = 0;
-  const auto& [point, patch] = place.at;
-  const auto upright = Eigen::Quaterniond::FromTwoVectors(Vector::UnitZ(), solved_.mesh.normal[patch]);
-  for (std::uint32_t k = 0; k < rays_of_place; ++k) {
-    const auto u = pixel_sample_2d(k, seed);
-    const Ray ray{point, upright * square_to_cosine_hemisphere(u[0], u[1]), solved_.mesh.polygon[patch]};
+// Whether three rays in four or more from a place, of so many, meet sides without patches.
+bool Bake::sees_backs(const BakePlace& place, std::span<const Vector> directions) const {
+  const std::size_t most_at_patches = directions.size() / 4;
+  std::size_t at_patches = 0;
+  for (const Vector& direction : directions) {
+    const Ray ray{place.at.point, direction, solved_.mesh.polygon[place.at.patch]};
     const std::optional<Hit> hit = solved_.occluder.first_hits({&ray, 1})[0];
     if (!hit) return false;
     const PatchRange there = solved_.mesh.patches_on(hit->polygon, hit->side);
     if (there.begin != there.end && ++at_patches > most_at_patches) return false;
   }
   return true;
+}
+
+// Whether a place is inside of a solid that stands on its face, as a wall on a floor that runs on under it: nearly all
+// rays from there meet its inner sides, the others perhaps faces that run on under it as well. Under a face that hangs
+// close over the place those around the horizon get out.
+bool Bake::is_buried(const BakePlace& place, std::uint32_t seed) const {
+  constexpr std::uint32_t rays_of_place = 8;
+  constexpr double grazing_slope = 1e-3;
+  const Vector& normal = solved_.mesh.normal[place.at.patch];
+  std::vector<Vector> directions;
+  for (std::uint32_t k = 0; k < rays_of_place; ++k) {
+    const auto u = pixel_sample_2d(k, seed);
+    directions.push_back(cosine_direction(normal, u[0], u[1]));
+  }
+  if (!sees_backs(place, directions)) return false;
+  const Vector right = normal.unitOrthogonal();
+  for (std::uint32_t k = 0; k < rays_of_place; ++k) {
+    const double azimuth = 2 * std::numbers::pi * k / rays_of_place;
+    directions[k] =
+        (std::cos(azimuth) * right + std::sin(azimuth) * normal.cross(right) + grazing_slope * normal).normalized();
+  }
+  return sees_backs(place, directions);
 }
 
 // In the order of texels and parts, without those that are buried.

@@ -45,13 +45,13 @@ struct LightmapChart {
 using TexelField = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The light on surfaces at texels, means over what of each is a surface. Texels from the upper left corner, row by
-/// row. Around charts, and where a chart has no surface, texels go on what is beside them.
+/// row. Around charts, and where one has no surface or one in a solid, texels go on what is beside.
 struct Lightmap {
   int width = 0;
   int height = 0;
   double texel = 0;  ///< longest edge, metres; those of charts may be shorter
   std::vector<LightmapChart> charts;
-  std::vector<PatchIndex> patch;  ///< one that lies on the texel; no_patch where none does
+  std::vector<PatchIndex> patch;  ///< one that lies on the texel; no_patch where none is to be seen
   TexelField direct;              ///< irradiance straight from lamps that are bright, luminaires, sun and sky, W/m^2
   TexelField indirect;            ///< irradiance by all other light
   TexelField radiance;            ///< that leaves the surface, W/(m^2 sr)

@@ -28,7 +28,7 @@ const char* name_of(Estimator estimator);
 
 /// How the exchange areas of all pairs of patches are kept.
 enum class Storage {
-  automatic,  ///< tiles, and rays where make_plan() finds that these take too much
+  automatic,  ///< tiles, or rays where make_plan() prefers them, docs/theory.md section 12
   tiles,      ///< each pair once, as floats: time and memory in proportion to the square of the patches
   rays,  ///< not as pairs: sparse rows of the patches that some rays from each meet. Time and memory in proportion to
          ///< the patches, and an error that more rays make smaller

@@ -99,7 +99,7 @@ TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
   EXPECT_EQ(chosen(2000, 63).storage, Storage::rays);
   EXPECT_EQ(chosen(2000, 63).rays, 256) << "about as accurate as pairs";
   EXPECT_EQ(chosen(999, 500).storage, Storage::tiles) << "takes no time";
-  EXPECT_EQ(chosen(20000, 63).rays, AssemblyOptions().rays);
+  EXPECT_EQ(chosen(20000, 1000).rays, AssemblyOptions().rays) << "more than pairs are taken for";
   Request refined;
   refined.accuracy.relative_error = 0.01;
   EXPECT_EQ(chosen(2000, 63, refined).storage, Storage::tiles) << "faces get more patches where it matters";

@@ -5,7 +5,9 @@
 #include "form_factor/point_polygon.h"
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <utility>
 #include <vector>
