@@ -232,7 +232,7 @@ std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
     const int x = std::clamp(static_cast<int>(std::floor(middle.x())), 0, chart.width - 1) - block.left;
     const int y = std::clamp(static_cast<int>(std::floor(middle.y())), 0, chart.height - 1) - block.top;
     if (std::min(x, y) < 0 || std::max(x, y) >= bake_block_edge) continue;
-    const auto texel = static_cast<std::size_t>(y * bake_block_edge + x);
+    const auto texel = static_cast<std::size_t>(y) * bake_block_edge + static_cast<std::size_t>(x);
     if (has_place[texel]) continue;
     has_place[texel] = 1;
     places.push_back({texel, 0, {solved_.mesh.centroid[patch], patch}});
