@@ -167,6 +167,9 @@ std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const 
 
 BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
                                  std::span<const std::uint8_t> kept) {
+  BoundaryVertices result{.points = {}, .of_polygon = std::vector<std::vector<std::uint32_t>>(outlines.size())};
+  if (std::none_of(kept.begin(), kept.end(), [](std::uint8_t one) { return one != 0; })) return result;
+
   // 1. Which edges and corners are shared.
   const OutlineCorners corners = count_corners(outlines);
   const std::vector<std::uint32_t> place = weld(outlines);
@@ -176,7 +179,6 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
   const std::vector<std::uint32_t> shared = unite(corners, neighbour);
 
   // 2. The first polygon at a corner or an edge makes the vertices; the others use them, on an edge in reverse order.
-  BoundaryVertices result{.points = {}, .of_polygon = std::vector<std::vector<std::uint32_t>>(outlines.size())};
   std::vector<std::uint32_t> corner_vertex(place.size(), none);
   std::vector<std::uint32_t> edge_vertex(place.size(), none);
   const auto size = [&] { return static_cast<std::uint32_t>(result.points.size()); };

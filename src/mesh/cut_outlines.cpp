@@ -341,11 +341,11 @@ double followed_detail(const ContactLines& contacts, double max_edge) {
 
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      double max_edge) {
-  return cut_again({}, scene, loose, contacts, max_edge);
+  return cut_again({}, scene, loose, contacts, max_edge, false);
 }
 
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
-                                  const ContactLines& contacts, double max_edge) {
+                                  const ContactLines& contacts, double max_edge, bool same_detail) {
   const bool any = !contacts.on.empty();
   const double grid = any ? grid_of_extent * extent_of(scene) : 0;
   const double detail = any ? followed_detail(contacts, max_edge) : 0;
@@ -353,19 +353,28 @@ std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene&
   const bool all = polygons.empty();
   polygons.resize(scene.polygons.size());
   parallel_for(polygons.size(), [&](std::size_t p) {
-    if (!all && (loose.empty() || loose[p].empty())) return;
+    const std::vector<ContactLine>& lines = any ? contacts.on[p] : none;
+    const bool is_loose = !loose.empty() && !loose[p].empty();
+    if (!all && !is_loose && (same_detail || lines.empty())) return;
     const auto polygon = static_cast<PolygonIndex>(p);
-    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon),
-                              any ? contacts.on[p] : none, detail, grid);
+    polygons[p] =
+        cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon), lines, detail, grid);
   });
   return polygons;
 }
 
-std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge) {
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge,
+                                  std::span<const std::uint8_t> is_needed) {
   const MarksByEdge marks = marks_by_edge(polygons);
   std::vector<Outline> outlines(polygons.size());
-  parallel_for(polygons.size(), [&](std::size_t p) { outlines[p] = outline_with_marks(polygons[p], marks, max_edge); });
+  parallel_for(polygons.size(), [&](std::size_t p) {
+    if (is_needed[p]) outlines[p] = outline_with_marks(polygons[p], marks, max_edge);
+  });
   return outlines;
+}
+
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge) {
+  return cut_outlines(polygons, max_edge, std::vector<std::uint8_t>(polygons.size(), 1));
 }
 
 }  // namespace patchlight

@@ -7,7 +7,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -46,13 +48,15 @@ double followed_detail(const ContactLines& contacts, double max_edge);
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      double max_edge);
 
-/// What cut_polygons() gives, from what it gave for an edge with the same followed_detail(): those without loose
-/// corners stay as they are.
+/// What cut_polygons() gives, from what it gave for another edge: those without loose corners stay as they are, and
+/// where that edge had the same followed_detail() those with lines as well.
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
-                                  const ContactLines& contacts, double max_edge);
+                                  const ContactLines& contacts, double max_edge, bool same_detail);
 
 /// Their outlines. Where a line ends on an outline there is a corner, also of a neighbour in about the same plane that
-/// shares the edge.
+/// shares the edge. Those that are not needed stay empty.
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge,
+                                  std::span<const std::uint8_t> is_needed);
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge);
 
 }  // namespace patchlight

@@ -3,11 +3,14 @@
 #include "base/parallel.h"
 #include "mesh/cut_outlines.h"
 #include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "mesh/polygon_mesh.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -25,23 +28,64 @@ double diameter(const std::vector<Point>& points) {
   return box.diagonal().norm();
 }
 
-// Polygons with the lines that patches of about one size follow.
-struct FollowedLines {
-  std::vector<CutPolygon> polygons;
-  std::vector<std::optional<std::size_t>> whole;  // patches of a polygon that is far smaller than the longest edge
-};
+// Numbers of patches by the longest edge, as far as they are known.
+using Numbers = std::map<double, double>;
+
+using NumberWith = std::function<double(double)>;  // by the longest edge
 
 // Edges between which that for some number of patches lies, metres.
 struct Bracket {
   double too_long;
-  double too_short;  // 0 when none is known
-  double best;       // that is known
-  double guess;
+  double few;            // patches
+  double too_short = 0;  // 0 when none is known
+  double many = 0;
 };
+
+// What numbers that are known tell of the edge for another one, which is more than that of the longest.
+Bracket bracket_of(const Numbers& numbers, double wanted) {
+  const auto too_long =
+      std::find_if(numbers.begin(), numbers.end(), [wanted](const auto& entry) { return entry.second < wanted; });
+  assert(too_long != numbers.end());
+  Bracket bracket{too_long->first, too_long->second};
+  if (too_long == numbers.begin()) return bracket;
+  bracket.too_short = std::prev(too_long)->first;
+  bracket.many = std::prev(too_long)->second;
+  return bracket;
+}
+
+// The number above the least goes about as edge^-2, and is as if linear in that between two that are known.
+double guess_in(const Bracket& bracket, double wanted, double least, double first) {
+  if (bracket.too_short > 0) {
+    const double a = 1 / (bracket.too_long * bracket.too_long);
+    const double b = 1 / (bracket.too_short * bracket.too_short);
+    return 1 / std::sqrt(a + (b - a) * (wanted - bracket.few) / (bracket.many - bracket.few));
+  }
+  if (first < bracket.too_long) return first;
+  if (bracket.few <= least) return 0.5 * bracket.too_long;
+  return bracket.too_long * std::sqrt((bracket.few - least) / (wanted - least));
+}
+
+double middle_of(const Bracket& bracket) {
+  return bracket.too_short > 0 ? std::sqrt(bracket.too_short * bracket.too_long) : 0.5 * bracket.too_long;
+}
+
+double possible(std::size_t patches) {
+  const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
+  if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
+  return wanted;
+}
+
+// The edge in `numbers` with the number that is nearest.
+double nearest_in(const Numbers& numbers, double wanted) {
+  const auto nearer = [wanted](const auto& a, const auto& b) {
+    return std::abs(a.second - wanted) < std::abs(b.second - wanted);
+  };
+  return std::min_element(numbers.begin(), numbers.end(), nearer)->first;
+}
 
 }  // namespace
 
-// The number of patches by the longest edge. What is the same for many edges is found once.
+// What is known of the polygons for one edge, and of the number of their patches for several.
 class EdgeSearch::PatchNumber {
  public:
   PatchNumber(const Scene& scene, const KeptSides& sides, const ContactLines& contacts)
@@ -49,9 +93,8 @@ class EdgeSearch::PatchNumber {
         sides_(sides),
         contacts_(contacts),
         loose_(find_loose_corners(scene)),
+        whole_(scene.polygons.size()),
         longest_(diameter(scene)) {}
-
-  double longest() const { return longest_; }
 
   double with_edge(double edge) {
     const auto [known, is_new] = numbers_.try_emplace(edge, 0.0);
@@ -59,55 +102,119 @@ class EdgeSearch::PatchNumber {
     return known->second;
   }
 
-  // What numbers that are known tell of the edge for another one, which is more than that of the longest.
-  Bracket bracket(double wanted) const {
-    const auto too_long =
-        std::find_if(numbers_.begin(), numbers_.end(), [wanted](const auto& entry) { return entry.second < wanted; });
-    assert(too_long != numbers_.end());
-    const auto [long_edge, few] = *too_long;
-    if (too_long == numbers_.begin()) {
-      //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
-      const double first = std::min(0.5 * longest_, 4 * std::sqrt(kept_area(scene_, sides_) / wanted));
-      const double next = long_edge < longest_ ? long_edge * std::sqrt(few / wanted) : first;
-      return {long_edge, 0, long_edge, next};
-    }
-    const auto [short_edge, many] = *std::prev(too_long);
-    const double best = wanted - few < many - wanted ? long_edge : short_edge;
-    return {long_edge, short_edge, best, std::sqrt(long_edge * short_edge)};
+  // Of parents with this edge the parts.
+  double nested_with_edge(double edge) {
+    const auto [known, is_new] = nested_numbers_.try_emplace(edge, 0.0);
+    if (is_new) known->second = counted_nested(edge);
+    return known->second;
   }
 
+  double edge_for(double wanted, double close_enough) {
+    return found(
+        numbers_, [this](double edge) { return with_edge(edge); }, wanted, close_enough);
+  }
+
+  double nested_edge_for(double wanted, double close_enough) {
+    return found(
+        nested_numbers_, [this](double edge) { return nested_with_edge(edge); }, wanted, close_enough);
+  }
+
+  double least() { return with_edge(longest_); }
+
  private:
+  double found(const Numbers& numbers, const NumberWith& number_with, double wanted, double close_enough) const {
+    constexpr int most_guesses = 100;
+    // 1. No number below that of the uncut scene.
+    const double least = number_with(longest_);
+    if (least >= wanted) return longest_;
+    //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
+    const double first = std::min(0.5 * longest_, 4 * std::sqrt(kept_area(scene_, sides_) / wanted));
+
+    // 2. Keep the edge between one that gives too few patches and one that gives too many. Where the number changes in
+    //    steps, so that one end stays where it is, halve the interval.
+    const double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
+    double best = nearest_in(numbers, wanted);
+    int same_end = 0;
+    for (int guess = 0; guess < most_guesses && std::abs(numbers.at(best) - wanted) > close_enough * wanted; ++guess) {
+      const Bracket bracket = bracket_of(numbers, wanted);
+      if (bracket.too_long <= same_edge * bracket.too_short) break;
+      const double likely = guess_in(bracket, wanted, least, first);
+      const bool inside = likely > bracket.too_short && likely < bracket.too_long && std::abs(same_end) < 2;
+      const bool is_few = number_with(inside ? likely : middle_of(bracket)) < wanted;
+      same_end = is_few ? std::max(same_end, 0) + 1 : std::min(same_end, 0) - 1;
+      if (!inside) same_end = 0;
+      best = nearest_in(numbers, wanted);
+    }
+    return best;
+  }
+
   double counted(double edge) {
-    FollowedLines& known = followed_[contacts_.on.empty() ? 0 : followed_detail(contacts_, edge)];
-    known.polygons = cut_again(std::move(known.polygons), scene_, loose_, contacts_, edge);
-    known.whole.resize(known.polygons.size());
-    const std::vector<Outline> outlines = cut_outlines(known.polygons, edge);
-    std::vector<std::size_t> counts(outlines.size(), 0);
+    std::vector<std::size_t> counts(scene_.polygons.size(), 0);
+    const std::vector<Outline> outlines = outlines_for(edge);
     parallel_for(counts.size(), [&](std::size_t p) {
-      const std::size_t kept = sides_.front[p] + sides_.back[p];
-      if (kept > 0) counts[p] = kept * number_on(outlines[p], edge, is_loose(p), known.whole[p]);
+      if (kept(p) == 0) return;
+      counts[p] = kept(p) * (whole_[p] ? whole_[p]->size() : count_patches(outlines[p], edge));
     });
     return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
   }
 
-  bool is_loose(std::size_t polygon) const { return !loose_.empty() && !loose_[polygon].empty(); }
-
-  // Beyond twice its size neither lattice nor outline of a polygon depend on the longest edge (lattice_spacing() in
-  // refine_polygon.cpp): then its number is remembered.
-  static std::size_t number_on(const Outline& outline, double edge, bool is_loose, std::optional<std::size_t>& whole) {
-    constexpr double far_smaller = 2;
-    if (is_loose || edge < far_smaller * diameter(outline.corners)) return count_patches(outline, edge);
-    if (!whole) whole = count_patches(outline, edge);
-    return *whole;
+  double counted_nested(double edge) {
+    std::vector<std::vector<double>> edges(scene_.polygons.size());
+    const std::vector<Outline> outlines = outlines_for(edge);
+    parallel_for(edges.size(), [&](std::size_t p) {
+      if (kept(p) > 0 && !whole_[p]) edges[p] = longest_edges(outlines[p], edge);
+    });
+    const auto edges_on = [&](std::size_t p) -> const std::vector<double>& {
+      return whole_[p] ? *whole_[p] : edges[p];
+    };
+    double longest = 0;
+    for (std::size_t p = 0; p < edges.size(); ++p) {
+      for (const double one : edges_on(p)) longest = std::max(longest, one);
+    }
+    double number = 0;
+    for (std::size_t p = 0; p < edges.size(); ++p) {
+      for (const double one : edges_on(p)) number += static_cast<double>(kept(p) * parts_of_parent(one, longest));
+    }
+    return number;
   }
+
+  // The outlines of the polygons that are kept and not known to stay whole. Beyond twice its size neither lattice nor
+  // outline of a polygon depend on the longest edge (lattice_spacing() in refine_polygon.cpp): then its patches are
+  // remembered, as long as the same lines are followed.
+  std::vector<Outline> outlines_for(double edge) {
+    constexpr double far_smaller = 2;
+    const double detail = contacts_.on.empty() ? 0 : followed_detail(contacts_, edge);
+    const bool same_detail = detail_ == detail;
+    polygons_ = cut_again(std::move(polygons_), scene_, loose_, contacts_, edge, same_detail);
+    detail_ = detail;
+    const auto is_small = [&](std::size_t p) {
+      return !is_loose(p) && edge >= far_smaller * diameter(polygons_[p].corners);
+    };
+    std::vector<std::uint8_t> is_needed(polygons_.size());
+    parallel_for(is_needed.size(), [&](std::size_t p) {
+      if (!same_detail || !is_small(p)) whole_[p].reset();
+      is_needed[p] = kept(p) > 0 && !whole_[p] ? 1 : 0;
+    });
+    std::vector<Outline> outlines = cut_outlines(polygons_, edge, is_needed);
+    parallel_for(is_needed.size(), [&](std::size_t p) {
+      if (is_needed[p] && is_small(p)) whole_[p] = longest_edges(outlines[p], edge);
+    });
+    return outlines;
+  }
+
+  std::size_t kept(std::size_t polygon) const { return sides_.front[polygon] + sides_.back[polygon]; }
+  bool is_loose(std::size_t polygon) const { return !loose_.empty() && !loose_[polygon].empty(); }
 
   const Scene& scene_;
   const KeptSides& sides_;
   const ContactLines& contacts_;
   LooseCorners loose_;
-  double longest_;                            // metres: that leaves the scene uncut
-  std::map<double, FollowedLines> followed_;  // by followed_detail()
-  std::map<double, double> numbers_;          // by the edge
+  std::optional<double> detail_;                           // of the lines that the polygons below follow, metres
+  std::vector<CutPolygon> polygons_;                       // with these lines
+  std::vector<std::optional<std::vector<double>>> whole_;  // longest edges of the patches of polygons that stay whole
+  double longest_;                                         // metres: that leaves the scene uncut
+  Numbers numbers_;
+  Numbers nested_numbers_;
 };
 
 std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
@@ -139,36 +246,18 @@ EdgeSearch::~EdgeSearch() = default;
 
 double EdgeSearch::patches_with(double max_edge) { return number_->with_edge(max_edge); }
 
-std::size_t EdgeSearch::least_patches() { return static_cast<std::size_t>(number_->with_edge(number_->longest())); }
+double EdgeSearch::nested_patches_with(double max_edge) { return number_->nested_with_edge(max_edge); }
+
+std::size_t EdgeSearch::least_patches() { return static_cast<std::size_t>(number_->least()); }
 
 double EdgeSearch::edge_for(std::size_t patches) {
   constexpr double close_enough = 0.005;
-  constexpr double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
-  const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
-  if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
+  return number_->edge_for(possible(patches), close_enough);
+}
 
-  // 1. No number below that of the uncut scene.
-  const double longest = number_->longest();
-  if (number_->with_edge(longest) >= wanted) return longest;
-
-  // 2. Keep the edge between one that gives too few patches and one that gives too many. The number goes as edge^-2;
-  //    where this guess fails because the number changes in steps, halve the interval.
-  Bracket bracket = number_->bracket(wanted);
-  double best = bracket.best;
-  double best_error = std::abs(number_->with_edge(best) - wanted);
-  double edge = bracket.guess;
-  for (int guesses = 1; best_error > close_enough * wanted && bracket.too_long > same_edge * bracket.too_short;
-       ++guesses) {
-    const double number = number_->with_edge(edge);
-    const double error = std::abs(number - wanted);
-    if (error < best_error) best = edge, best_error = error;
-    (number < wanted ? bracket.too_long : bracket.too_short) = edge;
-    edge *= std::sqrt(number / wanted);
-    const bool inside = edge > bracket.too_short && edge < bracket.too_long;
-    if (!inside || guesses % 5 == 0)
-      edge = bracket.too_short > 0 ? std::sqrt(bracket.too_short * bracket.too_long) : 0.5 * bracket.too_long;
-  }
-  return best;
+double EdgeSearch::nested_edge_for(std::size_t patches) {
+  constexpr double close_enough = 0.05;
+  return number_->nested_edge_for(possible(patches), close_enough);
 }
 
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts) {

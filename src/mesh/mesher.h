@@ -43,8 +43,8 @@ std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double
 std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 
 /// An edge for which the number of patches is within 0.5 % of `patches`, or as near as the steps in which the number
-/// can change allow. Costs some three tessellations; much less where all polygons become grids. \throws MemoryError for
-/// more than 2^31 patches.
+/// can change allow. Costs some three tessellations; much less where all polygons become grids or stay whole. \throws
+/// MemoryError for more than 2^31 patches.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts = {});
 
 /// The same for several numbers: what is found for one narrows the search for the next.
@@ -57,6 +57,10 @@ class EdgeSearch {
   EdgeSearch& operator=(const EdgeSearch&) = delete;
   double edge_for(std::size_t patches);
   double patches_with(double max_edge);
+  /// Of parents whose parts, see nest(), are so many within 5 %.
+  double nested_edge_for(std::size_t patches);
+  /// The parts of parents with edges of `max_edge` at most.
+  double nested_patches_with(double max_edge);
   /// least_patches()
   std::size_t least_patches();
 

@@ -9,9 +9,6 @@
 namespace patchlight {
 namespace {
 
-// Parents that are shorter than this share of the longest stay whole.
-constexpr double small = 0.25;
-
 double longest_edge(const PatchMesh& mesh, PatchIndex patch) {
   const PatchCorners corners = mesh.corner_points(patch);
   const auto count = static_cast<std::size_t>(corners.count);
@@ -26,7 +23,7 @@ std::vector<std::uint8_t> large_patches(const PatchMesh& mesh) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) edges.push_back(longest_edge(mesh, i));
   const double longest = edges.empty() ? 0 : *std::max_element(edges.begin(), edges.end());
   std::vector<std::uint8_t> large;
-  for (const double edge : edges) large.push_back(edge >= small * longest ? 1 : 0);
+  for (const double edge : edges) large.push_back(parts_of_parent(edge, longest) > 1 ? 1 : 0);
   return large;
 }
 
@@ -41,6 +38,11 @@ NestedMesh nest(PatchMesh parents, std::span<const std::uint8_t> is_cut) {
 }
 
 }  // namespace
+
+std::size_t parts_of_parent(double edge, double longest) {
+  constexpr double small = 0.25;  // of the longest: such parents stay whole
+  return edge >= small * longest ? 4 : 1;
+}
 
 NestedMesh nest(PatchMesh parents) {
   const std::vector<std::uint8_t> large = large_patches(parents);

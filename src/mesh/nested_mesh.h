@@ -4,6 +4,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,9 @@ struct NestedMesh {
 /// Every parent in four parts; those whose longest edge is below a quarter of the longest of all, as small faces of a
 /// model are, stay whole.
 NestedMesh nest(PatchMesh parents);
+
+/// Into how many parts that cuts a parent, from its longest edge and that of all.
+std::size_t parts_of_parent(double edge, double longest);
 
 /// A nested mesh made from another.
 struct FinerMesh {

@@ -2,6 +2,9 @@
 
 #include "mesh/refine_polygon.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace patchlight {
 namespace {
 
@@ -98,6 +101,21 @@ std::size_t count_patches(const Outline& outline, double max_edge) {
       break;
   }
   return refine_polygon(outline, max_edge).patches.size();
+}
+
+std::vector<double> longest_edges(const Outline& outline, double max_edge) {
+  const PolygonMesh mesh = mesh_polygon(outline, max_edge);
+  std::vector<Point> points = boundary_points(outline);
+  points.insert(points.end(), mesh.inner.begin(), mesh.inner.end());
+  std::vector<double> edges;
+  edges.reserve(mesh.patches.size());
+  for (const auto& corners : mesh.patches) {
+    double longest = 0;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      longest = std::max(longest, (points[corners[(k + 1) % corners.size()]] - points[corners[k]]).squaredNorm());
+    edges.push_back(std::sqrt(longest));
+  }
+  return edges;
 }
 
 }  // namespace patchlight

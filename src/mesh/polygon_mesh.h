@@ -3,6 +3,7 @@
 #include "mesh/outline.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace patchlight {
 
@@ -12,5 +13,8 @@ PolygonMesh mesh_polygon(const Outline& outline, double max_edge);
 
 /// How many patches that has.
 std::size_t count_patches(const Outline& outline, double max_edge);
+
+/// The longest edge of each of them, metres.
+std::vector<double> longest_edges(const Outline& outline, double max_edge);
 
 }  // namespace patchlight

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <map>
+#include <cstdint>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace patchlight {
@@ -24,11 +25,19 @@ std::vector<Edge> edges_of(const PatchMesh& mesh, PatchIndex patch) {
   return edges;
 }
 
+struct EdgeHash {
+  // The golden ratio's bits spread neighbouring indices.
+  std::size_t operator()(const Edge& edge) const {
+    return ((std::uint64_t{edge.first} << 32 | edge.second) * 0x9e3779b97f4a7c15u) >> 16;
+  }
+};
+
 // The middles of cut edges.
-using Middles = std::map<Edge, std::uint32_t>;
+using Middles = std::unordered_map<Edge, std::uint32_t, EdgeHash>;
 
 Middles middles_of(const PatchMesh& mesh) {
   Middles middles;
+  middles.reserve(mesh.middles.size());
   for (const Middle& middle : mesh.middles) middles.emplace(edge_of(middle.ends[0], middle.ends[1]), middle.vertex);
   return middles;
 }

@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
-#include "mesh/nested_mesh.h"
 #include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
@@ -115,36 +114,19 @@ struct Outlined {
   EdgeSearch& search;
 };
 
-double nested_patches(const Outlined& of, double edge) {
-  return static_cast<double>(nest(tessellate(of.scene, of.sides, edge, of.contacts)).patches.size());
-}
-
 // The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
 // whole: of a model with many small faces the number of parents lies anywhere between a quarter of them and all.
-double parents_edge_for(const Outlined& scene, std::size_t wanted, std::size_t least) {
+double parents_edge_for(EdgeSearch& search, std::size_t wanted) {
   constexpr double enough = 0.8;
-  constexpr double close_enough = 0.05;
-  constexpr int guesses = 6;
   // What no memory holds is refused later, and not meshed to find that out.
   constexpr std::size_t too_many = 5'000'000;
-  if (wanted > too_many) return 2 * scene.search.edge_for(wanted);
-  double edge = scene.search.edge_for(wanted / 4);
-  double number = nested_patches(scene, edge);
-  const auto miss = [wanted](double patches) { return std::abs(std::log(patches / static_cast<double>(wanted))); };
+  if (wanted > too_many) return 2 * search.edge_for(wanted);
+  const double edge = search.edge_for(wanted / 4);
   // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
-  const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - static_cast<double>(least)); };
-  if (beyond_faces(number) >= enough * beyond_faces(static_cast<double>(wanted))) return edge;
-  std::size_t few = std::max(wanted / 4, least);
-  std::size_t many = wanted;
-  for (int k = 0; k < guesses && many > few + 1; ++k) {
-    const std::size_t parents = (few + many) / 2;
-    const double guess = scene.search.edge_for(parents);
-    const double patches = nested_patches(scene, guess);
-    if (miss(patches) < miss(number)) edge = guess, number = patches;
-    if (miss(number) < close_enough) break;
-    (patches < static_cast<double>(wanted) ? few : many) = parents;
-  }
-  return edge;
+  const auto least = static_cast<double>(search.least_patches());
+  const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - least); };
+  if (beyond_faces(search.nested_patches_with(edge)) >= enough * beyond_faces(static_cast<double>(wanted))) return edge;
+  return search.nested_edge_for(wanted);
 }
 
 // What is refined begins with no more than it has to; but so many rows of rays are not traced twice for nothing.
@@ -172,7 +154,7 @@ PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& r
   const std::size_t wanted = patches_wanted(asked, least, request);
   // A nested mesh is made from parents with edges twice as long.
   PatchSize size{
-      has_error_bars(request.accuracy) ? parents_edge_for(of, wanted, least) / 2 : of.search.edge_for(wanted),
+      has_error_bars(request.accuracy) ? parents_edge_for(of.search, wanted) / 2 : of.search.edge_for(wanted),
       wanted,
       {}};
   if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(of.scene, asked, wanted));

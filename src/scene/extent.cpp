@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace patchlight {
 namespace {
@@ -43,41 +45,49 @@ double quantile(std::vector<Weighted> values, double share) {
 // c with c = share (sum min(a_i, c)): none of the areas, lowered to it, is more than its share of their sum. The
 // smallest area, by which all are alike, when there are too few.
 double cap_of(std::vector<double> areas) {
+  constexpr std::size_t most_lowered = 7;  // largest_share of eight would be all
   std::erase(areas, 0);
-  std::sort(areas.begin(), areas.end());
   if (areas.empty()) return 0;
-  if (largest_share * static_cast<double>(areas.size()) < 1) return areas.front();
-  double below = 0;
-  for (std::size_t k = 0; k < areas.size(); ++k) {
-    // With the k smallest as they are: c = share (below + (n - k) c).
-    const double rest = 1 - largest_share * static_cast<double>(areas.size() - k);
-    if (rest > 0 && largest_share * below <= rest * areas[k]) return largest_share * below / rest;
-    below += areas[k];
+  if (largest_share * static_cast<double>(areas.size()) < 1) return *std::min_element(areas.begin(), areas.end());
+  const auto largest = areas.end() - std::min<std::ptrdiff_t>(most_lowered, std::ssize(areas));
+  std::nth_element(areas.begin(), largest, areas.end());
+  std::sort(largest, areas.end());
+  // With more digits the sum does not depend on the order.
+  double below = static_cast<double>(std::accumulate(areas.begin(), largest, 0.0L));
+  for (auto area = largest; area != areas.end(); ++area) {
+    // With those below as they are: c = share (below + (the number of others) c).
+    const double rest = 1 - largest_share * static_cast<double>(areas.end() - area);
+    if (largest_share * below <= rest * *area) return largest_share * below / rest;
+    below += *area;
   }
   return areas.back();
 }
 
-// The corners of all polygons with their share of the lowered areas; none when no polygon has an area.
+std::vector<double> areas_of(const Scene& scene) {
+  std::vector<double> areas;
+  areas.reserve(scene.polygons.size());
+  std::vector<Point> points;
+  for (const Polygon& polygon : scene.polygons) {
+    points.clear();
+    for (const std::uint32_t corner : polygon.corners) points.push_back(scene.vertices[corner]);
+    areas.push_back(area_vector(points).norm());
+  }
+  return areas;
+}
+
+// Calls `visit` with each corner of the polygons and its share of their areas, lowered to `cap`.
+void for_weighted_corners(const Scene& scene, const std::vector<double>& areas, double cap, const auto& visit) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const auto& corners = scene.polygons[p].corners;
+    const double weight = std::min(areas[p], cap) / static_cast<double>(corners.size());
+    for (const std::uint32_t corner : corners) visit(scene.vertices[corner], weight);
+  }
+}
+
 struct Corners {
   std::vector<Point> points;
   std::vector<double> weights;
 };
-
-Corners weighted_corners(const Scene& scene) {
-  std::vector<double> areas;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) areas.push_back(area_vector(corner_points(scene, p)).norm());
-  const double cap = cap_of(areas);
-  Corners all;
-  if (!(cap > 0)) return all;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const auto& corners = scene.polygons[p].corners;
-    for (const std::uint32_t corner : corners) {
-      all.points.push_back(scene.vertices[corner]);
-      all.weights.push_back(std::min(areas[p], cap) / static_cast<double>(corners.size()));
-    }
-  }
-  return all;
-}
 
 // Would welding by so much make a line of a face that is none?
 bool collapses(const std::vector<Point>& corners, double distance) {
@@ -96,30 +106,31 @@ double quantile(const Corners& corners, const std::function<double(const Point&)
 
 // What lies within 1 / far_away of the farthest distance lies within two neighbours of so many parts of the longest
 // side. False when no two of them hold most: then nothing is far away.
-bool may_be_far(const Corners& corners, const Box& all) {
+bool may_be_far(const Scene& scene, const std::vector<double>& areas, double cap, const Box& all) {
   constexpr int parts = far_away / 2;
   int axis = 0;
   const double length = all.sizes().maxCoeff(&axis);
   std::array<double, parts + 1> held{};
   double total = 0;
-  for (std::size_t k = 0; k < corners.points.size(); ++k) {
-    const double along = parts * ((corners.points[k][axis] - all.min()[axis]) / length);
-    held[static_cast<std::size_t>(along)] += corners.weights[k];
-    total += corners.weights[k];
-  }
+  for_weighted_corners(scene, areas, cap, [&](const Point& corner, double weight) {
+    const double along = parts * ((corner[axis] - all.min()[axis]) / length);
+    held[static_cast<std::size_t>(along)] += weight;
+    total += weight;
+  });
   for (std::size_t k = 0; k < parts; ++k) {
     if (held[k] + held[k + 1] >= most * total) return true;
   }
   return false;
 }
 
-}  // namespace
-
-Box main_bounds(const Scene& scene) {
+Box main_bounds(const Scene& scene, const std::vector<double>& areas, double cap) {
   const Box all = bounds(scene);
-  if (all.isEmpty()) return all;
-  const Corners corners = weighted_corners(scene);
-  if (corners.points.empty() || !may_be_far(corners, all)) return all;
+  if (all.isEmpty() || !(cap > 0) || !may_be_far(scene, areas, cap, all)) return all;
+  Corners corners;
+  for_weighted_corners(scene, areas, cap, [&](const Point& corner, double weight) {
+    corners.points.push_back(corner);
+    corners.weights.push_back(weight);
+  });
   Point middle;
   for (int axis = 0; axis < 3; ++axis)
     middle[axis] = quantile(
@@ -135,13 +146,20 @@ Box main_bounds(const Scene& scene) {
   return most_extents * main.diagonal().norm() < all.diagonal().norm() ? all : main;
 }
 
+}  // namespace
+
+Box main_bounds(const Scene& scene) {
+  const std::vector<double> areas = areas_of(scene);
+  return main_bounds(scene, areas, cap_of(areas));
+}
+
 double extent_of(const Scene& scene) { return main_bounds(scene).diagonal().norm(); }
 
 double weld_distance(const Scene& scene) {
-  double distance = weld_distance(main_bounds(scene));
-  std::vector<double> areas;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) areas.push_back(area_vector(corner_points(scene, p)).norm());
+  std::vector<double> areas = areas_of(scene);
   const double cap = cap_of(areas);
+  const Box main = main_bounds(scene, areas, cap);
+  double distance = weld_distance(main);
   double total = 0;
   for (double& area : areas) total += area = std::min(area, cap);
   const auto loses_much = [&] {
@@ -155,7 +173,6 @@ double weld_distance(const Scene& scene) {
     return area > largest_loss * total || faces > largest_number * static_cast<double>(areas.size());
   };
   // Below single precision of single precision there is no detail that is meant; below double precision none at all.
-  const Box main = main_bounds(scene);
   const double resolved = weld_tolerance * weld_distance(main);
   const double farthest = main.isEmpty() ? 0 : main.min().cwiseAbs().cwiseMax(main.max().cwiseAbs()).maxCoeff();
   const double least = std::max(resolved, 4 * std::numeric_limits<double>::epsilon() * farthest);

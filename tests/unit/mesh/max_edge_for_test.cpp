@@ -1,7 +1,9 @@
 #include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace patchlight::max_edge_for_test {
 namespace {
@@ -39,6 +41,48 @@ TEST(MaxEdgeFor, CountsBothSides) {
   const Scene square = tiny::polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   const KeptSides sides = tiny::both_sides(square);
   EXPECT_EQ(tessellate(square, sides, max_edge_for(square, sides, 200)).size(), 200u);
+}
+
+std::vector<Scene> rooms_and_shapes() {
+  std::vector<Scene> scenes{tiny::box({4, 3, 2.5}), tiny::in_triangles(tiny::box({4, 3, 2.5}))};
+  for (const tiny::Shape& shape : tiny::polygon_shapes()) scenes.push_back(shape.scene);
+  return scenes;
+}
+
+// Counted without a mesh, and with what is remembered from other edges.
+TEST(EdgeSearch, NestedPatchesAreThoseOfTheNestedMesh) {
+  for (const Scene& scene : rooms_and_shapes()) {
+    const KeptSides sides = tiny::both_sides(scene);
+    const ContactLines no_contacts;
+    EdgeSearch search(scene, sides, no_contacts);
+    for (const double edge : {20.0, 0.7, 3.0, 0.31, 8.0, 0.1}) {
+      const PatchMesh mesh = nest(tessellate(scene, sides, edge)).patches;
+      EXPECT_EQ(search.nested_patches_with(edge), mesh.size()) << scene.file << " " << edge;
+    }
+  }
+}
+
+// Where a search has been before does not matter.
+TEST(EdgeSearch, RemembersNothingThatIsOfOtherEdges) {
+  for (const Scene& scene : rooms_and_shapes()) {
+    const KeptSides sides = tiny::front_sides(scene);
+    const ContactLines no_contacts;
+    EdgeSearch search(scene, sides, no_contacts);
+    for (const double edge : {0.2, 9.0, 0.6, 2.0, 0.2001}) {
+      EXPECT_EQ(search.patches_with(edge), tessellate(scene, sides, edge).size()) << scene.file << " " << edge;
+    }
+  }
+}
+
+TEST(EdgeSearch, FindsAsManyNestedPatchesAsAreWanted) {
+  for (const Scene& scene : rooms_and_shapes()) {
+    const KeptSides sides = tiny::front_sides(scene);
+    const ContactLines no_contacts;
+    EdgeSearch search(scene, sides, no_contacts);
+    const PatchMesh mesh = nest(tessellate(scene, sides, search.nested_edge_for(3000))).patches;
+    // Steps of grids of n x n, each in four: up to 14 % at n = 13.
+    EXPECT_NEAR(mesh.size(), 3000, 0.14 * 3000) << scene.file;
+  }
 }
 
 }  // namespace
