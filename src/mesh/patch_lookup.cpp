@@ -15,21 +15,21 @@ constexpr double lookup_slack = 4e-6;
 // The patches of a lattice are at their places up to this share of their edges.
 constexpr double lattice_tolerance = 1e-6;
 
-using Flat = Eigen::Vector2d;
+using Flat = Eigen::Vector2f;
 
-double cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
+float cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
+float distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
   const Flat edge = to - from;
-  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  const float t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0F, 1.0F);
   return (from + t * edge - point).norm();
 }
 
 // Zero inside. The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds
 // nothing.
-double distance_to(const auto& outline, const Flat& eye) {
+float distance_to(const auto& outline, const Flat& eye) {
   bool inside = true;
-  double nearest = std::numeric_limits<double>::infinity();
+  float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
     const Flat from(outline.u[k], outline.v[k]);
@@ -85,6 +85,8 @@ Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
   const double cell = std::sqrt(size_u * size_v / count);
   grid.count_u = static_cast<int>(std::clamp(std::ceil(size_u / cell), 1.0, count));
   grid.count_v = static_cast<int>(std::clamp(std::ceil(size_v / cell), 1.0, count));
+  grid.middle_u = bounds.center()[grid.axis_u];
+  grid.middle_v = bounds.center()[grid.axis_v];
   grid.lower_u = bounds.min()[grid.axis_u] - pad;
   grid.lower_v = bounds.min()[grid.axis_v] - pad;
   grid.cells_per_u = grid.count_u / size_u;
@@ -147,8 +149,8 @@ PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch)
   const PatchCorners corners = mesh_.corner_points(patch);
   Outline outline{};
   for (std::size_t k = 0; k < 4; ++k) {
-    outline.u[k] = corners.points[k][grid.axis_u];
-    outline.v[k] = corners.points[k][grid.axis_v];
+    outline.u[k] = static_cast<float>(corners.points[k][grid.axis_u] - grid.middle_u);
+    outline.v[k] = static_cast<float>(corners.points[k][grid.axis_v] - grid.middle_v);
   }
   return outline;
 }
@@ -187,29 +189,24 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
   return grid;
 }
 
-std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
-  const PatchRange range = mesh_.patches_on(polygon, side);
-  if (range.begin == range.end) return std::nullopt;
-  if (range.end - range.begin == 1) return range.begin;
-  const Grid& grid = grids_[grid_of_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)]];
+PatchIndex PatchLookup::patch_in(const Lattice& lattice, const Point& point) {
+  const Vector to = point - lattice.origin;
+  const auto place = [](double at, int count) { return static_cast<int>(std::clamp(at, 0.0, count - 0.5)); };
+  const int column = place(to.dot(lattice.to_u), lattice.count_u);
+  const int row = place(to.dot(lattice.to_v), lattice.count_v);
+  return static_cast<PatchIndex>(row * lattice.count_u + column);
+}
 
-  if (grid.lattice) {
-    const Lattice& lattice = *grid.lattice;
-    const Vector to = point - lattice.origin;
-    const auto place = [](double at, int count) { return static_cast<int>(std::clamp(at, 0.0, count - 0.5)); };
-    const int column = place(to.dot(lattice.to_u), lattice.count_u);
-    const int row = place(to.dot(lattice.to_v), lattice.count_v);
-    return range.begin + static_cast<PatchIndex>(row * lattice.count_u + column);
-  }
-
-  const Flat eye(point[grid.axis_u], point[grid.axis_v]);
-  std::optional<PatchIndex> nearest;
-  double shortest = std::numeric_limits<double>::infinity();
+PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
+  const Flat eye(static_cast<float>(point[grid.axis_u] - grid.middle_u),
+                 static_cast<float>(point[grid.axis_v] - grid.middle_v));
+  PatchIndex nearest = no_patch;
+  float shortest = std::numeric_limits<float>::infinity();
   const auto search_cell = [&](Cell cell) {
     if (cell.u < 0 || cell.u >= grid.count_u || cell.v < 0 || cell.v >= grid.count_v) return;
     const std::size_t index = cell_index(grid, cell);
     for (std::uint32_t k = grid.begin[index]; k < grid.begin[index + 1] && shortest > 0; ++k) {
-      const double distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
+      const float distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
       if (distance < shortest) shortest = distance, nearest = grid.patches[k];
     }
   };
@@ -217,7 +214,7 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
   // The point's cell or, when that is empty, the closest ring of cells around it that is not.
   const Cell home = cell_at(grid, point);
   search_cell(home);
-  for (int ring = 1; !nearest; ++ring) {
+  for (int ring = 1; nearest == no_patch; ++ring) {
     for (int k = -ring; k < ring; ++k) {
       search_cell({home.u + k, home.v - ring});
       search_cell({home.u + ring, home.v + k});
@@ -226,6 +223,63 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
     }
   }
   return nearest;
+}
+
+const PatchLookup::Grid& PatchLookup::grid_on(PolygonIndex polygon, Side side) const {
+  return grids_[grid_of_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)]];
+}
+
+std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
+  const PatchRange range = mesh_.patches_on(polygon, side);
+  if (range.begin == range.end) return std::nullopt;
+  if (range.end - range.begin == 1) return range.begin;
+  const Grid& grid = grid_on(polygon, side);
+  return grid.lattice ? range.begin + patch_in(*grid.lattice, point) : patch_in(grid, point);
+}
+
+// The patches of each cell, then their outlines.
+void PatchLookup::prefetch(std::span<const Searched> searched) {
+  constexpr std::uint32_t in_a_line = 16;
+  for (const auto& [point, grid, cell] : searched) {
+    for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; at += in_a_line)
+      __builtin_prefetch(&grid->patches[at]);
+  }
+  for (const auto& [point, grid, cell] : searched) {
+    for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; ++at)
+      __builtin_prefetch(&grid->outlines[grid->patches[at] - grid->first]);
+  }
+}
+
+std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> points) const {
+  const auto slot_of = [](const SidePoint& at) {
+    return 2 * static_cast<std::size_t>(at.polygon) + static_cast<std::size_t>(at.side);
+  };
+  for (const SidePoint& at : points) __builtin_prefetch(&mesh_.first_patch[slot_of(at)]);
+  for (const SidePoint& at : points) __builtin_prefetch(&grid_of_[slot_of(at)]);
+  // 1. What needs no search in a cell; of the others the cell.
+  std::vector<PatchIndex> patches(points.size(), no_patch);
+  std::vector<Searched> searched;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [polygon, side, point] = points[k];
+    const PatchRange range = mesh_.patches_on(polygon, side);
+    if (range.begin == range.end) continue;
+    if (range.end - range.begin == 1) {
+      patches[k] = range.begin;
+      continue;
+    }
+    const Grid& grid = grid_on(polygon, side);
+    if (grid.lattice) {
+      patches[k] = range.begin + patch_in(*grid.lattice, point);
+      continue;
+    }
+    searched.push_back({k, &grid, cell_index(grid, cell_at(grid, point))});
+    __builtin_prefetch(&grid.begin[searched.back().cell]);
+  }
+
+  // 2. These.
+  prefetch(searched);
+  for (const auto& [k, grid, cell] : searched) patches[k] = patch_in(*grid, points[k].point);
+  return patches;
 }
 
 }  // namespace patchlight

@@ -1,13 +1,23 @@
 #pragma once
 
+#include "patchlight/base/large_array.h"
 #include "patchlight/mesh/patch_mesh.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace patchlight {
+
+/// A point on one side of a polygon.
+struct SidePoint {
+  PolygonIndex polygon;
+  Side side;
+  Point point;
+};
 
 /// Finds the patch at a point: per polygon side with several patches a uniform grid of cells in the polygon's plane,
 /// each with the patches whose bounds overlap it.
@@ -20,6 +30,10 @@ class PatchLookup {
   /// nearest of the cell; nothing when the side is not kept.
   std::optional<PatchIndex> patch_at(PolygonIndex polygon, Side side, const Point& point) const;
 
+  /// The same for many points, as no_patch where there is none: the time is that of reading memory, and here many
+  /// reads are under way at once.
+  std::vector<PatchIndex> patches_at(std::span<const SidePoint> points) const;
+
  private:
   // Equal parallelograms, row by row: the patch follows from the place.
   struct Lattice {
@@ -27,26 +41,38 @@ class PatchLookup {
     Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
     int count_u = 0, count_v = 0;
   };
-  // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
+  // The corners of a patch in the plane from the grid's middle, counter-clockwise, side by side in memory; a triangle
+  // repeats its last.
   struct Outline {
-    std::array<double, 4> u, v;
+    std::array<float, 4> u, v;
   };
   struct Grid {
     std::optional<Lattice> lattice;  // then the rest is empty
     PatchIndex first = 0;
     int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
+    double middle_u = 0, middle_v = 0;
     double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
     int count_u = 0, count_v = 0;
-    std::vector<std::uint32_t> begin;  // per cell, into patches
-    std::vector<PatchIndex> patches;
-    std::vector<Outline> outlines;  // of its patches, the first one first
+    LargeArray<std::uint32_t> begin;  // per cell, into patches
+    LargeArray<PatchIndex> patches;
+    LargeArray<Outline> outlines;  // of its patches, the first one first
   };
   std::optional<Lattice> lattice_of(PatchRange range) const;
   Grid make_grid(PatchRange range) const;
   Outline outline_of(const Grid& grid, PatchIndex patch) const;
+  const Grid& grid_on(PolygonIndex polygon, Side side) const;
+  // A point of several that is looked for in a cell of a grid.
+  struct Searched {
+    std::size_t point;
+    const Grid* grid;
+    std::size_t cell;
+  };
+  static void prefetch(std::span<const Searched> searched);
+  static PatchIndex patch_in(const Lattice& lattice, const Point& point);
+  static PatchIndex patch_in(const Grid& grid, const Point& point);
 
   const PatchMesh& mesh_;
-  std::vector<std::uint32_t> grid_of_;  // per 2 * polygon + side: its grid, where it has several patches
+  LargeArray<std::uint32_t> grid_of_;  // per 2 * polygon + side: its grid, where it has several patches
   std::vector<Grid> grids_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -24,6 +25,10 @@ class BrightPatches {
   /// Probability per area of a point of the patch to be chosen, 1/m^2; 0: not a bright one.
   float density(PatchIndex patch) const { return density_[patch]; }
   const std::vector<float>& densities() const { return density_; }
+  /// Starts to read the densities of patches that are asked for next.
+  void prefetch_densities(std::span<const PatchIndex> patches) const {
+    for (const PatchIndex patch : patches) __builtin_prefetch(&density_[patch]);
+  }
 
   /// A patch chosen by u in [0, 1), which is stretched over the patch's share of [0, 1) to be used again.
   struct Chosen {

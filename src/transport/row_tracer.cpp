@@ -156,15 +156,22 @@ void RowTracer::add_toward_bright(PatchIndex patch, RowEntries& entries) const {
   }
 }
 
-// A ray over the hemisphere that has met a patch, with nothing specular on its way.
-void RowTracer::add_hit(PatchIndex patch, const Ray& ray, const Hit& hit, std::vector<PatchIndex>& hits,
-                        std::vector<RayEntry>& entries) const {
-  const auto met = lookup_.patch_at(hit.polygon, hit.side, hit.point);
-  assert(met);
-  if (bright_.density(*met) > 0) {
-    entries.push_back({*met, entry_of(patch, ray, hit, *met)});
-  } else {
-    hits.push_back(*met);
+// Rays over the hemisphere that have met a patch, with nothing specular on their way, those of the first half first.
+void RowTracer::add_hits(PatchIndex patch, std::span<const Ray> rays, std::span<const PlainHit> hits, PatchRays& told,
+                         RowEntries& entries) const {
+  std::vector<SidePoint> points;
+  points.reserve(hits.size());
+  for (const auto& [ray, hit] : hits) points.push_back({hit->polygon, hit->side, hit->point});
+  const std::vector<PatchIndex> met = lookup_.patches_at(points);
+  bright_.prefetch_densities(met);
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    assert(met[k] != no_patch);
+    const std::size_t half = hits[k].ray / counts_[patch];
+    if (bright_.density(met[k]) > 0) {
+      entries.halves[half].push_back({met[k], entry_of(patch, rays[hits[k].ray], *hits[k].hit, met[k])});
+    } else {
+      told.hits[half].push_back(met[k]);
+    }
   }
 }
 
@@ -172,15 +179,15 @@ PatchRays RowTracer::trace_plain(PatchIndex patch, RowEntries& entries) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const std::vector<Seen> seen = sights_.of_rays(patch, rays, hash({seed_, keys_[patch], 2}));
   PatchRays told{{}, 0, count(seen, Sight::nothing), unseen(seen)};
-  for (const std::uint32_t half : {0U, 1U}) {
-    told.hits[half].reserve(counts_[patch]);
-    for (std::size_t k = half * std::size_t{counts_[patch]}; k < (half + 1) * std::size_t{counts_[patch]}; ++k) {
-      if (!seen[k].hit) continue;
-      const Hit& hit = *seen[k].hit;
-      if (hit.distance > 0) told.inverse_lengths += 1 / hit.distance;
-      if (seen[k].sight == Sight::patch) add_hit(patch, rays[k], hit, told.hits[half], entries.halves[half]);
-    }
+  std::vector<PlainHit> hits;
+  hits.reserve(rays.size());
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (!seen[k].hit) continue;
+    const Hit& hit = *seen[k].hit;
+    if (hit.distance > 0) told.inverse_lengths += 1 / hit.distance;
+    if (seen[k].sight == Sight::patch) hits.push_back({k, &hit});
   }
+  add_hits(patch, rays, hits, told, entries);
   return told;
 }
 

@@ -53,8 +53,12 @@ class RowTracer {
   struct TowardBright;
   PatchRays trace_plain(PatchIndex patch, RowEntries& entries) const;
   PatchRays trace_specular(PatchIndex patch, RowEntries& entries) const;
-  void add_hit(PatchIndex patch, const Ray& ray, const Hit& hit, std::vector<PatchIndex>& hits,
-               std::vector<RayEntry>& entries) const;
+  struct PlainHit {
+    std::size_t ray;
+    const Hit* hit;
+  };
+  void add_hits(PatchIndex patch, std::span<const Ray> rays, std::span<const PlainHit> hits, PatchRays& told,
+                RowEntries& entries) const;
   bool starts_clear(PatchIndex patch) const;
   SpecularStop stop_at(PatchIndex patch, const Ray& ray, const WayStop& at) const;
   void add_stops(PatchIndex patch, const Ray& ray, const SeenWay& seen, std::vector<SpecularStop>& stops) const;

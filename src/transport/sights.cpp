@@ -59,6 +59,9 @@ std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
   const auto hits = occluder_.first_held_hits(rays, seed);
+  for (const auto& hit : hits)
+    if (hit)
+      __builtin_prefetch(&mesh_.first_patch[2 * std::size_t{hit->polygon} + static_cast<std::size_t>(hit->side)]);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (covered[k] != 0) {
       seen[k].sight = Sight::contact;

@@ -68,6 +68,7 @@ PatchRays RowTracer::trace_specular(PatchIndex patch, RowEntries& entries) const
   const std::vector<SeenWay> seen = sights_.along_ways(patch, rays, hash({seed_, keys_[patch], 2}));
   const bool is_clear = starts_clear(patch);
   PatchRays told;
+  std::vector<PlainHit> hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const std::size_t half = k / counts_[patch];
     const Way& way = seen[k].way;
@@ -80,9 +81,10 @@ PatchRays RowTracer::trace_specular(PatchIndex patch, RowEntries& entries) const
     } else if (seen[k].end == Sight::nothing) {
       ++told.escaped;
     } else if (!is_unseen) {
-      add_hit(patch, rays[k], way[0].hit, told.hits[half], entries.halves[half]);
+      hits.push_back({k, &way[0].hit});
     }
   }
+  add_hits(patch, rays, hits, told, entries);
   return told;
 }
 

@@ -21,16 +21,16 @@ bool separates(const TrianglePlane& plane, const ExactRay& ray, double tolerance
 }
 
 // Marks the hits that are beyond doubt: the ray's ends are so far on either side of the triangle's plane, by
-// t |n . d| and (1 - t) |n . d|, that single precision tells them apart.
+// t |n . d| and (1 - t) |n . d|, that single precision tells them apart. A ray without an end has none on the far side.
 template <unsigned N>
-PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, unsigned char* clear) {
+PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, bool is_endless, unsigned char* clear) {
   constexpr float clear_height = 1e-4F;
   for (unsigned k = 0; k < N; ++k) {
     const float x = RTCHitN_Ng_x(hits.hit, N, k);
     const float y = RTCHitN_Ng_y(hits.hit, N, k);
     const float z = RTCHitN_Ng_z(hits.hit, N, k);
     const float t = RTCRayN_tfar(hits.ray, N, k);
-    const float nearer = std::min(t, 1 - t);
+    const float nearer = is_endless ? t : std::min(t, 1 - t);
     const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
                                    z * RTCRayN_dir_z(hits.ray, N, k));
     const float least = clear_height * clear_height * (x * x + y * y + z * z);
@@ -83,31 +83,32 @@ ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
 PATCHLIGHT_TARGET_CLONES
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* planes = static_cast<const TrianglePlane*>(arguments->geometryUserPtr);
+  const auto& triangles = *static_cast<const TriangleScene*>(arguments->geometryUserPtr);
+  const ShadowPacket* const packet = context->packet;
   std::array<unsigned char, packet_size> clear{};
-  if (arguments->N == packet_size && context->packet != nullptr) mark_clear_hits<packet_size>(*arguments, clear.data());
+  if (arguments->N == packet_size && packet != nullptr) mark_clear_hits<packet_size>(*arguments, false, clear.data());
+  if (arguments->N == 1 && context->is_endless) mark_clear_hits<1>(*arguments, true, clear.data());
   for (unsigned k = 0; k < arguments->N; ++k) {
     if (arguments->valid[k] != -1) continue;
     const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, k);
     const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
-    if (clear[k] != 0) {
-      const PolygonIndex polygon = planes[triangle].polygon;
-      const ShadowPacket& rays = *context->packet;
-      if (polygon == rays.from_polygon[ray] || polygon == rays.to_polygon[ray]) arguments->valid[k] = 0;
-      continue;
+    const PolygonIndex from = packet != nullptr ? packet->from_polygon[ray] : context->rays[ray].from_polygon;
+    const PolygonIndex to = packet != nullptr ? packet->to_polygon[ray] : context->rays[ray].to_polygon;
+    const PolygonIndex polygon = triangles.polygons[triangle];
+    bool blocks = polygon != from && polygon != to;
+    if (blocks && clear[k] == 0) {
+      blocks = packet != nullptr ? separates(triangles.planes[triangle], exact_ray(*packet, ray), in_plane_tolerance)
+                                 : separates(triangles.planes[triangle], context->rays[ray], on_plane_tolerance);
     }
-    const bool blocks = context->packet != nullptr
-                            ? separates(planes[triangle], exact_ray(*context->packet, ray), in_plane_tolerance)
-                            : separates(planes[triangle], context->rays[ray], on_plane_tolerance);
     if (!blocks || (context->covered_places != nullptr &&
-                    is_covered(planes[triangle], context->rays[ray], *context->covered_places)))
+                    is_covered(triangles.planes[triangle], context->rays[ray], *context->covered_places)))
       arguments->valid[k] = 0;
   }
 }
 
 void list_crossed(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const auto* planes = static_cast<const TrianglePlane*>(arguments->geometryUserPtr);
+  const auto& planes = static_cast<const TriangleScene*>(arguments->geometryUserPtr)->planes;
   for (unsigned k = 0; k < arguments->N; ++k) {
     if (arguments->valid[k] != -1) continue;
     arguments->valid[k] = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/base/large_array.h"
 #include "patchlight/scene/scene.h"
 
 #include "visibility/covered_places.h"
@@ -19,6 +20,20 @@ struct TrianglePlane {
   PolygonIndex polygon = no_polygon;
 
   double height(const Point& point) const { return normal.dot(point) - offset; }
+};
+
+/// The triangles of some polygons, ready to be traced: the user data of their geometry.
+struct TriangleScene {
+  RTCScene scene = nullptr;
+  LargeArray<TrianglePlane> planes;   ///< per triangle
+  LargeArray<PolygonIndex> polygons;  ///< per triangle, side by side: most of what filters ask for
+
+  TriangleScene() = default;
+  TriangleScene(const TriangleScene&) = delete;
+  TriangleScene& operator=(const TriangleScene&) = delete;
+  ~TriangleScene() {
+    if (scene) rtcReleaseScene(scene);
+  }
 };
 
 /// Rays of a packet, as Embree counts.
@@ -55,10 +70,11 @@ struct Context {
   const ShadowPacket* packet = nullptr;           ///< in place of rays
   const CoveredPlaces* covered_places = nullptr;  ///< hits on these do not count, if given
   Crossed* crossed = nullptr;                     ///< per ray: what list_crossed() finds
+  bool is_endless = false;                        ///< whether the ray, a single one of unit direction, has no end
 };
 
 /// Embree's filter: drops the hits on polygons whose plane does not separate the two ends of the ray, and on those that
-/// it starts or ends on. The user data of the geometry are the planes of its triangles.
+/// it starts or ends on.
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments);
 
 /// Embree's filter for clear polygons: lists each of those whose plane separates the two ends of the ray once, and

@@ -57,6 +57,7 @@ struct Occluder::Tracer {
   float arriving_along(const ExactRay& ray, Crossed crossed) const;
   std::array<Crossed, ShadowPacket::size> crossed_by(const ShadowPacket& packet, unsigned blocked) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
+  Hit hit_at(const Ray& ray, const TrianglePlane& plane, float found) const;
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
 
@@ -278,27 +279,44 @@ std::vector<std::uint8_t> Occluder::occluded(std::span<const Segment> segments) 
   return blocked;
 }
 
+// The hit in double: where the ray meets the triangle's plane, unless it grazes.
+Hit Occluder::Tracer::hit_at(const Ray& ray, const TrianglePlane& plane, float found) const {
+  const double cosine = plane.normal.dot(ray.direction);
+  const bool grazes = std::abs(cosine) < 1e-3;
+  const double distance =
+      (grazes ? static_cast<double>(found) : -plane.height(recentred(ray.origin)) / cosine) / faces->scale;
+  return {plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance,
+          ray.direction};
+}
+
 std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) const {
-  std::vector<std::optional<Hit>> hits(rays.size());
+  struct Found {
+    unsigned triangle = RTC_INVALID_GEOMETRY_ID;
+    float distance = 0;
+  };
+  const TriangleScene& triangles = tracer_->faces->triangles;
+  const CoveredPlaces& covered_places = tracer_->faces->covered_places;
+  // 1. All rays. The planes of what they meet are on their way from memory meanwhile.
+  std::vector<Found> found(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
     if (ray.direction.isZero(0)) continue;
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
-    Context context{new_context(), &exact, nullptr,
-                    tracer_->faces->covered_places.any() ? &tracer_->faces->covered_places : nullptr};
-    rtcIntersect1(tracer_->faces->triangles.scene, &context.embree, &query);
+    Context context{new_context(), &exact, nullptr, covered_places.any() ? &covered_places : nullptr};
+    context.is_endless = true;
+    rtcIntersect1(triangles.scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+    found[k] = {query.hit.primID, query.ray.tfar};
+    __builtin_prefetch(&triangles.planes[query.hit.primID]);
+  }
 
-    // The hit in double: where the ray meets the triangle's plane, unless it grazes.
-    const TrianglePlane& plane = tracer_->faces->triangles.planes[query.hit.primID];
-    const double cosine = plane.normal.dot(ray.direction);
-    const bool grazes = std::abs(cosine) < 1e-3;
-    const double distance =
-        (grazes ? static_cast<double>(query.ray.tfar) : -plane.height(start) / cosine) / tracer_->faces->scale;
-    hits[k] = Hit{plane.polygon, cosine < 0 ? Side::front : Side::back, ray.origin + distance * ray.direction, distance,
-                  ray.direction};
+  // 2. Where that is.
+  std::vector<std::optional<Hit>> hits(rays.size());
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (found[k].triangle != RTC_INVALID_GEOMETRY_ID)
+      hits[k] = tracer_->hit_at(rays[k], triangles.planes[found[k].triangle], found[k].distance);
   }
   return hits;
 }

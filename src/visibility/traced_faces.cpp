@@ -47,6 +47,7 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
       for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
       const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
       target.planes.push_back({normal, normal.dot(points[a]), p});
+      target.polygons.push_back(p);
     }
   }
   target.scene = rtcNewScene(device);
@@ -64,7 +65,7 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
       for (int d = 0; d < 3; ++d) vertices[3 * k + static_cast<std::size_t>(d)] = corners[k][d];
       indices[k] = static_cast<unsigned>(k);
     }
-    rtcSetGeometryUserData(geometry, target.planes.data());
+    rtcSetGeometryUserData(geometry, &target);
     rtcSetGeometryOccludedFilterFunction(geometry, filter);
     rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcCommitGeometry(geometry);

@@ -12,19 +12,6 @@
 
 namespace patchlight {
 
-/// The triangles of some polygons, ready to be traced.
-struct TriangleScene {
-  RTCScene scene = nullptr;
-  std::vector<TrianglePlane> planes;  ///< per triangle
-
-  TriangleScene() = default;
-  TriangleScene(const TriangleScene&) = delete;
-  TriangleScene& operator=(const TriangleScene&) = delete;
-  ~TriangleScene() {
-    if (scene) rtcReleaseScene(scene);
-  }
-};
-
 /// All polygons of a scene, which rays meet, in a scene of about unit size.
 struct TracedFaces {
   RTCDevice device = rtcNewDevice(nullptr);

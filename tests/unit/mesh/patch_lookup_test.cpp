@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <random>
+#include <vector>
 
 namespace patchlight::patch_lookup_test {
 namespace {
@@ -37,6 +38,22 @@ TEST_P(LookupInEveryShape, FindsThePatchOfItsPoints) {
       }
     }
   }
+}
+
+TEST_P(LookupInEveryShape, FindsManyAsOneAfterTheOther) {
+  const Scene& scene = GetParam().scene;
+  const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.1);
+  const PatchLookup lookup(mesh);
+  std::vector<SidePoint> points;
+  for (const Point& point : mesh.centroid) points.push_back({0, Side::front, point});
+  for (const Point& point : mesh.vertices) points.push_back({0, Side::front, point});
+  points.push_back({0, Side::back, mesh.centroid[0]});
+  const std::vector<PatchIndex> found = lookup.patches_at(points);
+  ASSERT_EQ(found.size(), points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    EXPECT_EQ(found[k], lookup.patch_at(points[k].polygon, points[k].side, points[k].point).value_or(no_patch)) << k;
+  }
+  EXPECT_EQ(found.back(), no_patch);
 }
 
 TEST_P(LookupInEveryShape, FindsAPatchAtItsCornersAndJustOutside) {
