@@ -93,9 +93,11 @@ class Gather {
   std::uint32_t seed_of(PatchIndex patch, Purpose purpose) const {
     return hash({rays_.seed, keys_[patch], static_cast<std::uint64_t>(purpose)});
   }
-  std::array<std::vector<Ray>, 4> hemisphere_rays(PatchIndex patch) const;
-  Field straight_from_lamps(PatchIndex patch, const std::array<std::vector<Ray>, 4>& rays) const;
-  void add_hemisphere(std::size_t quarter, std::span<const Seen> seen, GatheredQuarters& into) const;
+  std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
+  std::vector<Seen> seen_along(PatchIndex patch, const std::vector<Ray>& rays) const;
+  Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
+  double open_share(PatchIndex patch, std::span<const Seen> seen) const;
+  void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
@@ -110,82 +112,115 @@ class Gather {
   RaysOfQuarters rays_;
 };
 
-// The same directions from the same places of all quarters.
-std::array<std::vector<Ray>, 4> Gather::hemisphere_rays(PatchIndex patch) const {
+// The same directions from the same places of all quarters, those of the first one first.
+std::vector<Ray> Gather::hemisphere_rays(PatchIndex patch) const {
   const PatchCorners corners = mesh_.corner_points(patch);
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::hemisphere));
-  std::array<std::vector<Ray>, 4> rays;
+  std::vector<Ray> rays;
+  rays.reserve(4 * samples.size());
   for (std::size_t q = 0; q < 4; ++q) {
     const QuadPoints points(quarter_of(corners, static_cast<int>(q)).points);
     for (const auto& sample : samples)
-      rays[q].push_back({points.at(sample[0], sample[1]),
-                         frame * occluder_.held_direction(mesh_.polygon[patch], sample[2], sample[3]),
-                         mesh_.polygon[patch]});
+      rays.push_back({points.at(sample[0], sample[1]),
+                      frame * occluder_.held_direction(mesh_.polygon[patch], sample[2], sample[3]),
+                      mesh_.polygon[patch]});
   }
   return rays;
 }
 
+// Clear polygons let the same rays of all quarters through.
+std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& rays) const {
+  const std::uint32_t of_patch = seed_of(patch, Purpose::clear);
+  if (occluder_.specular_faces().empty()) return sights_.of_rays(patch, rays, of_patch);
+  std::vector<Seen> seen;
+  for (auto first = rays.begin(); first != rays.end(); first += rays_.rays) {
+    const std::vector<Seen> of_quarter = sights_.of_rays(patch, {first, first + rays_.rays}, of_patch);
+    seen.insert(seen.end(), of_quarter.begin(), of_quarter.end());
+  }
+  return seen;
+}
+
 // E h F V / p for a lamp that is chosen with probability p, F exact, h what it holds back of light: a row for each ray,
 // by its origin, those of the first quarter first. All quarters look to the same points of the same lamps.
-Field Gather::straight_from_lamps(PatchIndex patch, const std::array<std::vector<Ray>, 4>& rays) const {
+Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const {
   Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
   if (lamps_.empty()) return irradiance;
   const ChoiceOfLamps for_patch = by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
   const ChoiceOfLamps& choice = by_flux_ ? *by_flux_ : for_patch;
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::lamps));
   std::vector<Segment> segments;
-  for (const std::vector<Ray>& of_quarter : rays) {
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const auto [lamp, probability, u] = choice.at(samples[k][0]);
-      const PatchCorners corners = mesh_.corner_points(lamp);
-      const Point& from = of_quarter[k].origin;
-      const double held = occluder_.held_share(mesh_.polygon[lamp], mesh_.side[lamp]);
-      const double factor = point_to_polygon(from, mesh_.normal[patch], corners);
-      irradiance.row(static_cast<Eigen::Index>(segments.size())) = factor * held / probability * exitance_.row(lamp);
-      const Point to = square_to_quad(corners.points, u, samples[k][1]);
-      segments.push_back({from, to, mesh_.polygon[patch], mesh_.polygon[lamp]});
-    }
+  segments.reserve(rays.size());
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const auto& sample = samples[k % samples.size()];
+    const auto [lamp, probability, u] = choice.at(sample[0]);
+    const PatchCorners corners = mesh_.corner_points(lamp);
+    const double held = occluder_.held_share(mesh_.polygon[lamp], mesh_.side[lamp]);
+    const double factor = point_to_polygon(rays[k].origin, mesh_.normal[patch], corners);
+    irradiance.row(static_cast<Eigen::Index>(k)) = factor * held / probability * exitance_.row(lamp);
+    const Point to = square_to_quad(corners.points, u, sample[1]);
+    segments.push_back({rays[k].origin, to, mesh_.polygon[patch], mesh_.polygon[lamp]});
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
 }
 
-void Gather::add_hemisphere(std::size_t quarter, std::span<const Seen> seen, GatheredQuarters& into) const {
+// What the rays of all quarters find, those of the first one first.
+void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const {
+  const auto rays = static_cast<std::size_t>(rays_.rays);
+  const std::size_t first = 4 * std::size_t{patch};
+  std::vector<SidePoint> points;
+  std::vector<std::size_t> rays_that_meet;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (seen[k].sight != Sight::patch) continue;
-    const Hit& hit = *seen[k].hit;
-    const auto met = lookup_.patch_at(hit.polygon, hit.side, hit.point);
-    if (!met) continue;
-    const int of_met = quarter_at(mesh_.corner_points(*met), mesh_.normal[*met], hit.point);
-    into.met[quarter * seen.size() + k] = 4 * *met + static_cast<PatchIndex>(of_met);
-    into.irradiance.row(static_cast<Eigen::Index>(quarter)) += sent_.row(*met);
-    // No ray to a lamp goes over mirrors.
-    if (!lamps_.empty() && hit.reflections > 0)
-      into.irradiance.row(static_cast<Eigen::Index>(quarter)) += exitance_.row(*met);
+    points.push_back({seen[k].hit->polygon, seen[k].hit->side, seen[k].hit->point});
+    rays_that_meet.push_back(k);
   }
+  const std::vector<PatchIndex> met = lookup_.patches_at(points);
+  for (std::size_t m = 0; m < met.size(); ++m) {
+    if (met[m] == no_patch) continue;
+    const std::size_t k = rays_that_meet[m];
+    const Hit& hit = *seen[k].hit;
+    const auto quarter = static_cast<Eigen::Index>(first + k / rays);
+    const int of_met = quarter_at(mesh_.corner_points(met[m]), mesh_.normal[met[m]], hit.point);
+    into.met[first * rays + k] = 4 * met[m] + static_cast<PatchIndex>(of_met);
+    into.is_far[first * rays + k] = is_far_from(hit.distance, mesh_.area[met[m]]) ? 1 : 0;
+    into.irradiance.row(quarter) += sent_.row(met[m]);
+    // No ray to a lamp goes over mirrors.
+    if (!lamps_.empty() && hit.reflections > 0) into.irradiance.row(quarter) += exitance_.row(met[m]);
+  }
+}
+
+double Gather::open_share(PatchIndex patch, std::span<const Seen> seen) const {
+  const auto is_open = [&](const Seen& one) {
+    return one.sight == Sight::nothing ||
+           (one.sight == Sight::patch && is_far_from(one.hit->distance, mesh_.area[patch]));
+  };
+  return static_cast<double>(std::count_if(seen.begin(), seen.end(), is_open)) / static_cast<double>(seen.size());
 }
 
 // The mean is that over what is exposed: of a patch that solids cover in part, rays that meet backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
-  const std::array<std::vector<Ray>, 4> rays = hemisphere_rays(patch);
+  const std::vector<Ray> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
+  const std::vector<Seen> all_seen = seen_along(patch, rays);
+  add_hemisphere(patch, all_seen, into);
+  const auto count_of_one = static_cast<std::size_t>(rays_.rays);
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t quarter = 4 * std::size_t{patch} + k;
-    const auto q = static_cast<Eigen::Index>(quarter);
-    const std::vector<Seen> seen = sights_.of_rays(patch, rays[k], seed_of(patch, Purpose::clear));
+    const auto q = static_cast<Eigen::Index>(4 * std::size_t{patch} + k);
+    const std::span<const Seen> seen = std::span(all_seen).subspan(k * count_of_one, count_of_one);
     int exposed = 0;
     for (std::size_t ray = 0; ray < seen.size(); ++ray) {
       if (covered_[patch] > 0 && unseen({&seen[ray], 1}) > 0) continue;
       ++exposed;
       into.irradiance.row(q) += direct.row(static_cast<Eigen::Index>(k * seen.size() + ray));
     }
-    add_hemisphere(quarter, seen, into);
     into.irradiance.row(q) /= std::max(1, exposed);
     const double area = area_vector(quarter_of(mesh_.corner_points(patch), static_cast<int>(k))).norm();
     into.part_of_ray[q] = area / rays_.rays;
     into.exposed[q] = area * exposed / rays_.rays;
     into.seen[q] = static_cast<double>(count(seen, Sight::patch)) / std::max(1, exposed);
+    into.open[q] = open_share(patch, seen);
   }
   const double exposed = into.exposed.segment<4>(4 * Eigen::Index{patch}).sum();
   into.part_of_ray.segment<4>(4 * Eigen::Index{patch}) *= exposed > 0 ? 1 / exposed : 0;
@@ -201,6 +236,8 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
   GatheredQuarters found{rays.rays,
                          Field::Zero(size, patches.solved.problem.exitance.cols()),
                          std::vector<PatchIndex>(quarters * static_cast<std::size_t>(rays.rays), no_patch),
+                         std::vector<std::uint8_t>(quarters * static_cast<std::size_t>(rays.rays), 0),
+                         Eigen::ArrayXd::Zero(size),
                          Eigen::ArrayXd::Zero(size),
                          Eigen::ArrayXd::Zero(size),
                          Eigen::ArrayXd::Zero(size)};

@@ -5,6 +5,7 @@
 #include "mesh/means_around.h"
 #include "mesh/quarters.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -18,12 +19,17 @@ struct Differences {
   GatheredQuarters rays;  // without their irradiance
   Field of_irradiance;    // of each quarter from the mean of its patch, W/m^2, as long as it is needed
   Field of_quarters;      // of radiosity, the same
+  Field from_afar;        // of radiosity: of what is seen of each patch from afar from its mean
   Field at_patches;       // what they change of the irradiance of each patch, W/m^2
 
-  // Those that are met from a quarter.
-  std::span<const PatchIndex> met_from(PatchIndex quarter) const {
+  // Calls `visit` with each patch that is met from a quarter and the difference of radiosity there, one row.
+  void for_met_from(PatchIndex quarter, const auto& visit) const {
     const auto count = static_cast<std::size_t>(rays.rays);
-    return std::span(rays.met).subspan(quarter * count, count);
+    for (std::size_t ray = quarter * count; ray < (quarter + 1) * count; ++ray) {
+      const PatchIndex met = rays.met[ray];
+      if (met == no_patch) continue;
+      visit(met / 4, rays.is_far[ray] != 0 ? from_afar.row(met / 4) : of_quarters.row(met));
+    }
   }
 };
 
@@ -94,16 +100,31 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-Differences find_differences(GatheredQuarters rays, const Field& direct, const PatchMesh& mesh,
-                             const Scattering& scattering) {
+// From afar the quarters of a patch are seen alike, and their differences cancel, but for those that something close to
+// them hides: by reciprocity as it hides afar from them. That is told by other rays, as it goes with the light.
+Field seen_from_afar(const Field& of_quarters, const GatheredQuarters& rays, const Eigen::ArrayXd& open) {
+  const Eigen::ArrayXd weight = rays.exposed * open;
+  Field seen = Field::Zero(of_quarters.rows() / 4, of_quarters.cols());
+  for (Eigen::Index i = 0; i < seen.rows(); ++i) {
+    const double sum = weight.segment<4>(4 * i).sum();
+    if (!(sum > 0)) continue;
+    for (Eigen::Index q = 4 * i; q < 4 * i + 4; ++q) seen.row(i) += weight[q] / sum * of_quarters.row(q);
+  }
+  return seen;
+}
+
+Differences find_differences(GatheredQuarters rays, const Field& direct, const Eigen::ArrayXd& open,
+                             const PatchMesh& mesh, const Scattering& scattering) {
   Field irradiance = std::exchange(rays.irradiance, {});
   if (direct.size() > 0) irradiance += direct;
-  Differences found{std::move(rays), {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols())};
+  Differences found{std::move(rays), {}, {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols())};
   found.of_irradiance = differences_of_irradiance(found.rays, irradiance);
   found.of_quarters = reflected_at_quarters(mesh, scattering, found.of_irradiance);
+  found.from_afar = seen_from_afar(found.of_quarters, found.rays, open);
   for (PatchIndex q = 0; q < found.of_quarters.rows(); ++q) {
-    for (const PatchIndex met : found.met_from(q))
-      if (met != no_patch) found.at_patches.row(q / 4) += found.rays.part_of_ray[q] * found.of_quarters.row(met);
+    found.for_met_from(q, [&](PatchIndex, const auto& difference) {
+      found.at_patches.row(q / 4) += found.rays.part_of_ray[q] * difference;
+    });
   }
   return found;
 }
@@ -112,11 +133,9 @@ Differences find_differences(GatheredQuarters rays, const Field& direct, const P
 Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& differences) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(weighted_changes.rows());
   for (PatchIndex q = 0; q < differences.rays.part_of_ray.size(); ++q) {
-    for (const PatchIndex met : differences.met_from(q)) {
-      if (met == no_patch) continue;
-      const double change = (weighted_changes.row(q / 4) * differences.of_quarters.row(met)).sum();
-      parts[met / 4] += differences.rays.part_of_ray[q] * change;
-    }
+    differences.for_met_from(q, [&](PatchIndex met, const auto& difference) {
+      parts[met] += differences.rays.part_of_ray[q] * (weighted_changes.row(q / 4) * difference).sum();
+    });
   }
   return parts;
 }
@@ -128,9 +147,14 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   const SolvedProblem& solved = patches.solved;
   const Eigen::VectorXd& area = solved.problem.area;
   // 1. Twice, with other rays.
+  const auto gathered = [&](std::size_t half) {
+    return gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
+  };
+  std::array<GatheredQuarters, 2> rays{gathered(0), gathered(1)};
+  const std::array<Eigen::ArrayXd, 2> open{rays[0].open, rays[1].open};
   const auto found = [&](std::size_t half) {
-    GatheredQuarters rays = gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
-    return find_differences(std::move(rays), look.direct[half], patches.mesh, solved.problem.scattering);
+    return find_differences(std::move(rays[half]), look.direct[half], open[1 - half], patches.mesh,
+                            solved.problem.scattering);
   };
   Differences one = found(0);
   Differences other = found(1);

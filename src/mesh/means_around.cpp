@@ -1,5 +1,6 @@
 #include "mesh/means_around.h"
 
+#include "base/parallel.h"
 #include "mesh/patches_at_vertices.h"
 
 namespace patchlight {
@@ -14,7 +15,8 @@ constexpr double same_facing = 0.9;
 Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
   const auto at_vertex = patches_at_vertices(mesh);
   Field means(values.rows(), values.cols());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+  parallel_for(mesh.size(), [&](std::size_t at) {
+    const auto i = static_cast<PatchIndex>(at);
     Field sum = Field::Zero(1, values.cols());
     double areas = 0;
     for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
@@ -25,7 +27,7 @@ Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fiel
       }
     }
     means.row(i) = sum / areas;
-  }
+  });
   return means;
 }
 

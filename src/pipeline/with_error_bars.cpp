@@ -28,9 +28,7 @@ namespace {
 // Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
 // patches, for the sake of time: the mean over the patches around takes the noise away.
 constexpr int rays_from_quarters = 16;
-constexpr int few_rays_from_quarters = 4;
-constexpr int fewest_rays_from_quarters = 2;
-constexpr PatchIndex very_many_patches = 400'000;
+constexpr int few_rays_from_quarters = 2;
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
@@ -147,9 +145,7 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
 // Rays from each quarter of a patch: more of them where rows have more, as what the bars may leave is smaller.
 int rays_of_quarters(const Simulation& simulation) {
   const PatchIndex patches = simulation.mesh.size();
-  const int usual = patches > very_many_patches ? fewest_rays_from_quarters
-                    : patches > many_patches    ? few_rays_from_quarters
-                                                : rays_from_quarters;
+  const int usual = patches > many_patches ? few_rays_from_quarters : rays_from_quarters;
   const int more = std::max(1, simulation.plan.assembly.rays / AssemblyOptions().rays);
   return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(more)));
 }
