@@ -3,6 +3,7 @@
 #include "patchlight/base/field.h"
 
 #include <Eigen/Core>
+#include <span>
 
 namespace patchlight {
 
@@ -21,6 +22,9 @@ Eigen::ArrayXd dot(const FieldView& x, const FieldView& y);
 /// sum_i A_i x_i y_i
 Eigen::ArrayXd inner_product(const FieldView& x, const FieldView& y, const Eigen::VectorXd& area);
 
+/// The same of x with each of several fields of as many bands: a row for each. Several are read at the cost of one.
+Eigen::ArrayXXd inner_products(const Field& x, std::span<const Field> with, const Eigen::VectorXd& area);
+
 /// max_i x_i
 Eigen::ArrayXd highest(const FieldView& x);
 
@@ -35,5 +39,8 @@ Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
 
 /// A field with each band multiplied by a factor.
 Field scaled(const FieldView& field, const Eigen::ArrayXd& factors);
+
+/// A field plus several others of as many bands, each band of these multiplied by a factor: a row for each.
+Field plus_combination(Field field, std::span<const Field> others, const Eigen::ArrayXXd& factors);
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,21 +28,26 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
   return arnoldi;
 }
 
-// The next direction: (I - K) v_k, orthogonalised twice (modified Gram-Schmidt loses orthogonality in one pass).
+// The next direction: (I - K) v_k, orthogonalised; once more where much of it was along the others, as then rounding
+// leaves some of that (Daniel, Gragg, Kaufman and Stewart 1976: twice is enough).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
+  constexpr double much_is_left = 0.5;
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
   Field next = arnoldi.v.back() - problem.scattering.reflect(irradiance);
   arnoldi.irradiance.push_back(std::move(irradiance));
+  Eigen::ArrayXd before = area_norm(next, problem.area);
+  Eigen::ArrayXd norm;
   for (int pass = 0; pass < 2; ++pass) {
-    for (Eigen::Index j = 0; j <= k; ++j) {
-      const Field& v = arnoldi.v[static_cast<std::size_t>(j)];
-      const Eigen::ArrayXd h = inner_product(next, v, problem.area);
-      next -= scaled(v, h);
-      for (Eigen::Index band = 0; band < h.size(); ++band) arnoldi.hessenberg[band](j, k) += h[band];
-    }
+    const Eigen::ArrayXXd along = inner_products(next, arnoldi.v, problem.area);
+    next = plus_combination(std::move(next), arnoldi.v, -along);
+    for (Eigen::Index band = 0; band < along.cols(); ++band)
+      arnoldi.hessenberg[static_cast<std::size_t>(band)].col(k).head(k + 1) += along.col(band).matrix();
+    norm = area_norm(next, problem.area);
+    if ((norm >= much_is_left * before).all()) break;
+    before = norm;
   }
-  const Eigen::ArrayXd norm = area_norm(next, problem.area);
-  for (Eigen::Index band = 0; band < norm.size(); ++band) arnoldi.hessenberg[band](k + 1, k) = norm[band];
+  for (Eigen::Index band = 0; band < norm.size(); ++band)
+    arnoldi.hessenberg[static_cast<std::size_t>(band)](k + 1, k) = norm[band];
   arnoldi.v.push_back(scaled(next, quotient(Eigen::ArrayXd::Ones(norm.size()), norm)));
   return arnoldi;
 }
@@ -49,21 +55,17 @@ Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradia
 // The combination of the directions that has the least residual, added to the start.
 Iterate best(const Arnoldi& arnoldi, const RadiosityProblem& problem, const Iterate& start) {
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
-  Eigen::ArrayXXd lengths(start.radiosity.cols(), k);
-  for (Eigen::Index band = 0; band < lengths.rows(); ++band) {
+  Eigen::ArrayXXd lengths(k, start.radiosity.cols());
+  for (Eigen::Index band = 0; band < lengths.cols(); ++band) {
     const Eigen::MatrixXd hessenberg = arnoldi.hessenberg[static_cast<std::size_t>(band)].topLeftCorner(k + 1, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k + 1);
     right[0] = arnoldi.beta[band];
     // Ranks are revealed: a band that is solved already has directions 0.
-    lengths.row(band) = hessenberg.colPivHouseholderQr().solve(right).transpose().array();
+    lengths.col(band) = hessenberg.colPivHouseholderQr().solve(right).array();
   }
-  Field B = start.radiosity;
-  Field H = start.irradiance;
-  for (Eigen::Index j = 0; j < k; ++j) {
-    B += scaled(arnoldi.v[static_cast<std::size_t>(j)], lengths.col(j));
-    H += scaled(arnoldi.irradiance[static_cast<std::size_t>(j)], lengths.col(j));
-  }
-  return iterate_of(problem, std::move(B), std::move(H));
+  const std::span directions(arnoldi.v.data(), arnoldi.irradiance.size());
+  return iterate_of(problem, plus_combination(start.radiosity, directions, lengths),
+                    plus_combination(start.irradiance, arnoldi.irradiance, lengths));
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "base/vectors.h"
 
+#include "base/parallel.h"
+
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace patchlight::vectors_test {
 
@@ -29,6 +32,33 @@ TEST(Vectors, BandsDoNotMix) {
     EXPECT_NEAR(dot(x.col(band), y.col(band))[0], all[band], 1e-12);
     EXPECT_EQ(highest(x.col(band))[0], highest(x)[band]);
   }
+}
+
+// Over more patches than one block has.
+TEST(Vectors, SeveralFieldsAtOnceAreAsOneAfterTheOther) {
+  constexpr Eigen::Index patches = 5000;
+  const Eigen::VectorXd area = Eigen::VectorXd::Random(patches).cwiseAbs();
+  const Field x = Field::Random(patches, 3);
+  const std::vector<Field> fields{Field::Random(patches, 3), Field::Random(patches, 3)};
+  const Eigen::ArrayXXd products = inner_products(x, fields, area);
+  ASSERT_EQ(products.rows(), 2);
+  Field sum = x;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Field& field = fields[static_cast<std::size_t>(k)];
+    EXPECT_TRUE(products.row(k).isApprox(inner_product(x, field, area).transpose(), 1e-12));
+    sum += scaled(field, products.row(k).transpose());
+  }
+  EXPECT_TRUE(plus_combination(x, fields, products).isApprox(sum, 1e-12));
+}
+
+TEST(Vectors, SeveralFieldsGiveTheSameBitsOnAnyNumberOfThreads) {
+  const Eigen::VectorXd area = Eigen::VectorXd::Random(20000).cwiseAbs();
+  const std::vector<Field> fields{Field::Random(20000, 2), Field::Random(20000, 2)};
+  const auto products = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return inner_products(fields[0], fields, area);
+  };
+  EXPECT_TRUE((products(1) == products(2)).all());
 }
 
 TEST(Vectors, AQuotientByNothingIsNothing) {
