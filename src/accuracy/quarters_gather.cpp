@@ -65,6 +65,23 @@ ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex
 // More evaluations of lamps at patches than this are not worth their time: lamps are chosen by their flux then.
 constexpr double most_evaluations = 2e7;
 
+// From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
+bool is_far_from(const PatchCorners& corners, double distance) {
+  constexpr double edges = 8;
+  const auto count = static_cast<std::size_t>(corners.count);
+  double longest = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    longest = std::max(longest, (corners.points[(k + 1) % count] - corners.points[k]).squaredNorm());
+  return distance * distance > edges * edges * longest;
+}
+
+// How many rays have met a patch that is far from where they start.
+int count_far(const PatchCorners& from, std::span<const Seen> seen) {
+  return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const Seen& one) {
+    return one.sight == Sight::patch && is_far_from(from, one.hit->distance);
+  }));
+}
+
 class Gather {
  public:
   // Lamps that are many patches are left in what rays over the hemisphere find.
@@ -96,7 +113,6 @@ class Gather {
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   std::vector<Seen> seen_along(PatchIndex patch, const std::vector<Ray>& rays) const;
   Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
-  double open_share(PatchIndex patch, std::span<const Seen> seen) const;
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
 
   const PatchMesh& mesh_;
@@ -177,26 +193,20 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
     rays_that_meet.push_back(k);
   }
   const std::vector<PatchIndex> met = lookup_.patches_at(points);
+  const bool is_open = 2 * count_far(mesh_.corner_points(patch), seen) >= static_cast<int>(seen.size());
   for (std::size_t m = 0; m < met.size(); ++m) {
     if (met[m] == no_patch) continue;
     const std::size_t k = rays_that_meet[m];
     const Hit& hit = *seen[k].hit;
     const auto quarter = static_cast<Eigen::Index>(first + k / rays);
-    const int of_met = quarter_at(mesh_.corner_points(met[m]), mesh_.normal[met[m]], hit.point);
+    const PatchCorners corners = mesh_.corner_points(met[m]);
+    const int of_met = quarter_at(corners, mesh_.normal[met[m]], hit.point);
     into.met[first * rays + k] = 4 * met[m] + static_cast<PatchIndex>(of_met);
-    into.is_far[first * rays + k] = is_far_from(hit.distance, mesh_.area[met[m]]) ? 1 : 0;
+    into.is_far[first * rays + k] = is_open && is_far_from(corners, hit.distance) ? 1 : 0;
     into.irradiance.row(quarter) += sent_.row(met[m]);
     // No ray to a lamp goes over mirrors.
     if (!lamps_.empty() && hit.reflections > 0) into.irradiance.row(quarter) += exitance_.row(met[m]);
   }
-}
-
-double Gather::open_share(PatchIndex patch, std::span<const Seen> seen) const {
-  const auto is_open = [&](const Seen& one) {
-    return one.sight == Sight::nothing ||
-           (one.sight == Sight::patch && is_far_from(one.hit->distance, mesh_.area[patch]));
-  };
-  return static_cast<double>(std::count_if(seen.begin(), seen.end(), is_open)) / static_cast<double>(seen.size());
 }
 
 // The mean is that over what is exposed: of a patch that solids cover in part, rays that meet backs start inside one.
@@ -220,7 +230,7 @@ void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
     into.part_of_ray[q] = area / rays_.rays;
     into.exposed[q] = area * exposed / rays_.rays;
     into.seen[q] = static_cast<double>(count(seen, Sight::patch)) / std::max(1, exposed);
-    into.open[q] = open_share(patch, seen);
+    into.open[q] = static_cast<double>(count_far(mesh_.corner_points(patch), seen)) / std::max(1, exposed);
   }
   const double exposed = into.exposed.segment<4>(4 * Eigen::Index{patch}).sum();
   into.part_of_ray.segment<4>(4 * Eigen::Index{patch}) *= exposed > 0 ? 1 / exposed : 0;
@@ -233,14 +243,15 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
   const Gather gather(patches, rays);
   const std::size_t quarters = 4 * std::size_t{patches.mesh.size()};
   const auto size = static_cast<Eigen::Index>(quarters);
-  GatheredQuarters found{rays.rays,
-                         Field::Zero(size, patches.solved.problem.exitance.cols()),
-                         std::vector<PatchIndex>(quarters * static_cast<std::size_t>(rays.rays), no_patch),
-                         std::vector<std::uint8_t>(quarters * static_cast<std::size_t>(rays.rays), 0),
-                         Eigen::ArrayXd::Zero(size),
-                         Eigen::ArrayXd::Zero(size),
-                         Eigen::ArrayXd::Zero(size),
-                         Eigen::ArrayXd::Zero(size)};
+  const std::size_t count = quarters * static_cast<std::size_t>(rays.rays);
+  GatheredQuarters found{.rays = rays.rays,
+                         .irradiance = Field::Zero(size, patches.solved.problem.exitance.cols()),
+                         .met = std::vector<PatchIndex>(count, no_patch),
+                         .is_far = std::vector<std::uint8_t>(count, 0),
+                         .part_of_ray = Eigen::ArrayXd::Zero(size),
+                         .exposed = Eigen::ArrayXd::Zero(size),
+                         .seen = Eigen::ArrayXd::Zero(size),
+                         .open = Eigen::ArrayXd::Zero(size)};
   parallel_for(patches.mesh.size(), Stage::error_bars, observer,
                [&](std::size_t patch) { gather.at(static_cast<PatchIndex>(patch), found); });
   return found;

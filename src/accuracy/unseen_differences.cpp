@@ -14,13 +14,19 @@
 namespace patchlight {
 namespace {
 
+// What is seen of each patch from afar.
+struct SeenFromAfar {
+  Field difference;                    // of its radiosity from the patch's mean, W/m^2
+  std::vector<std::uint8_t> is_known;  // 0: no ray has told
+};
+
 // The differences of radiosity inside patches, as one set of rays finds them.
 struct Differences {
   GatheredQuarters rays;  // without their irradiance
   Field of_irradiance;    // of each quarter from the mean of its patch, W/m^2, as long as it is needed
   Field of_quarters;      // of radiosity, the same
-  Field from_afar;        // of radiosity: of what is seen of each patch from afar from its mean
-  Field at_patches;       // what they change of the irradiance of each patch, W/m^2
+  SeenFromAfar from_afar;
+  Field at_patches;  // what they change of the irradiance of each patch, W/m^2
 
   // Calls `visit` with each patch that is met from a quarter and the difference of radiosity there, one row.
   void for_met_from(PatchIndex quarter, const auto& visit) const {
@@ -28,7 +34,8 @@ struct Differences {
     for (std::size_t ray = quarter * count; ray < (quarter + 1) * count; ++ray) {
       const PatchIndex met = rays.met[ray];
       if (met == no_patch) continue;
-      visit(met / 4, rays.is_far[ray] != 0 ? from_afar.row(met / 4) : of_quarters.row(met));
+      const bool by_patch = rays.is_far[ray] != 0 && from_afar.is_known[met / 4] != 0;
+      visit(met / 4, by_patch ? from_afar.difference.row(met / 4) : of_quarters.row(met));
     }
   }
 };
@@ -100,15 +107,19 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-// From afar the quarters of a patch are seen alike, and their differences cancel, but for those that something close to
-// them hides: by reciprocity as it hides afar from them. That is told by other rays, as it goes with the light.
-Field seen_from_afar(const Field& of_quarters, const GatheredQuarters& rays, const Eigen::ArrayXd& open) {
+// From afar the quarters of a patch are seen alike, and their differences cancel, unless something close to some of
+// them hides these. By reciprocity each of them counts by how much of what is far can be seen from it: that is told by
+// other rays, as in these it goes with the light.
+SeenFromAfar seen_from_afar(const Field& of_quarters, const GatheredQuarters& rays, const Eigen::ArrayXd& open) {
   const Eigen::ArrayXd weight = rays.exposed * open;
-  Field seen = Field::Zero(of_quarters.rows() / 4, of_quarters.cols());
-  for (Eigen::Index i = 0; i < seen.rows(); ++i) {
+  const Eigen::Index patches = of_quarters.rows() / 4;
+  SeenFromAfar seen{Field::Zero(patches, of_quarters.cols()),
+                    std::vector<std::uint8_t>(static_cast<std::size_t>(patches), 0)};
+  for (Eigen::Index i = 0; i < patches; ++i) {
     const double sum = weight.segment<4>(4 * i).sum();
     if (!(sum > 0)) continue;
-    for (Eigen::Index q = 4 * i; q < 4 * i + 4; ++q) seen.row(i) += weight[q] / sum * of_quarters.row(q);
+    seen.is_known[static_cast<std::size_t>(i)] = 1;
+    for (Eigen::Index q = 4 * i; q < 4 * i + 4; ++q) seen.difference.row(i) += weight[q] / sum * of_quarters.row(q);
   }
   return seen;
 }
@@ -151,7 +162,7 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
     return gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
   };
   std::array<GatheredQuarters, 2> rays{gathered(0), gathered(1)};
-  const std::array<Eigen::ArrayXd, 2> open{rays[0].open, rays[1].open};
+  const std::array<Eigen::ArrayXd, 2> open{std::exchange(rays[0].open, {}), std::exchange(rays[1].open, {})};
   const auto found = [&](std::size_t half) {
     return find_differences(std::move(rays[half]), look.direct[half], open[1 - half], patches.mesh,
                             solved.problem.scattering);

@@ -61,8 +61,10 @@ double guess_in(const Bracket& bracket, double wanted, double least, double firs
     return 1 / std::sqrt(a + (b - a) * (wanted - bracket.few) / (bracket.many - bracket.few));
   }
   if (first < bracket.too_long) return first;
+  // Few faces may be cut yet of many that are as large: one step takes no more than sixteen times as many patches.
+  constexpr double shortest_step = 0.25;
   if (bracket.few <= least) return 0.5 * bracket.too_long;
-  return bracket.too_long * std::sqrt((bracket.few - least) / (wanted - least));
+  return bracket.too_long * std::max(shortest_step, std::sqrt((bracket.few - least) / (wanted - least)));
 }
 
 double middle_of(const Bracket& bracket) {

@@ -237,14 +237,14 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
   return grid.lattice ? range.begin + patch_in(*grid.lattice, point) : patch_in(grid, point);
 }
 
-// The patches of each cell, then their outlines.
+// Starts to read the patches of each cell, and then their outlines.
 void PatchLookup::prefetch(std::span<const Searched> searched) {
   constexpr std::uint32_t in_a_line = 16;
-  for (const auto& [point, grid, cell] : searched) {
+  for (const auto& [place, grid, cell] : searched) {
     for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; at += in_a_line)
       __builtin_prefetch(&grid->patches[at]);
   }
-  for (const auto& [point, grid, cell] : searched) {
+  for (const auto& [place, grid, cell] : searched) {
     for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; ++at)
       __builtin_prefetch(&grid->outlines[grid->patches[at] - grid->first]);
   }
@@ -276,7 +276,7 @@ std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> point
     __builtin_prefetch(&grid.begin[searched.back().cell]);
   }
 
-  // 2. These.
+  // 2. What does.
   prefetch(searched);
   for (const auto& [k, grid, cell] : searched) patches[k] = patch_in(*grid, points[k].point);
   return patches;

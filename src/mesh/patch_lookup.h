@@ -63,7 +63,7 @@ class PatchLookup {
   const Grid& grid_on(PolygonIndex polygon, Side side) const;
   // A point of several that is looked for in a cell of a grid.
   struct Searched {
-    std::size_t point;
+    std::size_t place;  // of the point among these
     const Grid* grid;
     std::size_t cell;
   };

@@ -23,7 +23,7 @@ struct SeenSphere {
 struct SeenPatch {
   std::size_t ray = 0;
   std::optional<PatchIndex> patch;
-  Point point;  ///< on the patch
+  Point point = Point::Zero();  ///< on the patch
   Vector direction;
   double share = 1;                    ///< of its light that gets through what is before it
   bool outlook = false;                ///< behind a clear face, or nothing is met

@@ -45,14 +45,15 @@ double quantile(std::vector<Weighted> values, double share) {
 // c with c = share (sum min(a_i, c)): none of the areas, lowered to it, is more than its share of their sum. The
 // smallest area, by which all are alike, when there are too few.
 double cap_of(std::vector<double> areas) {
-  constexpr std::size_t most_lowered = 7;  // largest_share of eight would be all
+  constexpr std::ptrdiff_t most_lowered = 7;
+  static_assert(largest_share * (most_lowered + 1) == 1);
   std::erase(areas, 0);
   if (areas.empty()) return 0;
   if (largest_share * static_cast<double>(areas.size()) < 1) return *std::min_element(areas.begin(), areas.end());
-  const auto largest = areas.end() - std::min<std::ptrdiff_t>(most_lowered, std::ssize(areas));
+  const auto largest = areas.end() - most_lowered;
   std::nth_element(areas.begin(), largest, areas.end());
   std::sort(largest, areas.end());
-  // With more digits the sum does not depend on the order.
+  // With more digits the sum seldom depends on the order.
   double below = static_cast<double>(std::accumulate(areas.begin(), largest, 0.0L));
   for (auto area = largest; area != areas.end(); ++area) {
     // With those below as they are: c = share (below + (the number of others) c).

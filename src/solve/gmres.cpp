@@ -28,8 +28,8 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
   return arnoldi;
 }
 
-// The next direction: (I - K) v_k, orthogonalised; once more where much of it was along the others, as then rounding
-// leaves some of that (Daniel, Gragg, Kaufman and Stewart 1976: twice is enough).
+// The next direction: (I - K) v_k, orthogonalised; once more where most of it was along the others, as then rounding
+// leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and Stewart 1976).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
   constexpr double much_is_left = 0.5;
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace patchlight {
 namespace {
@@ -33,7 +34,10 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
     const float nearer = is_endless ? t : std::min(t, 1 - t);
     const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
                                    z * RTCRayN_dir_z(hits.ray, N, k));
-    const float least = clear_height * clear_height * (x * x + y * y + z * z);
+    // Far from the scene's middle single precision tells less.
+    const float far = std::max({1.0F, std::abs(RTCRayN_org_x(hits.ray, N, k)), std::abs(RTCRayN_org_y(hits.ray, N, k)),
+                                std::abs(RTCRayN_org_z(hits.ray, N, k))});
+    const float least = clear_height * clear_height * far * far * (x * x + y * y + z * z);
     clear[k] = static_cast<unsigned char>(static_cast<int>(height * height > least) & static_cast<int>(nearer > 0));
   }
 }

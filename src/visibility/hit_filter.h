@@ -70,7 +70,7 @@ struct Context {
   const ShadowPacket* packet = nullptr;           ///< in place of rays
   const CoveredPlaces* covered_places = nullptr;  ///< hits on these do not count, if given
   Crossed* crossed = nullptr;                     ///< per ray: what list_crossed() finds
-  bool is_endless = false;                        ///< whether the ray, a single one of unit direction, has no end
+  bool is_endless = false;                        ///< whether the ray, a single one, has no end
 };
 
 /// Embree's filter: drops the hits on polygons whose plane does not separate the two ends of the ray, and on those that

@@ -312,7 +312,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     __builtin_prefetch(&triangles.planes[query.hit.primID]);
   }
 
-  // 2. Where that is.
+  // 2. Where they meet it.
   std::vector<std::optional<Hit>> hits(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (found[k].triangle != RTC_INVALID_GEOMETRY_ID)

@@ -120,7 +120,6 @@ TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.error_bars->mesh == two.error_bars->mesh).all());
 }
 
-// Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.
 // What the size of patches errs, relative to the light that is reflected.
 double mesh_error(const Scene& scene, std::size_t patches) {
   const Simulation s = simulate(scene, by_rays(patches));
@@ -128,12 +127,14 @@ double mesh_error(const Scene& scene, std::size_t patches) {
 }
 
 // Above 20,000 patches two rays start at each quarter of a patch, and sixteen below: what is found with few must not be
-// their noise. Of four times the patches the error is .44 times as large by its order, 1.2, and noise may add as much.
+// their noise. Of four times the patches the error is 4^(-1.2 / 2) = .44 times as large by its order; to twice that it
+// may be raised by noise.
 TEST(Rays, StateLessErrorOfFinerPatchesFromFewerRays) {
   const Scene scene = read_scene({mesh_folder() / "cornell_box.obj"});
   EXPECT_LT(mesh_error(scene, 24000), 0.88 * mesh_error(scene, 6000));
 }
 
+// Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.
 TEST(Rays, AreLinearInTheLight) {
   Scene scene = test_room(0.7);
   const Simulation one = simulate(scene, by_rays(1000));

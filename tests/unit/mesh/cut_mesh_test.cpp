@@ -1,6 +1,7 @@
 // Patches and lines of contact: laws on rooms with things in them at random.
 #include "mesh/cut_outlines.h"
 #include "mesh/mesher.h"
+#include "mesh/nested_mesh.h"
 #include "mesh/noded_lines.h"
 #include "support/scenes.h"
 
@@ -53,6 +54,18 @@ bool is_crossed(const PatchMesh& mesh, PatchIndex patch, const ContactLine& line
     if (to < 0) last = std::min(last, t);
   }
   return (last - first) * (line.to - line.from).norm() > 1e-6;
+}
+
+// A search for the longest edge counts patches as they are, with lines that get coarser and finer on its way.
+TEST(EdgeSearchInACrowdedRoom, CountsWhatIsMeshed) {
+  const Scene scene = crowded_room(3);
+  const KeptSides sides = front_sides(scene);
+  const ContactLines contacts = find_contact_lines(scene, sides);
+  EdgeSearch search(scene, sides, contacts);
+  for (const double edge : {5.0, 0.25, 1.5, 0.24, 0.7}) {
+    EXPECT_EQ(search.patches_with(edge), tessellate(scene, sides, edge, contacts).size()) << edge;
+    EXPECT_EQ(search.nested_patches_with(edge), nest(tessellate(scene, sides, edge, contacts)).patches.size()) << edge;
+  }
 }
 
 class CrowdedRooms : public testing::TestWithParam<std::tuple<unsigned, double>> {};

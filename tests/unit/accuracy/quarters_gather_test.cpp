@@ -1,0 +1,84 @@
+#include "accuracy/quarters_gather.h"
+
+#include "mesh/mesher.h"
+#include "support/scenes.h"
+#include "transport/closure.h"
+#include "visibility/occluder.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <utility>
+
+namespace patchlight::quarters_gather_test {
+namespace {
+
+using namespace test;
+
+// What is gathered in a room in which all surfaces send 1 W/m^2.
+struct Gathered {
+  PatchMesh mesh;
+  GatheredQuarters rays;
+};
+
+Gathered gathered(const Scene& scene, double max_edge, int rays) {
+  Gathered found{tessellate(scene, kept_sides(scene, Sides::front), max_edge), {}};
+  const auto size = static_cast<Eigen::Index>(found.mesh.size());
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
+  const LostShare lost{.escaped = zero, .at_backs = zero, .covered = zero};
+  RadiosityProblem problem;
+  problem.exitance = Field::Zero(size, 1);
+  Solution solution;
+  solution.radiosity = Field::Ones(size, 1);
+  found.rays = gather_at_quarters({found.mesh, occluder, lost, {problem, solution}}, {.rays = rays, .seed = 1}, {});
+  return found;
+}
+
+// A floor of 4 x 4 m under a ceiling, and a board 2 cm above one half of it.
+Scene board_over_half_a_floor() {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 2), true);
+  for (const Quad& face : box_faces(Point(2.01, 0, 0.02), Point(4, 4, 0.04), false))
+    scene = with_quad(std::move(scene), face);
+  return scene;
+}
+
+// The part of a patch that lies under the board is not seen from afar.
+TEST(QuartersGather, IsOpenWhereNothingIsNear) {
+  const auto [mesh, rays] = gathered(board_over_half_a_floor(), 0.2, 64);
+  int free = 0;
+  int under = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (mesh.normal[i].z() < 0.5 || mesh.centroid[i].z() > 0.01) continue;
+    for (Eigen::Index q = 4 * Eigen::Index{i}; q < 4 * Eigen::Index{i} + 4; ++q) {
+      if (mesh.centroid[i].x() > 2.2) {
+        EXPECT_LT(rays.open[q], 0.1) << mesh.centroid[i].transpose();
+        ++under;
+      } else if (std::abs(mesh.centroid[i].x() - 1) < 0.3 && std::abs(mesh.centroid[i].y() - 2) < 0.8) {
+        // The wall at 1 m is met by less than half of the rays.
+        EXPECT_GT(rays.open[q], 0.5) << mesh.centroid[i].transpose();
+        ++free;
+      }
+    }
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(under, 100);
+}
+
+// A ray counts as from afar where it comes from a patch that is open, and the one it meets is not near.
+TEST(QuartersGather, SeesPatchesFromAfarOnlyFromWhereIsOpen) {
+  const auto [mesh, rays] = gathered(board_over_half_a_floor(), 0.2, 16);
+  int from_afar = 0;
+  for (std::size_t ray = 0; ray < rays.met.size(); ++ray) {
+    if (rays.is_far[ray] == 0) continue;
+    ++from_afar;
+    const auto patch = static_cast<PatchIndex>(ray / (4 * static_cast<std::size_t>(rays.rays)));
+    EXPECT_GE(rays.open.segment<4>(4 * Eigen::Index{patch}).sum(), 4 * 0.5 - 1e-12);
+    // Eight edges are 1.6 m or less: an edge is no shorter than the root of half the area.
+    const double distance = (mesh.centroid[rays.met[ray] / 4] - mesh.centroid[patch]).norm();
+    EXPECT_GT(distance, 8 * std::sqrt(mesh.area[rays.met[ray] / 4]) - 2 * 0.3);
+  }
+  EXPECT_GT(from_afar, static_cast<int>(rays.met.size() / 8));
+}
+
+}  // namespace
+}  // namespace patchlight::quarters_gather_test
