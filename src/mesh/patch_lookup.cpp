@@ -15,21 +15,21 @@ constexpr double lookup_slack = 4e-6;
 // The patches of a lattice are at their places up to this share of their edges.
 constexpr double lattice_tolerance = 1e-6;
 
-using Flat = Eigen::Vector2f;
+using Flat = Eigen::Vector2d;
 
-float cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-float distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
+double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
   const Flat edge = to - from;
-  const float t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0F, 1.0F);
+  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
   return (from + t * edge - point).norm();
 }
 
 // Zero inside. The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds
 // nothing.
-float distance_to(const auto& outline, const Flat& eye) {
+double distance_to(const auto& outline, const Flat& eye) {
   bool inside = true;
-  float nearest = std::numeric_limits<float>::infinity();
+  double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
     const Flat from(outline.u[k], outline.v[k]);
@@ -85,8 +85,6 @@ Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
   const double cell = std::sqrt(size_u * size_v / count);
   grid.count_u = static_cast<int>(std::clamp(std::ceil(size_u / cell), 1.0, count));
   grid.count_v = static_cast<int>(std::clamp(std::ceil(size_v / cell), 1.0, count));
-  grid.middle_u = bounds.center()[grid.axis_u];
-  grid.middle_v = bounds.center()[grid.axis_v];
   grid.lower_u = bounds.min()[grid.axis_u] - pad;
   grid.lower_v = bounds.min()[grid.axis_v] - pad;
   grid.cells_per_u = grid.count_u / size_u;
@@ -149,8 +147,8 @@ PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch)
   const PatchCorners corners = mesh_.corner_points(patch);
   Outline outline{};
   for (std::size_t k = 0; k < 4; ++k) {
-    outline.u[k] = static_cast<float>(corners.points[k][grid.axis_u] - grid.middle_u);
-    outline.v[k] = static_cast<float>(corners.points[k][grid.axis_v] - grid.middle_v);
+    outline.u[k] = corners.points[k][grid.axis_u];
+    outline.v[k] = corners.points[k][grid.axis_v];
   }
   return outline;
 }
@@ -198,15 +196,14 @@ PatchIndex PatchLookup::patch_in(const Lattice& lattice, const Point& point) {
 }
 
 PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
-  const Flat eye(static_cast<float>(point[grid.axis_u] - grid.middle_u),
-                 static_cast<float>(point[grid.axis_v] - grid.middle_v));
+  const Flat eye(point[grid.axis_u], point[grid.axis_v]);
   PatchIndex nearest = no_patch;
-  float shortest = std::numeric_limits<float>::infinity();
+  double shortest = std::numeric_limits<double>::infinity();
   const auto search_cell = [&](Cell cell) {
     if (cell.u < 0 || cell.u >= grid.count_u || cell.v < 0 || cell.v >= grid.count_v) return;
     const std::size_t index = cell_index(grid, cell);
     for (std::uint32_t k = grid.begin[index]; k < grid.begin[index + 1] && shortest > 0; ++k) {
-      const float distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
+      const double distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
       if (distance < shortest) shortest = distance, nearest = grid.patches[k];
     }
   };

@@ -41,16 +41,14 @@ class PatchLookup {
     Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
     int count_u = 0, count_v = 0;
   };
-  // The corners of a patch in the plane from the grid's middle, counter-clockwise, side by side in memory; a triangle
-  // repeats its last.
-  struct Outline {
-    std::array<float, 4> u, v;
+  // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
+  struct alignas(64) Outline {
+    std::array<double, 4> u, v;
   };
   struct Grid {
     std::optional<Lattice> lattice;  // then the rest is empty
     PatchIndex first = 0;
     int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
-    double middle_u = 0, middle_v = 0;
     double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
     int count_u = 0, count_v = 0;
     LargeArray<std::uint32_t> begin;  // per cell, into patches
