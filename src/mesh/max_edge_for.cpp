@@ -124,6 +124,8 @@ class EdgeSearch::PatchNumber {
   double least() { return with_edge(longest_); }
 
  private:
+  // Within `close_enough` of what is wanted above the least: where that is nearly all, a small part of all tells
+  // nothing of how finely the large faces are cut.
   double found(const Numbers& numbers, const NumberWith& number_with, double wanted, double close_enough) const {
     constexpr int most_guesses = 100;
     // 1. No number below that of the uncut scene.
@@ -135,9 +137,10 @@ class EdgeSearch::PatchNumber {
     // 2. Keep the edge between one that gives too few patches and one that gives too many. Where the number changes in
     //    steps, so that one end stays where it is, halve the interval.
     const double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
+    const double off = close_enough * (wanted - least);
     double best = nearest_in(numbers, wanted);
     int same_end = 0;
-    for (int guess = 0; guess < most_guesses && std::abs(numbers.at(best) - wanted) > close_enough * wanted; ++guess) {
+    for (int guess = 0; guess < most_guesses && std::abs(numbers.at(best) - wanted) > off; ++guess) {
       const Bracket bracket = bracket_of(numbers, wanted);
       if (bracket.too_long <= same_edge * bracket.too_short) break;
       const double likely = guess_in(bracket, wanted, least, first);

@@ -57,8 +57,8 @@ class EdgeSearch {
   EdgeSearch& operator=(const EdgeSearch&) = delete;
   double edge_for(std::size_t patches);
   double patches_with(double max_edge);
-  /// Of parents whose parts, see nest(), are so many within 5 %, or as near as the steps allow. \throws MemoryError as
-  /// max_edge_for() does.
+  /// Of parents whose parts, see nest(), are so many within 5 % of what they are more than the least, or as near as the
+  /// steps allow. \throws MemoryError as max_edge_for() does.
   double nested_edge_for(std::size_t patches);
   /// The parts of parents with edges of `max_edge` at most.
   double nested_patches_with(double max_edge);
