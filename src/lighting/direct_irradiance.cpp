@@ -33,6 +33,9 @@ constexpr std::uint32_t step = 17;
 constexpr int sun_effort = 64;
 constexpr int lamp_effort = 4;
 
+// Whether so many rays to a ball can be blocked costs as much to find as they do.
+constexpr std::size_t few_rays = 16;
+
 // Of a share that n rays all find to be 0, or all to be 1, no more than this over n is missed in 95 of 100 cases.
 // Hanley and Lippman-Hand 1983, the rule of three.
 constexpr double rule_of_three = 3;
@@ -44,12 +47,12 @@ struct Samples {
   SamplePoints places;
 };
 
-// Estimates of the mean irradiance of one receiver, with or without shadows.
-using MeanBy = std::function<Spectrum(const Samples&, bool)>;
+// Estimates of the mean irradiance of one receiver, with or without shadows: one row for each set of samples.
+using MeansBy = std::function<Field(std::span<const Samples>, bool)>;
 
 // Something that gives light.
 struct Source {
-  std::function<MeanBy(const Receiver&)> mean_at;
+  std::function<MeansBy(const Receiver&)> means_at;
   std::uint32_t samples = 0;
   bool has_extent = false;
   int effort = 1;  // times the samples where rays have to find the shadows of a light without extent, or at a point
@@ -58,50 +61,69 @@ struct Source {
   std::function<bool(const Receiver&)> may_be_hidden = {};                 // with extent
 };
 
-template <class Mean>
-std::function<MeanBy(const Receiver&)> at_each(Mean mean) {
-  return [mean](const Receiver& receiver) {
-    return [mean, &receiver](const Samples& samples, bool in_shadow) { return mean(receiver, samples, in_shadow); };
+template <class Means>
+std::function<MeansBy(const Receiver&)> at_each(Means means) {
+  return [means](const Receiver& receiver) {
+    return
+        [means, &receiver](std::span<const Samples> sets, bool in_shadow) { return means(receiver, sets, in_shadow); };
   };
+}
+
+// One set after the other.
+template <class Mean>
+std::function<MeansBy(const Receiver&)> at_each_set(Eigen::Index bands, Mean mean) {
+  return at_each([bands, mean](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
+    Field means(static_cast<Eigen::Index>(sets.size()), bands);
+    for (std::size_t k = 0; k < sets.size(); ++k)
+      means.row(static_cast<Eigen::Index>(k)) = mean(receiver, sets[k], in_shadow);
+    return means;
+  });
 }
 
 using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
 
-// Of light that comes from one direction for each sample. Places over which another polygon lies do not count.
-Spectrum mean_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
-                          SamplePoints samples, bool in_shadow) {
+// Of light that comes from one direction for each sample. Places over which another polygon lies do not count. The
+// shadow rays of all sets are traced together.
+Field means_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
+                        std::span<const Samples> sets, bool in_shadow) {
+  struct OfSet {
+    Eigen::Index set;
+    Arrival arrival;
+  };
   std::vector<Segment> segments;
-  std::vector<Arrival> arrivals;
-  std::size_t exposed = 0;
-  for (const auto& [u, v, s, t] : samples) {
-    const SurfacePoint at = receiver.place(u, v);
-    if (is_covered(lighting, receiver, at)) continue;
-    ++exposed;
-    const Arrival arrival = arrival_at(at, {s, t});
-    if (!(arrival.irradiance > 0)) continue;
-    segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
-    arrivals.push_back(arrival);
+  std::vector<OfSet> arrivals;
+  std::vector<std::size_t> exposed(sets.size(), 0);
+  for (std::size_t n = 0; n < sets.size(); ++n) {
+    for (const auto& [u, v, s, t] : sets[n].rays) {
+      const SurfacePoint at = receiver.place(u, v);
+      if (is_covered(lighting, receiver, at)) continue;
+      ++exposed[n];
+      const Arrival arrival = arrival_at(at, {s, t});
+      if (!(arrival.irradiance > 0)) continue;
+      segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
+      arrivals.push_back({static_cast<Eigen::Index>(n), arrival});
+    }
   }
-  Spectrum sum = Spectrum::Zero(lighting.bands);
-  if (exposed == 0) return sum;
+  Field means = Field::Zero(static_cast<Eigen::Index>(sets.size()), lighting.bands);
+  if (segments.empty()) return means;
   const Field transmittance = in_shadow
                                   ? lighting.paths.transmittance(segments)
                                   : Field(Field::Ones(static_cast<Eigen::Index>(segments.size()), lighting.bands));
-  for (std::size_t k = 0; k < arrivals.size(); ++k)
-    sum += arrivals[k].irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrivals[k].colour;
-  return sum / static_cast<double>(exposed);
+  for (std::size_t k = 0; k < arrivals.size(); ++k) {
+    const auto& [set, arrival] = arrivals[k];
+    means.row(set) += arrival.irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrival.colour;
+  }
+  for (std::size_t n = 0; n < sets.size(); ++n)
+    means.row(static_cast<Eigen::Index>(n)) /= static_cast<double>(std::max<std::size_t>(1, exposed[n]));
+  return means;
 }
 
 Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint32_t samples) {
   const ArrivalAt arrival_at = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
     return from_luminaire(luminaire, lighting.up, at, uv);
   };
-  const bool has_extent = std::holds_alternative<SphericalLamp>(luminaire.light);
-  const auto mean = [&lighting, &luminaire, arrival_at, has_extent](const Receiver& receiver, const Samples& samples_at,
-                                                                    bool in_shadow) {
-    if (has_extent || receiver.is_point())
-      return mean_of_arrivals(lighting, arrival_at, receiver, samples_at.rays, in_shadow);
-    return luminaire_irradiance(lighting, luminaire, receiver, {samples_at.rays, samples_at.places}, in_shadow);
+  const auto means = [&lighting, arrival_at](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
+    return means_of_arrivals(lighting, arrival_at, receiver, sets, in_shadow);
   };
   if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) {
     const auto may_be_hidden = [&lighting, &luminaire, radius = sphere->radius](const Receiver& receiver) {
@@ -109,19 +131,25 @@ Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint
       const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
       return lighting.paths.may_be_hidden(places, middle.normal, luminaire.position, radius);
     };
-    return {.mean_at = at_each(mean),
+    return {.means_at = at_each(means),
             .samples = samples,
             .has_extent = true,
             .effort = lamp_effort,
             .may_be_hidden = may_be_hidden};
   }
+  const auto means_at = [&lighting, &luminaire, means](const Receiver& receiver) -> MeansBy {
+    if (receiver.is_point()) return at_each(means)(receiver);
+    return at_each_set(lighting.bands, [&](const Receiver& patch, const Samples& samples_at, bool in_shadow) {
+      return luminaire_irradiance(lighting, luminaire, patch, {samples_at.rays, samples_at.places}, in_shadow);
+    })(receiver);
+  };
   const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
   const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
     const Arrival arrival = arrival_at(receiver.place(0.5, 0.5), {0.5, 0.5});
     if (!(arrival.irradiance > 0)) return Spectrum(Spectrum::Zero(lighting.bands));
     return Spectrum(arrival.irradiance * *arrival.colour);
   };
-  return {at_each(mean), samples, false, lamp_effort, left, unshadowed};
+  return {means_at, samples, false, lamp_effort, left, unshadowed};
 }
 
 Source sun_of(const Lighting& lighting, std::uint32_t samples) {
@@ -129,17 +157,17 @@ Source sun_of(const Lighting& lighting, std::uint32_t samples) {
     const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
     return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
   };
-  const auto mean = [&lighting, unshadowed](const Receiver& receiver, const Samples& samples_at, bool in_shadow) {
-    if (!in_shadow) return unshadowed(receiver);
+  const auto means = [&lighting, unshadowed](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
+    if (!in_shadow) return Field(unshadowed(receiver).replicate(static_cast<Eigen::Index>(sets.size()), 1));
     const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
-    return mean_of_arrivals(lighting, arrival_at, receiver, samples_at.rays, true);
+    return means_of_arrivals(lighting, arrival_at, receiver, sets, true);
   };
   const auto left = [&lighting](const Receiver& receiver) -> std::optional<LeftByShadows> {
     const auto share = lighting.shades->transmittance(receiver, {lighting.sun->direction, 0});
     if (!share) return std::nullopt;
     return LeftByShadows{*share, Spectrum::Zero(lighting.bands)};
   };
-  return {at_each(mean), samples, false, sun_effort, left, unshadowed};
+  return {at_each(means), samples, false, sun_effort, left, unshadowed};
 }
 
 std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
@@ -148,12 +176,14 @@ std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& 
     sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
   if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
   if (lighting.sky) {
-    const auto mean_at = [&lighting](const Receiver& receiver) {
-      return [&lighting, &receiver, aim = sky_aim(lighting, receiver)](const Samples& samples, bool) {
-        return sky_irradiance(lighting, receiver, aim, samples.rays);
+    const auto means_at = [&lighting](const Receiver& receiver) {
+      const auto mean = [&lighting, aim = sky_aim(lighting, receiver)](const Receiver& at, const Samples& samples,
+                                                                       bool) {
+        return sky_irradiance(lighting, at, aim, samples.rays);
       };
+      return at_each_set(lighting.bands, mean)(receiver);
     };
-    sources.push_back({mean_at, static_cast<std::uint32_t>(options.sky_samples), true});
+    sources.push_back({means_at, static_cast<std::uint32_t>(options.sky_samples), true});
   }
   return sources;
 }
@@ -205,13 +235,14 @@ Estimate estimate_of(const Field& replicates_of) {
 Field Estimator::replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
                                bool in_shadow) const {
   const std::uint32_t sets = receiver.is_point() ? replicates_at_points : replicates;
-  const MeanBy mean = source.mean_at(receiver);
-  Field found(sets, bands);
+  std::vector<std::vector<std::array<double, 4>>> moved;
+  std::vector<Samples> of_sets;
   for (std::uint32_t k = 0; k < sets; ++k) {
     const SamplePoints set = points[(key + k * step) % scrambles];
-    found.row(k) = mean({shifted(set.first(each), hash({key, k})), set}, in_shadow);
+    moved.push_back(shifted(set.first(each), hash({key, k})));
+    of_sets.push_back({moved.back(), set});
   }
-  return found;
+  return source.means_at(receiver)(of_sets, in_shadow);
 }
 
 Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
@@ -219,14 +250,17 @@ Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::
   const bool is_point = receiver.is_point();
   if (is_point && !source.has_extent) {
     const SamplePoints one = SamplePoints(points[0]).first(1);
-    return {source.mean_at(receiver)({one, one}, true), none};
+    const Samples samples{one, one};
+    return {source.means_at(receiver)({&samples, 1}, true).row(0), none};
   }
   const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;
   if (left && (left->share == 0).all()) return {none, none};
 
-  const bool in_shadow = source.may_be_hidden ? source.may_be_hidden(receiver) : !left;
   const bool more = source.has_extent ? is_point : !left;
   const std::size_t each = std::max<std::size_t>(1, (more ? source.effort : 1) * source.samples / replicates);
+  // Few rays are sooner traced than they are found to be free.
+  const bool is_worth_asking = source.may_be_hidden && each * replicates > few_rays;
+  const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
   const Field arriving = replicates_by(source, receiver, key, each, in_shadow);
   Estimate found = estimate_of(arriving);
   if (left)
@@ -253,12 +287,14 @@ Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::ui
   return all;
 }
 
-DirectIrradiance at_receivers(const Estimator& estimator, const std::vector<Receiver>& receivers, std::uint64_t seed,
-                              const Observer& observer) {
-  const auto rows = static_cast<Eigen::Index>(receivers.size());
+// `receiver_at` gives the receiver of each number up to `count`.
+template <class ReceiverAt>
+DirectIrradiance at_receivers(const Estimator& estimator, std::size_t count, const ReceiverAt& receiver_at,
+                              std::uint64_t seed, const Observer& observer) {
+  const auto rows = static_cast<Eigen::Index>(count);
   DirectIrradiance direct{Field(rows, estimator.bands), Field(rows, estimator.bands)};
-  parallel_for(receivers.size(), Stage::direct_light, observer, [&](std::size_t k) {
-    const Estimate estimate = estimator.by_all(receivers[k], seed, k);
+  parallel_for(count, Stage::direct_light, observer, [&](std::size_t k) {
+    const Estimate estimate = estimator.by_all(receiver_at(k), seed, k);
     direct.irradiance.row(static_cast<Eigen::Index>(k)) = estimate.mean;
     direct.standard_error.row(static_cast<Eigen::Index>(k)) = estimate.variance.sqrt();
   });
@@ -274,7 +310,8 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more) {
 
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
                                    const Observer& observer) {
-  return at_receivers(estimator_for(lighting, options), receivers_of(mesh), options.seed, observer);
+  const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
+  return at_receivers(estimator_for(lighting, options), mesh.size(), patch, options.seed, observer);
 }
 
 Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
@@ -284,7 +321,8 @@ Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
 
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
                                    const LightingOptions& options, const Observer& observer) {
-  return at_receivers(estimator_for(lighting, options), receivers_of(points), options.seed, observer);
+  const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
+  return at_receivers(estimator_for(lighting, options), points.size(), point, options.seed, observer);
 }
 
 }  // namespace patchlight

@@ -85,6 +85,22 @@ std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span
   return sources;
 }
 
+Ball ball_of(const Receiver& receiver) {
+  return receiver.is_point() ? Ball{receiver.place(0, 0).point, 0} : ball_around(receiver.corners);
+}
+
+// Receivers that follow each other mostly lie together: which chains may lead to any of them is found first.
+constexpr std::size_t receivers_at_once = 64;
+
+Ball ball_around_all(std::span<const Receiver> receivers) {
+  std::vector<Point> points;
+  for (const Receiver& receiver : receivers) {
+    if (receiver.is_point()) points.push_back(receiver.place(0, 0).point);
+    points.insert(points.end(), receiver.corners.begin(), receiver.corners.end());
+  }
+  return ball_around(points);
+}
+
 SurfacePoint image_of(const MirrorChain& chain, const SurfacePoint& at) {
   return {chain.image * at.point, chain.image.linear() * at.normal, at.polygon};
 }
@@ -100,62 +116,79 @@ struct MirroredEstimate {
   Spectrum standard_error;
 };
 
+// A place of the receiver, which samples lead on from it, and which replicate it belongs to.
+struct SampledPlace {
+  SurfacePoint at;
+  std::array<double, 4> sample;
+  Eigen::Index replicate;
+};
+
 struct MirrorSampler {
   const Lighting& lighting;
   std::vector<MirroredSource> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per replicate
 
-  std::vector<WantedChain> chains_to(const Receiver& receiver) const;
-  Spectrum over_chains(std::span<const WantedChain> chains, const std::vector<SurfacePoint>& places,
-                       SamplePoints samples) const;
+  std::vector<WantedChain> all_chains() const;
+  std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
+  void add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places, Field& sums) const;
   Spectrum sky_in(std::span<const MirrorRay> rays) const;
-  Spectrum of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const;
-  Field replicates_at(const Receiver& receiver, std::uint32_t key) const;
+  Spectrum of_sky(std::span<const SampledPlace> places, bool is_point) const;
+  std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key) const;
+  Field replicates_at(const Receiver& receiver, std::uint32_t key, std::span<const WantedChain> among) const;
 };
 
-std::vector<WantedChain> MirrorSampler::chains_to(const Receiver& receiver) const {
+std::vector<WantedChain> MirrorSampler::all_chains() const {
+  std::vector<WantedChain> all;
+  if (sources.empty()) return all;
+  std::vector<const MirroredSource*> each;
+  for (const MirroredSource& source : sources) each.push_back(&source);
+  for (const MirrorChain& chain : lighting.mirrors->paths.chains()) all.push_back({&chain, each});
+  return all;
+}
+
+// Those by which light may get to what is in a ball.
+std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<const WantedChain> among) const {
   std::vector<WantedChain> wanted;
-  if (sources.empty()) return wanted;
-  const Ball ball = receiver.is_point() ? Ball{receiver.place(0, 0).point, 0} : ball_around(receiver.corners);
   const MirrorPaths& paths = lighting.mirrors->paths;
-  for (const MirrorChain& chain : paths.chains()) {
-    const MirrorSide& first = chain.mirrors.front();
+  for (const auto& [chain, may_come] : among) {
+    const MirrorSide& first = chain->mirrors.front();
     if (!(first.normal.dot(ball.centre - first.on_plane) > -ball.radius)) continue;
-    WantedChain one{&chain, {}};
-    for (const MirroredSource& source : sources) {
-      const SourceExtent& extent = source.extent;
-      const bool passes =
-          extent.direction ? paths.may_pass(chain, ball, *extent.direction) : paths.may_pass(chain, ball, extent.ball);
-      if (passes) one.sources.push_back(&source);
+    WantedChain one{chain, {}};
+    for (const MirroredSource* const source : may_come) {
+      const SourceExtent& extent = source->extent;
+      const bool passes = extent.direction ? paths.may_pass(*chain, ball, *extent.direction)
+                                           : paths.may_pass(*chain, ball, extent.ball);
+      if (passes) one.sources.push_back(source);
     }
     if (!one.sources.empty()) wanted.push_back(std::move(one));
   }
   return wanted;
 }
 
-// The sum over places.
-Spectrum MirrorSampler::over_chains(std::span<const WantedChain> chains, const std::vector<SurfacePoint>& places,
-                                    SamplePoints samples) const {
-  Spectrum sum = Spectrum::Zero(lighting.bands);
+// Added to the sums over the places of each replicate. The shadow rays of all of them are traced together.
+void MirrorSampler::add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places,
+                                    Field& sums) const {
   for (const auto& [chain, wanted] : chains) {
     std::vector<Segment> segments;
     std::vector<Spectrum> unoccluded;
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    std::vector<Eigen::Index> replicate;
+    for (const SampledPlace& place : places) {
       const MirrorSide& first = chain->mirrors.front();
-      if (!(first.normal.dot(places[k].point - first.on_plane) > 0)) continue;
-      const SurfacePoint image = image_of(*chain, places[k]);
+      if (!(first.normal.dot(place.at.point - first.on_plane) > 0)) continue;
+      const SurfacePoint image = image_of(*chain, place.at);
       for (const MirroredSource* const source : wanted) {
-        const auto arrival = source->arrival(places[k], image, {samples[k][2], samples[k][3]});
+        const auto arrival = source->arrival(place.at, image, {place.sample[2], place.sample[3]});
         if (!arrival) continue;
         segments.push_back(arrival->segment);
         unoccluded.push_back(arrival->irradiance);
+        replicate.push_back(place.replicate);
       }
     }
     if (segments.empty()) continue;
     const Field share = lighting.mirrors->paths.transmittance(*chain, lighting.paths, segments);
-    for (std::size_t k = 0; k < segments.size(); ++k) sum += unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < segments.size(); ++k)
+      sums.row(replicate[k]) += unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
   }
-  return sum;
 }
 
 // Light of the sky in rays that leave mirrors.
@@ -170,19 +203,21 @@ Spectrum MirrorSampler::sky_in(std::span<const MirrorRay> rays) const {
   return sum;
 }
 
-// The sum over places. A point is one place, with all of the samples.
-Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePoints samples, bool is_point) const {
+// The sum over places of one replicate. A point is one place, with all of the samples.
+Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_point) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
   if (!lighting.sky) return sum;
   const MirrorView& view = lighting.mirrors->view;
   std::vector<MirrorRay> rays;
   if (is_point) {
-    view.add_rays(places[0], samples, rays);
+    std::vector<std::array<double, 4>> samples;
+    for (const SampledPlace& place : places) samples.push_back(place.sample);
+    view.add_rays(places[0].at, samples, rays);
     for (MirrorRay& ray : rays) ray.weight *= static_cast<double>(places.size());
   } else {
     for (std::size_t k = 0; k < places.size(); ++k) {
-      const std::array<std::array<double, 4>, 2> pair{samples[k], samples[(k + 1) % places.size()]};
-      view.add_rays(places[k], pair, rays);
+      const std::array<std::array<double, 4>, 2> pair{places[k].sample, places[(k + 1) % places.size()].sample};
+      view.add_rays(places[k].at, pair, rays);
     }
   }
   for (std::size_t mirrors = 1; mirrors <= most_mirrors_of_sky && !rays.empty(); ++mirrors) {
@@ -192,26 +227,37 @@ Spectrum MirrorSampler::of_sky(const std::vector<SurfacePoint>& places, SamplePo
   return sum;
 }
 
-// One row each, of those with a place over which no other polygon lies.
-Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key) const {
-  Field found = Field::Zero(static_cast<Eigen::Index>(points.size()), lighting.bands);
-  const std::vector<WantedChain> chains = chains_to(receiver);
-  Eigen::Index count = 0;
+// Those over which no other polygon lies; replicates without such a place are left out of the numbers.
+std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std::uint32_t key) const {
+  std::vector<SampledPlace> places;
+  Eigen::Index replicate = 0;
   for (std::uint32_t r = 0; r < points.size(); ++r) {
-    const auto samples = shifted(points[r], hash({key, r}));
-    std::vector<SurfacePoint> places;
-    std::vector<std::array<double, 4>> of_places;
-    for (const auto& sample : samples) {
+    const std::size_t before = places.size();
+    for (const auto& sample : shifted(points[r], hash({key, r}))) {
       const SurfacePoint at = receiver.place(sample[0], sample[1]);
-      if (is_covered(lighting, receiver, at)) continue;
-      places.push_back(at);
-      of_places.push_back(sample);
+      if (!is_covered(lighting, receiver, at)) places.push_back({at, sample, replicate});
     }
-    if (places.empty()) continue;
-    const Spectrum sum = over_chains(chains, places, of_places) + of_sky(places, of_places, receiver.is_point());
-    found.row(count++) = sum / static_cast<double>(places.size());
+    if (places.size() > before) ++replicate;
   }
-  return found.topRows(count);
+  return places;
+}
+
+// One row each, of those with a place over which no other polygon lies.
+Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key,
+                                   std::span<const WantedChain> among) const {
+  const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
+  if (chains.empty() && !lighting.sky) return Field::Zero(1, lighting.bands);
+  const std::vector<SampledPlace> places = places_on(receiver, key);
+  Field found = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
+  add_over_chains(chains, places, found);
+  const std::span all(places);
+  for (auto first = all.begin(); first != all.end();) {
+    const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
+    found.row(first->replicate) += of_sky({first, last}, receiver.is_point());
+    found.row(first->replicate) /= static_cast<double>(last - first);
+    first = last;
+  }
+  return found;
 }
 
 // The mean of replicates and its standard error, as large as itself where there is one alone; 0 where there is none.
@@ -224,20 +270,32 @@ MirroredEstimate estimate_from(const Field& replicates) {
   return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
 }
 
-DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps,
-                               const std::vector<Receiver>& receivers, const LightingOptions& options, int effort,
+// `receiver_at` gives the receiver of each number up to `count`.
+template <class ReceiverAt>
+DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps, std::size_t count,
+                               const ReceiverAt& receiver_at, const LightingOptions& options, int effort,
                                const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, effort * options.mirrored_samples)));
   const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
   for (std::uint32_t r = 0; r < replicates; ++r)
     sampler.points.push_back(scrambled_sobol(samples / replicates, hash({options.seed, r, 7})));
-  const auto rows = static_cast<Eigen::Index>(receivers.size());
+  const std::vector<WantedChain> chains = sampler.all_chains();
+  const auto rows = static_cast<Eigen::Index>(count);
   DirectIrradiance direct{Field::Zero(rows, lighting.bands), Field::Zero(rows, lighting.bands)};
-  parallel_for(receivers.size(), Stage::direct_light, observer, [&](std::size_t k) {
-    const MirroredEstimate found = estimate_from(sampler.replicates_at(receivers[k], hash({options.seed, k, 8})));
-    direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
-    direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
+  const std::size_t groups = (count + receivers_at_once - 1) / receivers_at_once;
+  parallel_for(groups, Stage::direct_light, observer, [&](std::size_t group) {
+    const std::size_t begin = group * receivers_at_once;
+    std::vector<Receiver> receivers;
+    for (std::size_t k = begin; k < std::min(count, begin + receivers_at_once); ++k)
+      receivers.push_back(receiver_at(k));
+    const std::vector<WantedChain> near = sampler.chains_to(ball_around_all(receivers), chains);
+    for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
+      const Field replicates_of = sampler.replicates_at(receivers[k - begin], hash({options.seed, k, 8}), near);
+      const MirroredEstimate found = estimate_from(replicates_of);
+      direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
+      direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
+    }
   });
   return direct;
 }
@@ -263,13 +321,15 @@ std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side 
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {
-  return in_mirrors_at(lighting, lamps, receivers_of(mesh), options, 1, observer);
+  const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
+  return in_mirrors_at(lighting, lamps, mesh.size(), patch, options, 1, observer);
 }
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
                                      std::span<const SurfacePoint> points, const LightingOptions& options,
                                      const Observer& observer) {
-  return in_mirrors_at(lighting, lamps, receivers_of(points), options, effort_at_points, observer);
+  const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
+  return in_mirrors_at(lighting, lamps, points.size(), point, options, effort_at_points, observer);
 }
 
 }  // namespace patchlight

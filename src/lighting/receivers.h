@@ -4,15 +4,12 @@
 
 #include "lighting/receiver.h"
 
-#include <span>
-#include <vector>
-
 namespace patchlight {
 
-/// A receiver for each patch of a mesh, which has to live as long.
-std::vector<Receiver> receivers_of(const PatchMesh& mesh);
+/// The receiver that a patch of a mesh is, which has to live as long.
+Receiver receiver_of(const PatchMesh& mesh, PatchIndex patch);
 
-/// A receiver for each of some points, which have to live as long.
-std::vector<Receiver> receivers_of(std::span<const SurfacePoint> points);
+/// The receiver that a point is, which has to live as long.
+Receiver receiver_of(const SurfacePoint& point);
 
 }  // namespace patchlight

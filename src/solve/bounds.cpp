@@ -3,8 +3,10 @@
 #include "base/vectors.h"
 #include "solve/krylov.h"
 
+#include <cmath>
 #include <limits>
 #include <sstream>
+#include <vector>
 
 namespace patchlight {
 namespace {
@@ -17,16 +19,33 @@ constexpr double least_escape = 1e-6;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
+// No bounce of v may be above this one in the end.
+constexpr double last_bounce = 0.5;
+
+// How many more bounces that takes, if each is as much less than the one before as the last few were. The slower a part
+// of the light decays the more of it is left later on: it takes no fewer.
+double bounces_left(const std::vector<double>& highest_bounces) {
+  constexpr std::size_t some = 4;
+  if (highest_bounces.size() <= some) return 0;
+  const double now = highest_bounces.back();
+  const double decay = std::log(highest_bounces[highest_bounces.size() - 1 - some] / now) / some;
+  return decay > 0 ? std::log(now / last_bounce) / decay : no_bound;
+}
+
 // v = 1 + K v by Jacobi's iteration, until no residual is above 1/2: for rows that are not reciprocal, and for sheets.
+// Given up as soon as it will not get there.
 GlowingRadiosity glowing_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
                                     int most_iterations) {
   const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
   GlowingRadiosity glowing{ones, 0};
   Field bounce = ones;
-  while (glowing.applications < most_iterations && (bounce > 0.5).any()) {
+  std::vector<double> highest_bounces{1};
+  while (highest_bounces.back() > last_bounce &&
+         glowing.applications + bounces_left(highest_bounces) < most_iterations) {
     bounce = problem.scattering.reflect(transport.apply(bounce));
     glowing.radiosity += bounce;
     ++glowing.applications;
+    highest_bounces.push_back(highest(bounce).maxCoeff());
   }
   return glowing;
 }
@@ -115,17 +134,19 @@ std::string trapped_light(const TransportOperator& transport, const RadiosityPro
     }
   }
 
-  // 2. With them all from which light gets to them, bounce by bounce.
-  for (bool grows = true; grows;) {
+  // 2. With them all from which light gets to them, bounce by bounce, as long as a lamp is among the others: that one
+  //    would shine for ever.
+  const auto lamps_among_others = [&] {
+    Eigen::Index lamps = 0;
+    for (Eigen::Index i = 0; i < loses.rows(); ++i)
+      lamps += ((loses.row(i) == 0) && (problem.exitance.row(i) > 0)).any() ? 1 : 0;
+    return lamps;
+  };
+  Eigen::Index patches = lamps_among_others();
+  for (bool grows = true; grows && patches > 0; patches = lamps_among_others()) {
     const Field wider = (loses > 0 || transport.apply(loses) > 0).cast<double>();
     grows = total(sum_over_patches(wider)) > total(sum_over_patches(loses));
     loses = wider;
-  }
-
-  // 3. A lamp among the others shines for ever.
-  Eigen::Index patches = 0;
-  for (Eigen::Index i = 0; i < loses.rows(); ++i) {
-    patches += ((loses.row(i) == 0) && (problem.exitance.row(i) > 0)).any() ? 1 : 0;
   }
   if (patches == 0) return {};
   std::ostringstream text;

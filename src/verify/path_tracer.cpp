@@ -88,6 +88,21 @@ Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
   return shuffled;
 }
 
+// One for each vertex. Where few of the paths are left, strata say nothing any more: their numbers are independent, and
+// cost no more than these paths do, however long some are.
+Samples samples_at(const std::vector<Vertex>& vertices, std::uint32_t paths, std::uint32_t seed) {
+  constexpr std::size_t few = 8;  // one in so many
+  Samples samples(vertices.size());
+  if (few * vertices.size() < paths) {
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      for (std::size_t d = 0; d < 4; ++d) samples[k][d] = uniform({seed, vertices[k].path, 6 + d});
+    return samples;
+  }
+  const Samples of_paths = shuffled_samples(paths, seed);
+  for (std::size_t k = 0; k < vertices.size(); ++k) samples[k] = of_paths[vertices[k].path];
+  return samples;
+}
+
 struct PathTracer {
   std::shared_ptr<const Tracing> tracing;
   const Occluder& occluder;
@@ -133,8 +148,9 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
   if (!(lamps.flux > 0)) return sum;
   std::vector<Segment> segments;
   std::vector<Spectrum> unoccluded;
-  for (const Vertex& vertex : vertices) {
-    const LampPoint lamp = sample(lamps, samples[vertex.path][0], samples[vertex.path][1]);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Vertex& vertex = vertices[k];
+    const LampPoint lamp = sample(lamps, samples[k][0], samples[k][1]);
     const Surface& there = surfaces.at(lamp.polygon, lamp.side);
     const Surface& here = surfaces.at(vertex.polygon, vertex.side);
     const Vector toward = lamp.point - vertex.point;
@@ -159,10 +175,11 @@ Spectrum PathTracer::light_from_luminaires(const std::vector<Vertex>& vertices, 
   Spectrum sum = Spectrum::Zero(bands);
   if (!lights) return sum;
   std::vector<LitPlace> places;
-  for (const auto& [point, polygon, side, path, throughput] : vertices) {
-    places.push_back({{point, surfaces.at(polygon, side).normal, polygon},
-                      uniform({seed, path, 5}),
-                      {samples[path][0], samples[path][1]}});
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Vertex& vertex = vertices[k];
+    places.push_back({{vertex.point, surfaces.at(vertex.polygon, vertex.side).normal, vertex.polygon},
+                      uniform({seed, vertex.path, 5}),
+                      {samples[k][0], samples[k][1]}});
   }
   const Field found = irradiance_by_lights(*lights, places) + irradiance_in_mirrors(*lights, places);
   for (std::size_t k = 0; k < vertices.size(); ++k)
@@ -210,8 +227,9 @@ Spectrum PathTracer::light_in_mirrors(const std::vector<RayEnd>& ends, const std
 // One scattered ray from each vertex, backward along the light's way. A side that is not kept is black.
 Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const {
   std::vector<Ray> rays;
-  for (const Vertex& vertex : vertices) {
-    const Vector direction = square_to_cosine_hemisphere(samples[vertex.path][2], samples[vertex.path][3]);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Vertex& vertex = vertices[k];
+    const Vector direction = square_to_cosine_hemisphere(samples[k][2], samples[k][3]);
     const Vector& normal = surfaces.at(vertex.polygon, vertex.side).normal;
     rays.push_back({vertex.point, frame_around(normal) * direction, vertex.polygon});
   }
@@ -277,7 +295,7 @@ Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::
   Batch batch{Spectrum::Zero(bands), static_cast<std::uint32_t>(vertices.size())};
   for (std::uint64_t length = 2; !vertices.empty(); ++length) {
     const std::uint32_t seed_here = hash({seed, length});
-    const Samples samples = shuffled_samples(paths, seed_here);
+    const Samples samples = samples_at(vertices, paths, seed_here);
     batch.irradiance += light_from_lamps(vertices, samples);
     batch.irradiance += light_from_luminaires(vertices, samples, seed_here);
     batch.rays += rays_of_vertex() * vertices.size();

@@ -2,6 +2,7 @@
 
 #include "visibility/occluder.h"
 
+#include <boost/container/small_vector.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,8 +20,8 @@ struct WayStop {
 };
 
 /// All polygons that a ray meets, each specular but for the last one; empty where it meets nothing. A ray that does not
-/// end at its last stop has left the scene from there.
-using Way = std::vector<WayStop>;
+/// end at its last stop has left the scene from there. Most have one stop, for which no memory is asked for.
+using Way = boost::container::small_vector<WayStop, 1>;
 
 /// Ways by geometry alone: from clear polygons and mirrors every ray goes on, whatever their colours, at a clear one
 /// with SpecularFace::mirrored_rays() as from a mirror, else straight, drawn by `seed` as
