@@ -37,6 +37,7 @@ struct HemisphereSampler {
   const Occluder& occluder;
   Sights sights;
   bool ends_at_specular;
+  bool sees_backs;
 
   std::vector<Seen> look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   std::vector<Ray> hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const;
@@ -139,8 +140,10 @@ Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray
 
 Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed) const {
   // 1. Single rays settle it for most patches.
-  const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
-  if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
+  if (!sees_backs) {
+    const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
+    if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
+  }
   // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
   return measure_groups(patch, hemisphere_rays(patch, rays, rays_per_point, seed), seed);
 }
@@ -174,7 +177,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder), known.ends_at_specular};
+  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder), known.ends_at_specular, known.sees_backs};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
