@@ -401,6 +401,23 @@ TEST(DirectIrradiance, AddsUpOverLights) {
               at(with_point, here).irradiance(0, 0) + at(with_sun, here).irradiance(0, 0), 1e-12);
 }
 
+// Whether few rays are traced at once or only where something may hide the ball, what hides nothing changes no bit.
+TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
+  Scene scene = only_floor();
+  scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
+  const Scene with_board = with_quad(scene, {Point(-1, -1, 4), Point(1, -1, 4), Point(1, 1, 4), Point(-1, 1, 4)});
+  const PatchMesh mesh = fronts(scene, 2);
+  const PatchMesh beside = fronts(with_board, 2);
+  for (const int samples : {4, 16, 20, 64}) {
+    const LightingOptions options{.lamp_samples = samples};
+    const DirectIrradiance alone = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, options);
+    const DirectIrradiance both = direct_irradiance(lighting_of(with_board, Tracing(with_board)), beside, options);
+    const auto patches = static_cast<Eigen::Index>(mesh.size());
+    EXPECT_TRUE((both.irradiance.topRows(patches) == alone.irradiance).all()) << samples << " samples";
+    EXPECT_GT(alone.irradiance.minCoeff(), 0);
+  }
+}
+
 TEST(DirectIrradiance, HasTheSameBitsForAnyNumberOfThreads) {
   Scene scene = room_with_window(0.5);
   Sky sky;

@@ -48,5 +48,41 @@ TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
   EXPECT_GT(found, 15);
 }
 
+// Chains of mirrors are looked for by groups of points: a point alone gets the same bits as among others, of which some
+// lie where only the other mirror throws light.
+TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
+  Material left = grey(0);
+  left.specular_reflectance = Spectrum::Constant(1, 0.9);
+  Material right = grey(0);
+  right.specular_reflectance = Spectrum::Constant(1, 0.5);
+  Scene scene = empty_scene({grey(0.5), left, right});
+  scene = with_quad(std::move(scene), {Point(-9, -9, 0), Point(9, -9, 0), Point(9, 9, 0), Point(-9, 9, 0)});
+  scene = with_quad(std::move(scene), {Point(-5, -1, 1), Point(-5, 1, 1), Point(-5, 1, 3), Point(-5, -1, 3)}, 1);
+  scene = with_quad(std::move(scene), {Point(5, -1, 1), Point(5, -1, 3), Point(5, 1, 3), Point(5, 1, 1)}, 2);
+  Luminaire lamp;
+  lamp.position = Point(0, 0, 4);
+  lamp.light = SphericalLamp{0.2, Spectrum::Constant(1, 7)};
+  scene.luminaires = {lamp};
+  const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(scene, tracing);
+  ASSERT_TRUE(lighting.mirrors);
+  std::vector<SurfacePoint> points;
+  for (int k = 0; k < 150; ++k) points.push_back({Point(-4.5 + 0.06 * k, 0.1, 0), Vector::UnitZ(), 0});
+  const DirectIrradiance all = mirrored_irradiance(lighting, {}, points, {});
+  // Points keep their numbers, which their samples come from: those before are put in one place, far away.
+  int lit = 0;
+  for (const std::size_t k : {0UL, 10UL, 63UL, 64UL, 75UL, 149UL}) {
+    std::vector<SurfacePoint> alone(k, {Point(0, 8.9, 0), Vector::UnitZ(), 0});
+    alone.push_back(points[k]);
+    const DirectIrradiance one = mirrored_irradiance(lighting, {}, alone, {});
+    const auto row = static_cast<Eigen::Index>(k);
+    EXPECT_EQ(one.irradiance(row, 0), all.irradiance(row, 0)) << "point " << k;
+    EXPECT_EQ(one.standard_error(row, 0), all.standard_error(row, 0)) << "point " << k;
+    lit += all.irradiance(row, 0) > 0;
+  }
+  EXPECT_GT(lit, 1);
+  EXPECT_LT(lit, 6);
+}
+
 }  // namespace
 }  // namespace patchlight::mirrored_irradiance_test

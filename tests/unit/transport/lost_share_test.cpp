@@ -142,5 +142,28 @@ TEST(LostShare, OfKnownPatchesIsTakenOver) {
   }
 }
 
+// Of patches that see backs nothing is asked before that: told so, the same rays give the same shares.
+TEST(LostShare, OfPatchesKnownToSeeBacksIsTheSame) {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
+  const std::vector<Quad> faces = box_faces(Point(1, 1, 0), Point(2, 2, 1), false);
+  for (std::size_t face = 1; face < faces.size(); ++face) scene = with_quad(std::move(scene), faces[face]);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.5);
+  const Occluder occluder(scene);
+  const LostShare all = measure_lost_share(mesh, occluder, 256, 1);
+  std::vector<PatchIndex> place(mesh.size(), no_patch);
+  int see_backs = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (all.covered[i] + all.at_backs[i] > 0)
+      ++see_backs;
+    else
+      place[i] = i;
+  }
+  ASSERT_GT(see_backs, 0);
+  ASSERT_LT(see_backs, static_cast<int>(mesh.size()));
+  const LostShare told = measure_lost_share(mesh, occluder, KnownShares{all, place, false, true}, 1);
+  for (const auto share : {&LostShare::escaped, &LostShare::at_backs, &LostShare::covered, &LostShare::dark})
+    EXPECT_EQ(told.*share, all.*share);
+}
+
 }  // namespace
 }  // namespace patchlight::lost_share_test

@@ -163,6 +163,15 @@ TEST(TraceIrradiance, SameBitsWithAnyNumberOfThreads) {
   EXPECT_EQ(one.rays, two.rays);
 }
 
+// Of a path that half of the light goes on with after 34 bounces few are left in the end, with numbers of their own.
+TEST(TraceIrradiance, LongPathsHaveTheNeumannSeries) {
+  Scene scene = cube_room(0.98, 1);
+  const PathEstimate estimate =
+      trace_irradiance(scene, kept_sides(scene, Sides::front), whole_fronts(scene), {.paths = 4096});
+  expect_within_four_errors(estimate, 1 / 0.02);
+  EXPECT_LT(estimate.standard_error.maxCoeff(), 0.03 / 0.02);
+}
+
 TEST(TraceIrradiance, EndsBetweenSurfacesThatAbsorbNothing) {
   const Scene scene = cube_room(1, 1);
   const std::vector<PathReceiver> floor{whole(scene, 0)};

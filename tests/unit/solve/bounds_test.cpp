@@ -1,0 +1,68 @@
+#include "solve/bounds.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight::bounds_test {
+namespace {
+
+// Two patches that see nothing but each other; form factors that are not said to be reciprocal. Counts what it does.
+class Pair : public TransportOperator {
+ public:
+  PatchIndex size() const override { return 2; }
+  Field apply(const FieldView& radiosity) const override {
+    ++applications;
+    return radiosity.colwise().reverse();
+  }
+  bool is_reciprocal() const override { return false; }
+
+  mutable int applications = 0;
+};
+
+RadiosityProblem reflecting(double reflectance) {
+  return {{Field::Constant(2, 1, reflectance), {}, {}}, Field::Constant(2, 1, 1), Eigen::VectorXd::Ones(2)};
+}
+
+// The n-th bounce between them is rho^n: v is found as soon as that is below a half, ln(1/2) / ln(rho) bounces, and one
+// application more tells g = v - K v.
+TEST(PatchWeights, AreFoundWhileTheBouncesFallInTime) {
+  for (const double reflectance : {0.3, 0.9, 0.98}) {
+    const Pair pair;
+    const auto weights = patch_weights(pair, reflecting(reflectance));
+    ASSERT_TRUE(weights) << "reflectance " << reflectance;
+    EXPECT_EQ(pair.applications, std::ceil(std::log(0.5) / std::log(reflectance)) + 1);
+    EXPECT_EQ(weights->applications, pair.applications);
+    EXPECT_GT(weights->g.minCoeff(), 0);
+    // g is v - K v of what v it is.
+    EXPECT_LT((weights->v * (1 - reflectance) - weights->g).abs().maxCoeff(), 1e-12);
+  }
+}
+
+// With .995 a half is left after 138 bounces, which is more than is tried: a few of them tell, and bound the errors as
+// well as all would. Where nothing is lost nothing bounds them.
+TEST(PatchWeights, AreGivenUpAsSoonAsTheyWillNotBeFound) {
+  const Pair slow;
+  const auto weights = patch_weights(slow, reflecting(0.995));
+  EXPECT_LE(slow.applications, 6);
+  ASSERT_TRUE(weights);
+  EXPECT_LT((weights->v / weights->g - 1 / 0.005).abs().maxCoeff(), 1e-9 / 0.005);
+  const Pair endless;
+  EXPECT_FALSE(patch_weights(endless, reflecting(1)));
+  EXPECT_LE(endless.applications, 6);
+}
+
+// Two lamps that keep all of their light; or one of them absorbs some, or nothing shines.
+TEST(TrappedLight, IsThatOfLampsBetweenPatchesThatLoseNothing) {
+  const Pair pair;
+  EXPECT_FALSE(trapped_light(pair, reflecting(1)).empty());
+  EXPECT_TRUE(trapped_light(pair, reflecting(0.99)).empty());
+  RadiosityProblem one_absorbs = reflecting(1);
+  one_absorbs.scattering.reflectance(1, 0) = 0.99;
+  EXPECT_TRUE(trapped_light(pair, one_absorbs).empty());
+  RadiosityProblem dark = reflecting(1);
+  dark.exitance.setZero();
+  EXPECT_TRUE(trapped_light(pair, dark).empty());
+}
+
+}  // namespace
+}  // namespace patchlight::bounds_test
