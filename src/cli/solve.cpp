@@ -69,12 +69,12 @@ class Iterates {
   explicit Iterates(bool wanted) : wanted_(wanted) {}
 
   void add(const Progress& progress) {
-    if (!wanted_ || progress.irradiance == nullptr) return;
+    if (!wanted_ || !progress.irradiance) return;
     if (progress.iteration->number == 0) {
       if (solutions_.size() == most) solutions_.pop_front();
       solutions_.emplace_back();
     }
-    solutions_.back().emplace_back(progress.irradiance->cast<float>());
+    solutions_.back().emplace_back(progress.irradiance().cast<float>());
   }
 
   std::vector<IterateIrradiance> of_solution(const Simulation& simulation) {

@@ -43,7 +43,8 @@ Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& p
   solution.converged = true;
   solution.history = {{.seconds = wall_seconds() - start,
                        .work = static_cast<double>(rows) / static_cast<double>(problem.exitance.rows())}};
-  const Progress last{.stage = Stage::solve, .fraction = 1, .iteration = &solution.history[0], .irradiance = &H};
+  const Progress last{
+      .stage = Stage::solve, .fraction = 1, .iteration = &solution.history[0], .irradiance = [&H] { return H; }};
   if (observer && !observer(last)) throw Cancelled();
   return solution;
 }

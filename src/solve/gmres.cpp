@@ -52,20 +52,32 @@ Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradia
   return arnoldi;
 }
 
-// The combination of the directions that has the least residual, added to the start.
-Iterate best(const Arnoldi& arnoldi, const RadiosityProblem& problem, const Iterate& start) {
-  const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
-  Eigen::ArrayXXd lengths(k, start.radiosity.cols());
-  for (Eigen::Index band = 0; band < lengths.cols(); ++band) {
+// The combination of the first k directions that has the least residual.
+struct Least {
+  Eigen::ArrayXXd lengths;       // k per band
+  Eigen::ArrayXd residual_norm;  // ||r||_A per band
+};
+
+Least least_residual(const Arnoldi& arnoldi, Eigen::Index k) {
+  Least least{Eigen::ArrayXXd(k, arnoldi.beta.size()), Eigen::ArrayXd(arnoldi.beta.size())};
+  for (Eigen::Index band = 0; band < least.lengths.cols(); ++band) {
     const Eigen::MatrixXd hessenberg = arnoldi.hessenberg[static_cast<std::size_t>(band)].topLeftCorner(k + 1, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k + 1);
     right[0] = arnoldi.beta[band];
     // Ranks are revealed: a band that is solved already has directions 0.
-    lengths.col(band) = hessenberg.colPivHouseholderQr().solve(right).array();
+    const Eigen::VectorXd lengths = hessenberg.colPivHouseholderQr().solve(right);
+    least.lengths.col(band) = lengths.array();
+    least.residual_norm[band] = (right - hessenberg * lengths).norm();
   }
-  const std::span directions(arnoldi.v.data(), arnoldi.irradiance.size());
-  return iterate_of(problem, plus_combination(start.radiosity, directions, lengths),
-                    plus_combination(start.irradiance, arnoldi.irradiance, lengths));
+  return least;
+}
+
+// That combination, added to the start.
+Iterate best(const Arnoldi& arnoldi, const RadiosityProblem& problem, const Iterate& start,
+             const Eigen::ArrayXXd& lengths) {
+  const auto k = static_cast<std::size_t>(lengths.rows());
+  return iterate_of(problem, plus_combination(start.radiosity, std::span(arnoldi.v).first(k), lengths),
+                    plus_combination(start.irradiance, std::span(arnoldi.irradiance).first(k), lengths));
 }
 
 }  // namespace
@@ -79,10 +91,15 @@ Solution gmres(Iterations iterations) {
   for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
     Field irradiance = iterations.apply(arnoldi.v.back());
     arnoldi = extended(std::move(arnoldi), problem, std::move(irradiance));
-    const Iterate iterate = best(arnoldi, problem, start);
-    iterations.record(iterate, k, Residual::recurred);
-    if (k % restart != 0) continue;
-    start = iterate;
+    const Least least = least_residual(arnoldi, static_cast<Eigen::Index>(arnoldi.irradiance.size()));
+    if (k % restart != 0) {
+      iterations.record(
+          least.residual_norm,
+          [&arnoldi, &problem, &start, lengths = least.lengths] { return best(arnoldi, problem, start, lengths); }, k);
+      continue;
+    }
+    start = best(arnoldi, problem, start, least.lengths);
+    iterations.record(start, k, Residual::recurred);
     arnoldi = begun(problem, start.residual, restart);
   }
   return iterations.finish();

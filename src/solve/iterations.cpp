@@ -62,10 +62,22 @@ Eigen::ArrayXd Iterations::spectral_radius(int steps) {
   return patchlight::spectral_radius(transport_, problem_, steps);
 }
 
+// Nothing but the residual is known.
+Iteration Iterations::measured(const Eigen::ArrayXd& residual_norm, int number) const {
+  Iteration iteration{number, 0, 0, wall_seconds() - start_, work_};
+  for (Eigen::Index band = 0; band < residual_norm.size(); ++band) {
+    const double residual = ratio(residual_norm[band], first_residual_[band]);
+    iteration.relative_residual = worse(iteration.relative_residual, residual);
+    if (residual_norm[band] != 0) iteration.error_bound = unknown;
+  }
+  return iteration;
+}
+
 Iteration Iterations::measured(const Iterate& iterate, int number) const {
   const Eigen::ArrayXd norm = area_norm(iterate.residual, problem_.area);
   const Eigen::ArrayXd reflected = area_norm(iterate.radiosity - emitted_, problem_.area);
-  Iteration iteration{number, 0, 0, wall_seconds() - start_, work_};
+  Iteration iteration = measured(norm, number);
+  iteration.error_bound = 0;
   for (Eigen::Index band = 0; band < norm.size(); ++band) {
     double bound = unknown;
     if (bounds_.contracts(band)) {
@@ -74,7 +86,6 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
       const auto& [v, g, applications] = *bounds_.weights;
       bound = area_norm(v.col(band), problem_.area)[0] * highest(iterate.residual.col(band).abs() / g.col(band))[0];
     }
-    iteration.relative_residual = worse(iteration.relative_residual, ratio(norm[band], first_residual_[band]));
     if (norm[band] != 0) iteration.error_bound = worse(iteration.error_bound, bound / reflected[band]);
   }
   if (options_.reference) {
@@ -84,19 +95,20 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
   return iteration;
 }
 
-void Iterations::tell(const Iterate& iterate) {
+// `irradiance` makes H_k where the observer asks for it.
+void Iterations::tell(const std::function<Field()>& irradiance) {
   if (!observer_ || solution_.stopped) return;
   // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
   const Iteration& iteration = solution_.history.back();
   const double wanted = std::log(tolerance_of(options_));
   const double residual = std::isfinite(iteration.relative_residual) ? iteration.relative_residual : 1;
   const double reached = std::log(std::clamp(residual, tolerance_of(options_), 1.0));
-  const Field shown = arrived_.size() > 0 ? std::move(arrived_) : arrived(problem_, iterate);
-  arrived_.resize(0, 0);
   const Field* const ambient = ambient_.size() > 0 ? &ambient_ : nullptr;
   const double of_rows = options_.max_rows ? std::min(1.0, work_ / *options_.max_rows) : 0;
   fraction_ = std::max(reached / wanted, of_rows);
-  if (!observer_({Stage::solve, fraction_, &iteration, &shown, ambient})) stop();
+  const std::function<Field()> as_shown = [this] { return arrived_; };
+  if (!observer_({Stage::solve, fraction_, &iteration, arrived_.size() > 0 ? as_shown : irradiance, ambient})) stop();
+  arrived_.resize(0, 0);
 }
 
 // What stops is not asked again whether it should.
@@ -139,6 +151,37 @@ bool Iterations::record(Iterate iterate, int number, Residual residual) {
     hopeless_ = iteration.relative_residual > last_applied_residual_ / 2;
     last_applied_residual_ = iteration.relative_residual;
   }
+  if (!put_into_history(iteration)) {
+    // The last one with numbers is handed out; if there is none, the first.
+    if (last_.irradiance.size() == 0 && !make_last_) last_ = std::move(iterate);
+    return false;
+  }
+  tell([&] { return arrived(problem_, iterate); });
+  last_ = std::move(iterate);
+  make_last_ = {};
+  return solution_.converged;
+}
+
+bool Iterations::record(const Eigen::ArrayXd& residual_norm, MakeIterate make, int number) {
+  if (!needs_norm_only()) return record(make(), number, Residual::recurred);
+  const Iteration iteration = measured(residual_norm, number);
+  if (is_good(iteration)) return record(make(), number, Residual::recurred);
+  if (!put_into_history(iteration)) return false;
+  tell([&] { return arrived(problem_, make()); });
+  make_last_ = std::move(make);
+  return false;
+}
+
+// No bound on the error follows from anything, and no reference tells it.
+bool Iterations::needs_norm_only() const {
+  bool some_contract = false;
+  for (Eigen::Index band = 0; band < bounds_.contraction.size(); ++band)
+    some_contract = some_contract || bounds_.contracts(band);
+  return !some_contract && !bounds_.weights && !options_.reference;
+}
+
+// True when it is finite. Tells whether it goes on.
+bool Iterations::put_into_history(const Iteration& iteration) {
   // Near rounding a residual that does not fall any more has come to its end.
   constexpr double near_rounding = 1e-12;
   constexpr int patience = 30;
@@ -146,18 +189,13 @@ bool Iterations::record(Iterate iterate, int number, Residual residual) {
   least_residual_ = std::min(least_residual_, iteration.relative_residual);
   if (least_residual_ < near_rounding && without_progress_ > patience) hopeless_ = true;
   solution_.history.push_back(iteration);
-  if (!std::isfinite(iteration.relative_residual)) {
-    hopeless_ = true;
-    // The last one with numbers is handed out; if there is none, the first.
-    if (last_.irradiance.size() == 0) last_ = std::move(iterate);
-    return false;
-  }
-  tell(iterate);
-  last_ = std::move(iterate);
-  return solution_.converged;
+  const bool is_finite = std::isfinite(iteration.relative_residual);
+  if (!is_finite) hopeless_ = true;
+  return is_finite;
 }
 
 Solution Iterations::finish() {
+  if (make_last_) last_ = make_last_();
   Solution solution = std::move(solution_);
   solution.irradiance = last_.irradiance;
   solution.radiosity = radiosity_from(problem_, last_.irradiance);

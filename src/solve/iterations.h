@@ -5,6 +5,7 @@
 #include "solve/bounds.h"
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 
 namespace patchlight {
@@ -18,6 +19,9 @@ struct Iterate {
 
 /// B_k with the residual E + rho o H - B_k, H = F B_k.
 Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance);
+
+/// One that is made when it is looked at.
+using MakeIterate = std::function<Iterate()>;
 
 /// Whether residuals are computed anew from an application, or are carried along by recurrences, which drift.
 enum class Residual { applied, recurred };
@@ -50,6 +54,10 @@ class Iterations {
   /// Puts the next iterate into the history. True when it is good enough; one with a recurred residual is measured once
   /// more, by an application, before that is said. `number` is the iteration's.
   bool record(Iterate iterate, int number, Residual residual = Residual::applied);
+  /// The same for one with a recurred residual of which ||r||_A is known, per band. The iterate is made where something
+  /// else is to be known of it, and in the end: `make` has to be good until then, or until one that is made is
+  /// recorded.
+  bool record(const Eigen::ArrayXd& residual_norm, MakeIterate make, int number);
   /// What goes with the next iterate for display: Solution::ambient, and the irradiance that has arrived, where it is
   /// not (B - E) / rho.
   void show(Field ambient) { ambient_ = std::move(ambient); }
@@ -64,9 +72,12 @@ class Iterations {
 
  private:
   Iteration measured(const Iterate& iterate, int number) const;
+  Iteration measured(const Eigen::ArrayXd& residual_norm, int number) const;
+  bool needs_norm_only() const;
+  bool put_into_history(const Iteration& iteration);
   bool is_good(const Iteration& iteration) const;
   bool wants_weights() const;
-  void tell(const Iterate& iterate);
+  void tell(const std::function<Field()>& irradiance);
   void stop();
 
   const TransportOperator& transport_;
@@ -85,6 +96,7 @@ class Iterations {
   int without_progress_ = 0;  // iterates since it was found
   bool hopeless_ = false;
   Iterate last_;
+  MakeIterate make_last_;  // what is to be called for it, where it is not made yet
   Field ambient_, arrived_;
   Solution solution_;
 };

@@ -99,11 +99,10 @@ Field from_lamps(const TransportOperator& transport, const RowTransport* rows, c
 Observer for_all_bands(const Observer& observer, const SolvedBands& bands, const RadiosityProblem& problem) {
   if (!observer) return {};
   return [&observer, &bands, &problem](const Progress& progress) {
-    if (progress.irradiance == nullptr) return observer(progress);
+    if (!progress.irradiance) return observer(progress);
     Progress all = progress;
-    const Field irradiance = with_direct(expanded(*progress.irradiance, bands), problem);
     const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
-    all.irradiance = &irradiance;
+    all.irradiance = [&] { return with_direct(expanded(progress.irradiance(), bands), problem); };
     all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
     return observer(all);
   };

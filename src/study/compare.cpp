@@ -22,7 +22,7 @@ constexpr double margin = 1e-4;
 class Frames {
  public:
   void keep(const Progress& progress) {
-    last_ = {*progress.iteration, progress.irradiance->cast<float>()};
+    last_ = {*progress.iteration, progress.irradiance().cast<float>()};
     if (frames_.size() >= 10 && last_.iteration.number < next_) return;
     frames_.push_back(last_);
     next_ = std::max(last_.iteration.number + 1, static_cast<int>(1.2 * last_.iteration.number));
@@ -76,7 +76,7 @@ SolverRun ConvergenceTest::run(const Contestant& contestant, const RowTransport&
   result.contestant = contestant;
   Frames frames;
   const Observer watch = [&](const Progress& progress) {
-    if (options.keep_iterates && progress.irradiance != nullptr) frames.keep(progress);
+    if (options.keep_iterates && progress.irradiance) frames.keep(progress);
     return !observer || observer(progress);
   };
   const double begin = wall_seconds();

@@ -107,10 +107,11 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
     // Not the lamps, before their light has arrived.
     if (progress.iteration == nullptr || progress.iteration->number == 0) return true;
     const double now = cpu_seconds();
-    const Field H = *progress.irradiance + *progress.ambient;
+    const Field shot = progress.irradiance();
+    const Field H = shot + *progress.ambient;
     all.push_back({progress.iteration->work, now - begin - measuring,
                    error_of(problem.exitance + problem.scattering.reflectance * H, reference),
-                   error_of(problem.exitance + problem.scattering.reflectance * *progress.irradiance, reference)});
+                   error_of(problem.exitance + problem.scattering.reflectance * shot, reference)});
     measuring += cpu_seconds() - now;
     return true;
   });

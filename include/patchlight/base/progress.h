@@ -40,10 +40,11 @@ struct Iteration {
 /// What an observer is told.
 struct Progress {
   Stage stage = Stage::read;
-  double fraction = 0;                   ///< of this stage, 0 to 1
-  const Iteration* iteration = nullptr;  ///< in Stage::solve, with each new iterate
-  const Field* irradiance = nullptr;     ///< goes with it: H_k, W/m^2, the iterate is B_k = E + rho o H_k; 0 at first
-  const Field* ambient = nullptr;        ///< goes with it for progressive refinement: Solution::ambient of this iterate
+  double fraction = 0;                     ///< of this stage, 0 to 1
+  const Iteration* iteration = nullptr;    ///< in Stage::solve, with each new iterate
+  std::function<Field()> irradiance = {};  ///< goes with it: makes H_k, W/m^2, of the iterate B_k = E + rho o H_k; 0 at
+                                           ///< first. To be called before the observer returns
+  const Field* ambient = nullptr;  ///< goes with it for progressive refinement: Solution::ambient of this iterate
 };
 
 /// Called while a stage goes on, about ten times a second where its work is cut finely enough, never from two threads

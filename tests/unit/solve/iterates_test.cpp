@@ -38,7 +38,7 @@ Watched watched(Solver solver, const RowTransport& transport, const RadiosityPro
   Watched result;
   result.solution =
       solve(transport, problem, {.solver = solver, .relative_error = 1e-9}, [&](const Progress& progress) {
-        if (progress.irradiance != nullptr) result.irradiance.push_back(*progress.irradiance);
+        if (progress.irradiance) result.irradiance.push_back(progress.irradiance());
         return true;
       });
   return result;

@@ -1,10 +1,13 @@
 // What single methods promise.
 #include "patchlight/solve/solve.h"
 
+#include "base/vectors.h"
 #include "support/direct_solution.h"
 #include "support/made_up_room.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <utility>
 
 namespace patchlight::methods_test {
@@ -22,6 +25,35 @@ TEST(Residuals, FallForJacobiAndGmres) {
     for (std::size_t k = 1; k < solution.history.size(); ++k) {
       EXPECT_LT(solution.history[k].relative_residual, solution.history[k - 1].relative_residual) << k;
     }
+  }
+}
+
+// Where no bound is known iterates are made only for an observer that asks: their residuals are those in the history,
+// restarts included, and asking changes nothing.
+TEST(Gmres, MakesTheIteratesWhoseResidualsItTells) {
+  const Room room = made_up(100, 0.9);
+  const double none = std::numeric_limits<double>::infinity();
+  for (const int restart : {30, 3}) {
+    const SolverOptions options{
+        .solver = Solver::gmres, .relative_error = 1e-6, .restart = restart, .largest_row_sum = none};
+    const Eigen::ArrayXd first =
+        area_norm(room.problem.scattering.reflect(room.transport->apply(room.problem.exitance)), room.problem.area);
+    int looked = 0;
+    const Solution solution = solve(*room.transport, room.problem, options, [&](const Progress& progress) {
+      if (!progress.irradiance) return true;
+      const Field B = radiosity_from(room.problem, progress.irradiance());
+      const Field residual = radiosity_from(room.problem, room.transport->apply(B)) - B;
+      const Eigen::ArrayXd norm = area_norm(residual, room.problem.area);
+      double relative = 0;
+      for (Eigen::Index band = 0; band < 2; ++band) relative = std::max(relative, norm[band] / first[band]);
+      EXPECT_NEAR(progress.iteration->relative_residual, relative, 1e-12) << "iteration " << progress.iteration->number;
+      ++looked;
+      return true;
+    });
+    ASSERT_TRUE(solution.converged);
+    EXPECT_EQ(looked, static_cast<int>(solution.history.size()));
+    EXPECT_EQ(solution.history.back().error_bound, none);
+    EXPECT_TRUE((solve(*room.transport, room.problem, options).radiosity == solution.radiosity).all());
   }
 }
 

@@ -215,9 +215,9 @@ TEST_P(EverySolver, TellsTheObserverAllOfTheIrradiance) {
   room.problem.direct_irradiance = Field::Constant(60, 3, 2.0);
   Field last;
   const Solution solution = solve(*room.transport, room.problem, {.solver = GetParam()}, [&](const Progress& progress) {
-    if (progress.irradiance != nullptr) {
-      EXPECT_GE(progress.irradiance->minCoeff(), 2.0);
-      last = *progress.irradiance;
+    if (progress.irradiance) {
+      last = progress.irradiance();
+      EXPECT_GE(last.minCoeff(), 2.0);
     }
     return true;
   });
@@ -242,7 +242,7 @@ TEST_P(EverySolver, GivesItsLastIterateWhenThatIsAskedFor) {
   int last = 0;
   const Observer observer = [&](const Progress& progress) {
     if (progress.iteration == nullptr) return true;
-    shown = *progress.irradiance;
+    shown = progress.irradiance();
     last = progress.iteration->number;
     return last < 2;
   };
