@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,10 @@ constexpr std::uint32_t step = 17;
 // balls at points.
 constexpr int sun_effort = 64;
 constexpr int lamp_effort = 4;
+
+// Of as many rays in all, the error of the light on all patches, in the norm of their areas, is least where each takes
+// a number by the square root of its area: times a power of two, with at most this exponent.
+constexpr int most_doublings = 2;
 
 // Whether so many rays to a ball can be blocked costs as much to find as they do.
 constexpr std::size_t few_rays = 16;
@@ -201,14 +206,16 @@ struct Estimator {
 
   Field replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
                       bool in_shadow) const;  // one row each
-  Estimate by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const;
-  Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const;
+  Estimate by_one(const Source& source, const Receiver& receiver, std::uint32_t key, double effort) const;
+  // With `effort` times the samples.
+  Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index, double effort) const;
 };
 
-Estimator estimator_for(const Lighting& lighting, const LightingOptions& options) {
+// For receivers that take up to 2^doublings times the samples.
+Estimator estimator_for(const Lighting& lighting, const LightingOptions& options, int doublings) {
   const int to_sun = lighting.sun ? sun_effort * options.sun_samples : 0;
   const int to_lamps = lighting.luminaires.empty() ? 0 : lamp_effort * options.lamp_samples;
-  const int most = std::max({to_lamps, to_sun, options.sky_samples});
+  const int most = std::max({to_lamps, to_sun, options.sky_samples}) << doublings;
   const auto count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(most) / replicates);
   Estimator estimator{lighting.bands, sources_of(lighting, options), {}};
   for (std::uint32_t k = 0; k < scrambles; ++k)
@@ -245,7 +252,7 @@ Field Estimator::replicates_by(const Source& source, const Receiver& receiver, s
   return source.means_at(receiver)(of_sets, in_shadow);
 }
 
-Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key) const {
+Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key, double effort) const {
   const Spectrum none = Spectrum::Zero(bands);
   const bool is_point = receiver.is_point();
   if (is_point && !source.has_extent) {
@@ -257,7 +264,8 @@ Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::
   if (left && (left->share == 0).all()) return {none, none};
 
   const bool more = source.has_extent ? is_point : !left;
-  const std::size_t each = std::max<std::size_t>(1, (more ? source.effort : 1) * source.samples / replicates);
+  const double samples = effort * (more ? source.effort : 1) * source.samples;
+  const auto each = static_cast<std::size_t>(std::max(1.0, samples / replicates));
   // Few rays are sooner traced than they are found to be free.
   const bool is_worth_asking = source.may_be_hidden && each * replicates > few_rays;
   const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
@@ -277,24 +285,24 @@ Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::
   return found;
 }
 
-Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index) const {
+Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index, double effort) const {
   Estimate all{Spectrum::Zero(bands), Spectrum::Zero(bands)};
   for (std::size_t k = 0; k < sources.size(); ++k) {
-    const Estimate one = by_one(sources[k], receiver, hash({seed, index, k}));
+    const Estimate one = by_one(sources[k], receiver, hash({seed, index, k}), effort);
     all.mean += one.mean;
     all.variance += one.variance;
   }
   return all;
 }
 
-// `receiver_at` gives the receiver of each number up to `count`.
-template <class ReceiverAt>
+// `receiver_at` and `effort_at` give the receiver of each number up to `count`, and times how many samples it takes.
+template <class ReceiverAt, class EffortAt>
 DirectIrradiance at_receivers(const Estimator& estimator, std::size_t count, const ReceiverAt& receiver_at,
-                              std::uint64_t seed, const Observer& observer) {
+                              const EffortAt& effort_at, std::uint64_t seed, const Observer& observer) {
   const auto rows = static_cast<Eigen::Index>(count);
   DirectIrradiance direct{Field(rows, estimator.bands), Field(rows, estimator.bands)};
   parallel_for(count, Stage::direct_light, observer, [&](std::size_t k) {
-    const Estimate estimate = estimator.by_all(receiver_at(k), seed, k);
+    const Estimate estimate = estimator.by_all(receiver_at(k), seed, k, effort_at(k));
     direct.irradiance.row(static_cast<Eigen::Index>(k)) = estimate.mean;
     direct.standard_error.row(static_cast<Eigen::Index>(k)) = estimate.variance.sqrt();
   });
@@ -311,7 +319,13 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more) {
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
                                    const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  return at_receivers(estimator_for(lighting, options), mesh.size(), patch, options.seed, observer);
+  const double mean_area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0) / static_cast<double>(mesh.size());
+  const auto effort = [&](std::size_t k) {
+    const auto doublings = static_cast<int>(std::lround(std::log2(mesh.area[k] / mean_area) / 2));
+    return std::ldexp(1.0, std::clamp(doublings, -most_doublings, most_doublings));
+  };
+  const Estimator estimator = estimator_for(lighting, options, most_doublings);
+  return at_receivers(estimator, mesh.size(), patch, effort, options.seed, observer);
 }
 
 Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
@@ -322,7 +336,8 @@ Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
                                    const LightingOptions& options, const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
-  return at_receivers(estimator_for(lighting, options), points.size(), point, options.seed, observer);
+  const auto effort = [](std::size_t) { return 1.0; };
+  return at_receivers(estimator_for(lighting, options, 0), points.size(), point, effort, options.seed, observer);
 }
 
 }  // namespace patchlight

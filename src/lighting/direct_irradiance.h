@@ -10,8 +10,9 @@
 
 namespace patchlight {
 
-/// Shadow rays per patch. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball
-/// and over mirrors, and four times as many to the sky.
+/// Shadow rays of a patch of mean size; others take a quarter to four times as many, by the square root of their area,
+/// but over mirrors. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball and
+/// over mirrors, and four times as many to the sky.
 struct LightingOptions {
   int lamp_samples = 64;      ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
                               ///< take one
