@@ -2,19 +2,15 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "lighting/luminaire_irradiance.h"
 #include "lighting/receivers.h"
-#include "lighting/shades.h"
+#include "lighting/sampled_sources.h"
 #include "lighting/shifted_points.h"
-#include "lighting/sky_irradiance.h"
 #include "mesh/means_around.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -29,11 +25,6 @@ constexpr std::uint32_t replicates_at_points = 16;
 constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
-// Times the usual number of rays to sun and luminaires where their shadows are too many to be found by geometry, and to
-// balls at points.
-constexpr int sun_effort = 64;
-constexpr int lamp_effort = 4;
-
 // Of as many rays in all, the error of the light on all patches, in the norm of their areas, is least where each takes
 // a number by the square root of its area: times a power of two, with at most this exponent.
 constexpr int most_doublings = 2;
@@ -45,154 +36,6 @@ constexpr std::size_t few_rays = 16;
 // Hanley and Lippman-Hand 1983, the rule of three.
 constexpr double rule_of_three = 3;
 
-// The points of one estimate: for rays, shifted for this receiver and source alone, and those that find the share of a
-// patch that is not covered.
-struct Samples {
-  SamplePoints rays;
-  SamplePoints places;
-};
-
-// Estimates of the mean irradiance of one receiver, with or without shadows: one row for each set of samples.
-using MeansBy = std::function<Field(std::span<const Samples>, bool)>;
-
-// Something that gives light.
-struct Source {
-  std::function<MeansBy(const Receiver&)> means_at;
-  std::uint32_t samples = 0;
-  bool has_extent = false;
-  int effort = 1;  // times the samples where rays have to find the shadows of a light without extent, or at a point
-  std::function<std::optional<LeftByShadows>(const Receiver&)> left = {};  // on a patch, without extent
-  std::function<Spectrum(const Receiver&)> unshadowed = {};                // in the middle, without extent
-  std::function<bool(const Receiver&)> may_be_hidden = {};                 // with extent
-};
-
-template <class Means>
-std::function<MeansBy(const Receiver&)> at_each(Means means) {
-  return [means](const Receiver& receiver) {
-    return
-        [means, &receiver](std::span<const Samples> sets, bool in_shadow) { return means(receiver, sets, in_shadow); };
-  };
-}
-
-// One set after the other.
-template <class Mean>
-std::function<MeansBy(const Receiver&)> at_each_set(Eigen::Index bands, Mean mean) {
-  return at_each([bands, mean](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
-    Field means(static_cast<Eigen::Index>(sets.size()), bands);
-    for (std::size_t k = 0; k < sets.size(); ++k)
-      means.row(static_cast<Eigen::Index>(k)) = mean(receiver, sets[k], in_shadow);
-    return means;
-  });
-}
-
-using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
-
-// Of light that comes from one direction for each sample. Places over which another polygon lies do not count. The
-// shadow rays of all sets are traced together.
-Field means_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
-                        std::span<const Samples> sets, bool in_shadow) {
-  struct OfSet {
-    Eigen::Index set;
-    Arrival arrival;
-  };
-  std::vector<Segment> segments;
-  std::vector<OfSet> arrivals;
-  std::vector<std::size_t> exposed(sets.size(), 0);
-  for (std::size_t n = 0; n < sets.size(); ++n) {
-    for (const auto& [u, v, s, t] : sets[n].rays) {
-      const SurfacePoint at = receiver.place(u, v);
-      if (is_covered(lighting, receiver, at)) continue;
-      ++exposed[n];
-      const Arrival arrival = arrival_at(at, {s, t});
-      if (!(arrival.irradiance > 0)) continue;
-      segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
-      arrivals.push_back({static_cast<Eigen::Index>(n), arrival});
-    }
-  }
-  Field means = Field::Zero(static_cast<Eigen::Index>(sets.size()), lighting.bands);
-  if (segments.empty()) return means;
-  const Field transmittance = in_shadow
-                                  ? lighting.paths.transmittance(segments)
-                                  : Field(Field::Ones(static_cast<Eigen::Index>(segments.size()), lighting.bands));
-  for (std::size_t k = 0; k < arrivals.size(); ++k) {
-    const auto& [set, arrival] = arrivals[k];
-    means.row(set) += arrival.irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrival.colour;
-  }
-  for (std::size_t n = 0; n < sets.size(); ++n)
-    means.row(static_cast<Eigen::Index>(n)) /= static_cast<double>(std::max<std::size_t>(1, exposed[n]));
-  return means;
-}
-
-Source source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint32_t samples) {
-  const ArrivalAt arrival_at = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
-    return from_luminaire(luminaire, lighting.up, at, uv);
-  };
-  const auto means = [&lighting, arrival_at](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
-    return means_of_arrivals(lighting, arrival_at, receiver, sets, in_shadow);
-  };
-  if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) {
-    const auto may_be_hidden = [&lighting, &luminaire, radius = sphere->radius](const Receiver& receiver) {
-      const SurfacePoint middle = receiver.place(0.5, 0.5);
-      const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
-      return lighting.paths.may_be_hidden(places, middle.normal, luminaire.position, radius);
-    };
-    return {.means_at = at_each(means),
-            .samples = samples,
-            .has_extent = true,
-            .effort = lamp_effort,
-            .may_be_hidden = may_be_hidden};
-  }
-  const auto means_at = [&lighting, &luminaire, means](const Receiver& receiver) -> MeansBy {
-    if (receiver.is_point()) return at_each(means)(receiver);
-    return at_each_set(lighting.bands, [&](const Receiver& patch, const Samples& samples_at, bool in_shadow) {
-      return luminaire_irradiance(lighting, luminaire, patch, {samples_at.rays, samples_at.places}, in_shadow);
-    })(receiver);
-  };
-  const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
-  const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
-    const Arrival arrival = arrival_at(receiver.place(0.5, 0.5), {0.5, 0.5});
-    if (!(arrival.irradiance > 0)) return Spectrum(Spectrum::Zero(lighting.bands));
-    return Spectrum(arrival.irradiance * *arrival.colour);
-  };
-  return {means_at, samples, false, lamp_effort, left, unshadowed};
-}
-
-Source sun_of(const Lighting& lighting, std::uint32_t samples) {
-  const auto unshadowed = [&lighting](const Receiver& receiver) {
-    const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
-    return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
-  };
-  const auto means = [&lighting, unshadowed](const Receiver& receiver, std::span<const Samples> sets, bool in_shadow) {
-    if (!in_shadow) return Field(unshadowed(receiver).replicate(static_cast<Eigen::Index>(sets.size()), 1));
-    const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
-    return means_of_arrivals(lighting, arrival_at, receiver, sets, true);
-  };
-  const auto left = [&lighting](const Receiver& receiver) -> std::optional<LeftByShadows> {
-    const auto share = lighting.shades->transmittance(receiver, {lighting.sun->direction, 0});
-    if (!share) return std::nullopt;
-    return LeftByShadows{*share, Spectrum::Zero(lighting.bands)};
-  };
-  return {at_each(means), samples, false, sun_effort, left, unshadowed};
-}
-
-std::vector<Source> sources_of(const Lighting& lighting, const LightingOptions& options) {
-  std::vector<Source> sources;
-  for (const Luminaire& luminaire : lighting.luminaires)
-    sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
-  if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
-  if (lighting.sky) {
-    const auto means_at = [&lighting](const Receiver& receiver) {
-      const auto mean = [&lighting, aim = sky_aim(lighting, receiver)](const Receiver& at, const Samples& samples,
-                                                                       bool) {
-        return sky_irradiance(lighting, at, aim, samples.rays);
-      };
-      return at_each_set(lighting.bands, mean)(receiver);
-    };
-    sources.push_back({means_at, static_cast<std::uint32_t>(options.sky_samples), true});
-  }
-  return sources;
-}
-
 // Irradiance by one source or by all.
 struct Estimate {
   Spectrum mean;
@@ -201,23 +44,23 @@ struct Estimate {
 
 struct Estimator {
   Eigen::Index bands = 0;
-  std::vector<Source> sources;
+  std::vector<SampledSource> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
 
-  Field replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
+  Field replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
                       bool in_shadow) const;  // one row each
-  Estimate by_one(const Source& source, const Receiver& receiver, std::uint32_t key, double effort) const;
+  Estimate by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
   // With `effort` times the samples.
   Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index, double effort) const;
 };
 
 // For receivers that take up to 2^doublings times the samples.
 Estimator estimator_for(const Lighting& lighting, const LightingOptions& options, int doublings) {
-  const int to_sun = lighting.sun ? sun_effort * options.sun_samples : 0;
-  const int to_lamps = lighting.luminaires.empty() ? 0 : lamp_effort * options.lamp_samples;
-  const int most = std::max({to_lamps, to_sun, options.sky_samples}) << doublings;
-  const auto count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(most) / replicates);
-  Estimator estimator{lighting.bands, sources_of(lighting, options), {}};
+  Estimator estimator{lighting.bands, sampled_sources(lighting, options), {}};
+  std::uint32_t most = replicates;
+  for (const SampledSource& source : estimator.sources)
+    most = std::max(most, (static_cast<std::uint32_t>(source.effort) * source.samples) << doublings);
+  const std::uint32_t count = most / replicates;
   for (std::uint32_t k = 0; k < scrambles; ++k)
     estimator.points.push_back(scrambled_sobol(count, hash({options.seed, k})));
   return estimator;
@@ -239,11 +82,11 @@ Estimate estimate_of(const Field& replicates_of) {
   return {mean, (squares - mean.square()).max(0.0) / (count - 1)};
 }
 
-Field Estimator::replicates_by(const Source& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
-                               bool in_shadow) const {
+Field Estimator::replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
+                               std::size_t each, bool in_shadow) const {
   const std::uint32_t sets = receiver.is_point() ? replicates_at_points : replicates;
   std::vector<std::vector<std::array<double, 4>>> moved;
-  std::vector<Samples> of_sets;
+  std::vector<ReceiverSamples> of_sets;
   for (std::uint32_t k = 0; k < sets; ++k) {
     const SamplePoints set = points[(key + k * step) % scrambles];
     moved.push_back(shifted(set.first(each), hash({key, k})));
@@ -252,12 +95,13 @@ Field Estimator::replicates_by(const Source& source, const Receiver& receiver, s
   return source.means_at(receiver)(of_sets, in_shadow);
 }
 
-Estimate Estimator::by_one(const Source& source, const Receiver& receiver, std::uint32_t key, double effort) const {
+Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
+                           double effort) const {
   const Spectrum none = Spectrum::Zero(bands);
   const bool is_point = receiver.is_point();
   if (is_point && !source.has_extent) {
     const SamplePoints one = SamplePoints(points[0]).first(1);
-    const Samples samples{one, one};
+    const ReceiverSamples samples{one, one};
     return {source.means_at(receiver)({&samples, 1}, true).row(0), none};
   }
   const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;

@@ -93,7 +93,7 @@ Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std
 }  // namespace
 
 Spectrum luminaire_irradiance(const Lighting& lighting, const Luminaire& luminaire, const Receiver& receiver,
-                              const LuminaireSamples& samples, bool in_shadow) {
+                              const ReceiverSamples& samples, bool in_shadow) {
   Spectrum sum = Spectrum::Zero(lighting.bands);
   const SeenPatch seen = seen_patch(lighting, luminaire, receiver, samples.rays);
   if (seen.segments.empty()) return sum;

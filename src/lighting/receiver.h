@@ -12,6 +12,12 @@ namespace patchlight {
 /// Points of a four-dimensional Sobol sequence: two numbers for a place of the receiver, two for one of the source.
 using SamplePoints = std::span<const std::array<double, 4>>;
 
+/// The points of one estimate of what a receiver gets.
+struct ReceiverSamples {
+  SamplePoints rays;    ///< choose the places that get a shadow ray, shifted for this receiver and source alone
+  SamplePoints places;  ///< choose those that find the share of a patch that is not covered
+};
+
 /// A patch or a point that receives light: a place of it for each point of the unit square.
 struct Receiver {
   std::function<SurfacePoint(double, double)> place;

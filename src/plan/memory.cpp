@@ -105,11 +105,15 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
   const auto fitting = static_cast<long>(patches_that_fit(plan));
   // Small faces take a patch each, however few are asked for.
   const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
+  const std::string by_rays =
+      plan.assembly.storage == Storage::tiles ? "take rows of rays instead with assembly.storage=rays" : "";
   const std::string hint =
       usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
       : too_many_faces
-          ? "fewer cannot be had, as its faces alone take so many: simplify the model, or leave objects out"
-          : "ask for at most " + std::to_string(fitting) + " patches with mesh.patches";
+          ? "fewer cannot be had, as its faces alone take so many: " + (by_rays.empty() ? by_rays : by_rays + ", or ") +
+                "simplify the model, or leave objects out"
+          : "ask for at most " + std::to_string(fitting) + " patches with mesh.patches" +
+                (by_rays.empty() ? by_rays : ", or " + by_rays);
   throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
                     (keeps_entries(plan.assembly.storage) ? ", most of it for their form factors, and " : ", and ") +
                     gigabytes(usable) +

@@ -57,8 +57,8 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   right.specular_reflectance = Spectrum::Constant(1, 0.5);
   Scene scene = empty_scene({grey(0.5), left, right});
   scene = with_quad(std::move(scene), {Point(-9, -9, 0), Point(9, -9, 0), Point(9, 9, 0), Point(-9, 9, 0)});
-  scene = with_quad(std::move(scene), {Point(-5, -1, 1), Point(-5, 1, 1), Point(-5, 1, 3), Point(-5, -1, 3)}, 1);
-  scene = with_quad(std::move(scene), {Point(5, -1, 1), Point(5, -1, 3), Point(5, 1, 3), Point(5, 1, 1)}, 2);
+  scene = with_quad(std::move(scene), {Point(-5, -1, 1), Point(-5, 1, 1), Point(-5, 1, 2), Point(-5, -1, 2)}, 1);
+  scene = with_quad(std::move(scene), {Point(5, -1, 1), Point(5, -1, 2), Point(5, 1, 2), Point(5, 1, 1)}, 2);
   Luminaire lamp;
   lamp.position = Point(0, 0, 4);
   lamp.light = SphericalLamp{0.2, Spectrum::Constant(1, 7)};

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "lighting/direct_irradiance.h"
+#include "lighting/luminaire_irradiance.h"
+#include "lighting/receiver.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+/// Estimates of the mean irradiance of one receiver, which has to live as long, with or without shadows: one row for
+/// each set of samples, one column per band.
+using MeansBy = std::function<Field(std::span<const ReceiverSamples>, bool)>;
+
+/// Something that gives light and is no patch.
+struct SampledSource {
+  std::function<MeansBy(const Receiver&)> means_at;
+  std::uint32_t samples = 0;  ///< LightingOptions
+  bool has_extent = false;
+  int effort = 1;  ///< times the samples where rays have to find the shadows of a light without extent, or at a point
+  std::function<std::optional<LeftByShadows>(const Receiver&)> left = {};  ///< on a patch, without extent
+  std::function<Spectrum(const Receiver&)> unshadowed = {};                ///< in the middle, without extent
+  std::function<bool(const Receiver&)> may_be_hidden = {};                 ///< with extent
+};
+
+/// Luminaires, sun and sky of a lighting, which has to live as long.
+std::vector<SampledSource> sampled_sources(const Lighting& lighting, const LightingOptions& options);
+
+}  // namespace patchlight
