@@ -40,7 +40,6 @@ void write_data(const std::filesystem::path& file, vtkDataSet& data, vtkXMLWrite
     writer.SetInputData(&data);
     writer.SetFileName(temporary.c_str());
     writer.SetDataModeToAppended();
-    writer.EncodeAppendedDataOff();
     writer.SetHeaderTypeToUInt64();
     const bool written = writer.Write() != 0 && writer.GetErrorCode() == vtkErrorCode::NoError && error.empty();
     if (!written) throw OutputError(file.string(), "cannot be written; is the disk full?");
@@ -119,12 +118,15 @@ Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::
 void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons) {
   const vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetCompressorTypeToLZ4();
+  writer->EncodeAppendedDataOff();
   write_data(file, polygons, *writer);
 }
 
 void write_grid(const std::filesystem::path& file, vtkPolyData& polygons) {
   const vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetCompressorTypeToZLib();
+  // Bytes as they are make no well-formed XML, and meshio takes one array's for another's in one of seven files.
+  writer->EncodeAppendedDataOn();
   write_data(file, *grid_of(polygons), *writer);
 }
 

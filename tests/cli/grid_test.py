@@ -4,6 +4,7 @@ import pathlib
 import subprocess
 import sys
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 from support import ToolTest
 
@@ -32,6 +33,7 @@ class GridTest(ToolTest):
         self.write("room.obj", (self.folder / "room.obj").read_text() + "usemtl white\nv 0.3 0.3 0.5\nv 0.7 0.3 0.5\nv 0.5 0.7 0.6\nf -3 -2 -1\n")
         done = self.run_tool("solve", "room.obj", "--patches", 100, "-o", "room.vtp", "-o", "room.vtu")
         self.assertEqual(done.returncode, 0, done.stderr)
+        ElementTree.parse(self.folder / "room.vtu")
         read = subprocess.run([PYTHON, "-c", READ, self.folder / "room.vtu"], capture_output=True, text=True, check=False)
         self.assertEqual(read.returncode, 0, read.stderr)
         grid = json.loads(read.stdout)
