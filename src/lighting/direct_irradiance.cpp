@@ -172,8 +172,7 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
   return at_receivers(estimator, mesh.size(), patch, effort, options.seed, observer);
 }
 
-Field with_errors_around(const PatchMesh& mesh, const Field& standard_error) {
-  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), standard_error.rows());
+Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error) {
   return standard_error.max(means_around(mesh, area, standard_error));
 }
 

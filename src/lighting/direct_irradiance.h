@@ -43,9 +43,10 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more);
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});
 
-/// Standard errors of patches, each no less than the root mean square of those around it: the spread of four estimates
-/// may be small by chance, and all four may miss the edge of a shadow that patches around find.
-Field with_errors_around(const PatchMesh& mesh, const Field& standard_error);
+/// Standard errors of patches, each no less than the root mean square of those around it by their areas, m^2: the
+/// spread of four estimates may be small by chance, and all four may miss the edge of a shadow that patches around
+/// find.
+Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error);
 
 /// Irradiance at points.
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,

@@ -140,9 +140,7 @@ DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchM
     const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
-  DirectIrradiance found = mirrored_irradiance(lighting, faces, mesh, lighting_options(plan, mesh), run.observer);
-  found.standard_error = with_errors_around(mesh, found.standard_error);
-  return found;
+  return mirrored_irradiance(lighting, faces, mesh, lighting_options(plan, mesh), run.observer);
 }
 
 }  // namespace patchlight

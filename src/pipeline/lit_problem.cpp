@@ -41,15 +41,26 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   if (!has_point_or_daylight(run.scene)) return lit;
   DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, lighting_options(plan, mesh));
   lit.problem.direct_irradiance = std::move(direct.irradiance);
-  lit.direct_standard_error = with_errors_around(mesh, direct.standard_error);
+  lit.direct_standard_error = std::move(direct.standard_error);
   return lit;
 }
 
+DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
+                                   const Eigen::VectorXd& exposed_area) {
+  if (direct.irradiance.size() == 0) return direct;
+  const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exposed_area);
+  direct.irradiance.colwise() *= factor;
+  direct.standard_error.colwise() *= factor;
+  direct.standard_error = with_errors_around(mesh, exposed_area, direct.standard_error);
+  return direct;
+}
+
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost) {
-  if (lit.problem.direct_irradiance.size() == 0) return lit;
-  const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, lit.problem.area);
-  lit.problem.direct_irradiance.colwise() *= factor;
-  lit.direct_standard_error.colwise() *= factor;
+  RadiosityProblem& problem = lit.problem;
+  DirectIrradiance direct{std::move(problem.direct_irradiance), std::move(lit.direct_standard_error)};
+  direct = over_exposed_part(std::move(direct), mesh, lost, problem.area);
+  problem.direct_irradiance = std::move(direct.irradiance);
+  lit.direct_standard_error = std::move(direct.standard_error);
   return lit;
 }
 

@@ -26,8 +26,12 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 /// Cancelled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
 
-/// The same with means over what is exposed of each patch, RadiosityProblem::area, of light that lit_problem() has
-/// found as means over all but what other polygons lie over.
+/// Light that was found as means over all of each patch but what other polygons lie over, as means over what is exposed
+/// of it, m^2; standard errors no less than those around. Empty where there is no such light.
+DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
+                                   const Eigen::VectorXd& exposed_area);
+
+/// The same of the direct light of lit_problem(), over RadiosityProblem::area.
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);
 
 /// The irradiance of each patch (row) and band by luminaires, sun and sky alone, W/m^2, with `rays`, from 4 to 8, to

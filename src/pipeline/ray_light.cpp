@@ -9,25 +9,12 @@
 #include "solve/scattering.h"
 #include "transport/smoothing.h"
 #include "transport/weighed_rows.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
 namespace patchlight {
-namespace {
-
-// The share of what each patch holds back that is exposed.
-Eigen::ArrayXd exposed_shares(const Run& run, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
-  const Occluder& occluder = run.tracing->between_patches();
-  Eigen::ArrayXd exposed = exposed_area.array();
-  for (PatchIndex i = 0; i < mesh.size(); ++i)
-    exposed[i] /= mesh.area[i] * occluder.held_share(mesh.polygon[i], mesh.side[i]);
-  return exposed;
-}
-
-}  // namespace
 
 RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found) {
   // 1. Rows in the colour of this run.
@@ -42,7 +29,8 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   problem.area = exchange.rows.area;
   problem.scattering = with_sheets(std::move(problem.scattering), run.scene, mesh, problem.area);
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
-  const Eigen::ArrayXd exposed = exposed_shares(run, mesh, exchange.rows.area);
+  const auto is_exposed = lost.covered.array() < 1;
+  const Eigen::ArrayXd exposed = is_exposed.select(1 - lost.covered.array(), 1.0);
   for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
   const Eigen::ArrayXd relative = exposure_errors(lost);
   const Field by_exposure = (0.5 * (light.by_lamps[0] + light.by_lamps[1])).colwise() * relative;
@@ -52,11 +40,10 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
     const Field off = light.lit.problem.direct_irradiance.colwise() * relative;
     of_direct = (of_direct.square() + off.square()).sqrt();
   }
+  light.in_mirrors = over_exposed_part(std::move(light.in_mirrors), mesh, lost, problem.area);
   if (light.in_mirrors.irradiance.size() > 0) {
     auto& [irradiance, error] = light.in_mirrors;
-    const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exchange.rows.area);
-    irradiance.colwise() *= factor;
-    error = ((error.colwise() * factor).square() + (irradiance.colwise() * relative).square()).sqrt();
+    error = (error.square() + (irradiance.colwise() * relative).square()).sqrt();
   }
   return {std::move(exchange.rows), std::move(light)};
 }

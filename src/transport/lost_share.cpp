@@ -160,7 +160,8 @@ Eigen::ArrayXd over_exposed_part(const PatchMesh& mesh, const LostShare& lost, c
   Eigen::ArrayXd open = Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), mesh.size());
   if (lost.clear.size() > 0) open *= 1 - lost.clear.array();
   if (lost.overlaid.size() > 0) open *= 1 - lost.overlaid.array();
-  return (lost.covered.array() > 0).select(open / exposed_area.array(), 1.0);
+  const auto in_part = lost.covered.array() > 0 && lost.covered.array() < 1;
+  return in_part.select(open / exposed_area.array(), 1.0);
 }
 
 Eigen::VectorXd expected_row_sum(const LostShare& lost) { return 1 - lost.escaped.array() - lost.at_backs.array(); }

@@ -120,6 +120,37 @@ INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
                          testing::Combine(testing::Bool(), testing::Values(1.0, 1e-3),
                                           testing::Values(Storage::tiles, Storage::rays), testing::Bool()));
 
+class BlockLitByABall : public testing::TestWithParam<Storage> {};
+
+// Of patches that lie under the block as a whole no ray finds a part that is exposed. What is uncertain of the light
+// beside them, in the soft edge of the block's shadow, is not made a million times as much by their exposed area, which
+// is taken as a millionth: nowhere is a standard error larger than the light that arrives without a shadow.
+TEST_P(BlockLitByABall, LeavesNoErrorUnderIt) {
+  Scene scene = with_box(empty_scene({grey(0.6)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  for (const Quad& face : box_faces(Point(1.1, 0.9, 0), Point(2.3, 1.7, 1), false))
+    scene = with_quad(std::move(scene), face);
+  scene.luminaires.resize(1);
+  scene.luminaires[0].position = Point(3, 2.2, 2);
+  scene.luminaires[0].light = SphericalLamp{0.2, Spectrum::Ones(1)};
+  Request request;
+  request.mesh.max_edge = 0.21;
+  request.mesh.contact_lines = false;
+  request.assembly.storage = GetParam();
+  request.solver.solver = Solver::gmres;
+  const Simulation lit = simulate(scene, request);
+  const double most = lit.problem.direct_irradiance.maxCoeff();
+  int under = 0;
+  for (PatchIndex i = 0; i < lit.mesh.size(); ++i) {
+    if (lit.mesh.polygon[i] != 0 || lit.transport.lost.covered[i] < 1) continue;
+    EXPECT_EQ(lit.problem.direct_irradiance(i, 0), 0) << "patch " << i;
+    ++under;
+  }
+  EXPECT_GT(under, 10);
+  EXPECT_LT(lit.direct_standard_error.maxCoeff(), most);
+}
+
+INSTANTIATE_TEST_SUITE_P(HardCases, BlockLitByABall, testing::Values(Storage::tiles, Storage::rays));
+
 // The same on a clear floor, which holds back what a pane of 0.5 does, with form factors that are known, as from a
 // folder, where what is of materials is not: that share of 100 W for each m^2 beside the block, 100 on its top of 2.25
 // m^2.

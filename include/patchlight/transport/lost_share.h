@@ -33,7 +33,8 @@ struct LostShare {
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder);
 
 /// By how much a mean over all of a patch but what is overlaid becomes one over its exposed part, when nothing arrives
-/// at the rest: under what stands on the patch.
+/// at the rest: under what stands on the patch. 1 where no ray has found a part that is exposed: what arrives there is
+/// spread over all of it.
 Eigen::ArrayXd over_exposed_part(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& exposed_area);
 
 /// What each row of form factors should sum up to: 1 - escaped - at_backs.

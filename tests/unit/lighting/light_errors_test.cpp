@@ -90,10 +90,11 @@ Runs on_patches(const Scene& scene, double max_edge = 0.25) {
   const auto on = [&](const Scene& of, const LightingOptions& options) {
     return direct_irradiance(lighting_of(of, Tracing(of)), mesh, options);
   };
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), mesh.size());
   std::vector<DirectIrradiance> seeds;
   for (std::uint64_t seed = 1; seed <= number_of_seeds; ++seed) {
     seeds.push_back(on(scene, {.seed = seed}));
-    seeds.back().standard_error = with_errors_around(mesh, seeds.back().standard_error);
+    seeds.back().standard_error = with_errors_around(mesh, area, seeds.back().standard_error);
   }
   return with_reference(std::move(seeds), on(scene, many).irradiance, on(with_clear_plate(scene), many).irradiance);
 }
