@@ -16,8 +16,8 @@
 namespace patchlight {
 namespace {
 
-// Independent estimates of each irradiance: their spread is its standard error. That of four is often small by chance:
-// patches take the mean of those around, which points do not have.
+// Independent estimates of each irradiance, of few samples fewer: their spread is its standard error. That of four is
+// often small by chance: patches take the mean of those around, which points do not have.
 constexpr std::uint32_t replicates = 4;
 constexpr std::uint32_t replicates_at_points = 16;
 
@@ -42,13 +42,21 @@ struct Estimate {
   Spectrum variance;  // of the mean
 };
 
+struct SampleSets {
+  std::uint32_t count = 1;
+  std::size_t each = 1;
+
+  std::size_t samples() const { return count * each; }
+};
+
 struct Estimator {
   Eigen::Index bands = 0;
   std::vector<SampledSource> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
 
-  Field replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, std::size_t each,
-                      bool in_shadow) const;  // one row each
+  // One row for each of so many sets.
+  Field replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
+                      bool in_shadow) const;
   Estimate by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
   // With `effort` times the samples.
   Estimate by_all(const Receiver& receiver, std::uint64_t seed, std::uint64_t index, double effort) const;
@@ -78,18 +86,25 @@ Spectrum missed_variance(const Field& arriving, const Field& unshadowed, std::si
 Estimate estimate_of(const Field& replicates_of) {
   const auto count = static_cast<double>(replicates_of.rows());
   const Spectrum mean = replicates_of.colwise().mean();
+  if (replicates_of.rows() == 1) return {mean, mean.square()};
   const Spectrum squares = replicates_of.square().colwise().mean();
   return {mean, (squares - mean.square()).max(0.0) / (count - 1)};
 }
 
+// Of patches no more sets than samples.
+SampleSets sets_of(double samples, bool at_point) {
+  const auto most = static_cast<std::uint32_t>(std::clamp(samples, 1.0, static_cast<double>(replicates)));
+  return {at_point ? replicates_at_points : most,
+          static_cast<std::size_t>(std::max(1.0, samples / (at_point ? replicates : most)))};
+}
+
 Field Estimator::replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
-                               std::size_t each, bool in_shadow) const {
-  const std::uint32_t sets = receiver.is_point() ? replicates_at_points : replicates;
+                               SampleSets sets, bool in_shadow) const {
   std::vector<std::vector<std::array<double, 4>>> moved;
   std::vector<ReceiverSamples> of_sets;
-  for (std::uint32_t k = 0; k < sets; ++k) {
+  for (std::uint32_t k = 0; k < sets.count; ++k) {
     const SamplePoints set = points[(key + k * step) % scrambles];
-    moved.push_back(shifted(set.first(each), hash({key, k})));
+    moved.push_back(shifted(set.first(sets.each), hash({key, k})));
     of_sets.push_back({moved.back(), set});
   }
   return source.means_at(receiver)(of_sets, in_shadow);
@@ -108,23 +123,21 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
   if (left && (left->share == 0).all()) return {none, none};
 
   const bool more = source.has_extent ? is_point : !left;
-  const double samples = effort * (more ? source.effort : 1) * source.samples;
-  const auto each = static_cast<std::size_t>(std::max(1.0, samples / replicates));
+  const SampleSets sets = sets_of(effort * (more ? source.effort : 1) * source.samples, is_point);
   // Few rays are sooner traced than they are found to be free.
-  const bool is_worth_asking = source.may_be_hidden && each * replicates > few_rays;
+  const bool is_worth_asking = source.may_be_hidden && sets.samples() > few_rays;
   const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
-  const Field arriving = replicates_by(source, receiver, key, each, in_shadow);
+  const Field arriving = replicates_by(source, receiver, key, sets, in_shadow);
   Estimate found = estimate_of(arriving);
   if (left)
     return {found.mean * left->share,
             found.variance * left->share.square() + (found.mean * left->standard_error).square()};
-  const auto rays = each * static_cast<std::size_t>(arriving.rows());
   if (source.unshadowed) {
     const Field unshadowed = source.unshadowed(receiver).replicate(arriving.rows(), 1);
-    found.variance = found.variance.max(missed_variance(arriving, unshadowed, rays));
+    found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
   } else if (in_shadow && is_point && source.may_be_hidden) {
-    const Field unshadowed = replicates_by(source, receiver, key, each, false);
-    found.variance = found.variance.max(missed_variance(arriving, unshadowed, rays));
+    const Field unshadowed = replicates_by(source, receiver, key, sets, false);
+    found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
   }
   return found;
 }
@@ -142,11 +155,11 @@ Estimate Estimator::by_all(const Receiver& receiver, std::uint64_t seed, std::ui
 // `receiver_at` and `effort_at` give the receiver of each number up to `count`, and times how many samples it takes.
 template <class ReceiverAt, class EffortAt>
 DirectIrradiance at_receivers(const Estimator& estimator, std::size_t count, const ReceiverAt& receiver_at,
-                              const EffortAt& effort_at, std::uint64_t seed, const Observer& observer) {
+                              const EffortAt& effort_at, const LightingOptions& options, const Observer& observer) {
   const auto rows = static_cast<Eigen::Index>(count);
   DirectIrradiance direct{Field(rows, estimator.bands), Field(rows, estimator.bands)};
   parallel_for(count, Stage::direct_light, observer, [&](std::size_t k) {
-    const Estimate estimate = estimator.by_all(receiver_at(k), seed, k, effort_at(k));
+    const Estimate estimate = estimator.by_all(receiver_at(k), options.seed, k / options.alike, effort_at(k));
     direct.irradiance.row(static_cast<Eigen::Index>(k)) = estimate.mean;
     direct.standard_error.row(static_cast<Eigen::Index>(k)) = estimate.variance.sqrt();
   });
@@ -169,7 +182,7 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
     return std::ldexp(1.0, std::clamp(doublings, -most_doublings, most_doublings));
   };
   const Estimator estimator = estimator_for(lighting, options, most_doublings);
-  return at_receivers(estimator, mesh.size(), patch, effort, options.seed, observer);
+  return at_receivers(estimator, mesh.size(), patch, effort, options, observer);
 }
 
 Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error) {
@@ -180,7 +193,7 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const Sur
                                    const LightingOptions& options, const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
   const auto effort = [](std::size_t) { return 1.0; };
-  return at_receivers(estimator_for(lighting, options, 0), points.size(), point, effort, options.seed, observer);
+  return at_receivers(estimator_for(lighting, options, 0), points.size(), point, effort, options, observer);
 }
 
 }  // namespace patchlight

@@ -20,13 +20,16 @@ struct LightingOptions {
   int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
   int sky_samples = 1024;     ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
+  std::uint32_t alike = 1;  ///< so many patches that follow each other take the same samples, so that little noise is
+                            ///< in their differences
 };
 
 /// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
   Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
-                         ///< eight; 0 where nothing is sampled. Where n rays to a light without extent, or from a point
+                         ///< eight; as large as the irradiance where there is one sample alone; 0 where nothing is
+                         ///< sampled. Where n rays to a light without extent, or from a point
                          ///< to a ball, all find the same: 3 / n of what it gives without shadows. What all rays of a
                          ///< patch to a ball or to the sky miss, a hole that is smaller than one ray's share of these,
                          ///< is not known

@@ -64,14 +64,16 @@ LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostSh
   return lit;
 }
 
-Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& mesh, std::uint64_t seed, int rays) {
-  const int to_lights = std::clamp(rays, 4, 8);
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& quarters, std::uint64_t seed,
+                              int rays) {
+  const int to_lights = std::clamp(rays, 2, 8);
   const LightingOptions few{.lamp_samples = to_lights,
                             .sun_samples = to_lights,
                             .mirrored_samples = std::clamp(rays / 2, 2, 8),
-                            .sky_samples = 64,
-                            .seed = seed};
-  return direct_irradiance_as_planned(run, plan, mesh, few).irradiance;
+                            .sky_samples = std::clamp(8 * rays, 16, 64),
+                            .seed = seed,
+                            .alike = 4};
+  return direct_irradiance_as_planned(run, plan, quarters, few).irradiance;
 }
 
 }  // namespace patchlight

@@ -6,6 +6,7 @@
 #include "base/sampling.h"
 #include "light/pane.h"
 #include "mesh/mesher.h"
+#include "mesh/refine.h"
 #include "scene/photometric_web.h"
 #include "support/scenes.h"
 
@@ -416,6 +417,28 @@ TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
     EXPECT_TRUE((both.irradiance.topRows(patches) == alone.irradiance).all()) << samples << " samples";
     EXPECT_GT(alone.irradiance.minCoeff(), 0);
   }
+}
+
+// The quarters of a square of 1 m, 3 m below a lamp that stands aside, from four samples each: with those of its own
+// each quarter is off by what the irradiance varies by inside it, over the root of four; with the same samples all are
+// off by nearly the same, and their differences by what changes of that between them, which is a quarter of it and
+// less.
+TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
+  Scene scene = with_quad(only_floor(-5), {Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)});
+  scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
+  const PatchMesh quarters = refine(fronts(scene, 100));
+  const Lighting lighting = lighting_of(scene, Tracing(scene));
+  const Field exact = direct_irradiance(lighting, quarters, {.lamp_samples = 4096}).irradiance.bottomRows(4);
+  const auto squares_of_errors = [&](std::uint32_t alike) {
+    double sum = 0;
+    for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+      const LightingOptions options{.lamp_samples = 4, .seed = seed, .alike = alike};
+      const Field error = direct_irradiance(lighting, quarters, options).irradiance.bottomRows(4) - exact;
+      sum += (error - error.mean()).square().sum();
+    }
+    return sum;
+  };
+  EXPECT_LT(squares_of_errors(4), squares_of_errors(1) / 4);
 }
 
 TEST(DirectIrradiance, HasTheSameBitsForAnyNumberOfThreads) {

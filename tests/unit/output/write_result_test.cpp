@@ -12,8 +12,8 @@ namespace {
 
 TEST(WriteResult, WritesEveryExtensionItNames) {
   const TemporaryFolder folder;
-  const std::vector<std::string> beginnings = {"<VTKFile type=\"PolyData\"", "<VTKFile type=\"UnstructuredGrid\"",
-                                               "ply\n", "glTF"};
+  const std::vector<std::string> beginnings = {
+      "<VTKFile type=\"PolyData\"", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\"", "ply\n", "glTF"};
   ASSERT_EQ(result_extensions().size(), beginnings.size());
   for (std::size_t k = 0; k < beginnings.size(); ++k) {
     const std::filesystem::path file = folder.path() / ("result" + result_extensions()[k]);
