@@ -2,7 +2,9 @@
 
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
+#include "base/sampling.h"
 #include "base/vectors.h"
+#include "form_factor/patch_keys.h"
 #include "mesh/means_around.h"
 #include "pipeline/conserved_flux.h"
 #include "pipeline/problem_of.h"
@@ -11,8 +13,10 @@
 #include "transport/weighed_rows.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 
@@ -118,6 +122,40 @@ std::array<Field, 2> gathered(const RayTransport& transport, const Field& source
   return halves;
 }
 
+// The variance of what each row sums up to, over its square. A share s that n rays tell has a variance of s (1 - s) /
+// n, and s n of them meet patches. Where sides without patches are seen it is that of the rays which have looked for
+// these.
+Eigen::ArrayXd variance_of_row_sums(const RayTransport& transport, const Eigen::VectorXd& row_sum,
+                                    const LostShare& lost) {
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(row_sum.size());
+  for (Eigen::Index i = 0; i < row_sum.size(); ++i) {
+    const double s = row_sum[i];
+    const auto row = static_cast<std::size_t>(i);
+    double met = 0;
+    for (const RayRows* half : {&transport.rows(0), &transport.rows(1)})
+      met += static_cast<double>(half->first_hit[row + 1] - half->first_hit[row] + half->first_entry[row + 1] -
+                                 half->first_entry[row]);
+    if (!(s > 0 && met > 0)) continue;
+    const bool sees_backs = lost.rays_per_patch > 0 && (lost.at_backs[i] > 0 || lost.covered[i] > 0);
+    variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * lost.rays_per_patch) : met);
+  }
+  return variance;
+}
+
+// Both halves are scaled to the same row sums, so that their difference does not tell what these err: it is added to
+// one half of each patch, chosen at random, and taken from the other.
+std::array<Field, 2> with_errors_of_row_sums(std::array<Field, 2> halves, const PatchMesh& mesh,
+                                             const Eigen::ArrayXd& variance) {
+  const std::vector<std::uint32_t> keys = patch_keys(mesh);
+  Eigen::ArrayXd drawn = variance.sqrt();
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    if ((hash({keys[i], 0x726f77}) & 1U) != 0) drawn[i] = -drawn[i];
+  const Field error = (0.5 * (halves[0] + halves[1])).colwise() * drawn;
+  halves[0] += error;
+  halves[1] -= error;
+  return halves;
+}
+
 // Not of the solution that is looked for.
 Observer without_iterates(const Observer& observer) {
   if (!observer) return {};
@@ -129,7 +167,8 @@ Observer without_iterates(const Observer& observer) {
 }  // namespace
 
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const Eigen::VectorXd& row_sum, const SolverOptions& options) {
+                            const TransportFacts& facts, const SolverOptions& options) {
+  const Eigen::VectorXd& row_sum = facts.row_sum;
   const RadiosityProblem& all = light.lit.problem;
   const RadiosityProblem problem{all.scattering, emitted_in_rows(light), all.area, direct_of(light)};
 
@@ -142,7 +181,9 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
 
   // 2. Gather once more, by each half, and smooth.
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
-  const std::array<Field, 2> raw = gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area);
+  const std::array<Field, 2> raw =
+      with_errors_of_row_sums(gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area), mesh,
+                              variance_of_row_sums(transport, row_sum, facts.lost));
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.

@@ -21,10 +21,10 @@ struct RaySolution {
 
 /// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
 /// half of the rays, and smooths what comes from other patches: docs/theory.md section 12. What the halves differ tells
-/// the error, with the bias of smoothing and what errors of single rows do to the level of the light. `row_sum` is the
-/// share of its hemisphere in which each patch sees others. \throws Cancelled; InputError for solvers that rows of rays
+/// the error, with that of the row sums, which the halves have in common, the bias of smoothing, and what errors of
+/// single rows do to the level of the light. \throws Cancelled; InputError for solvers that rows of rays
 /// cannot serve.
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const Eigen::VectorXd& row_sum, const SolverOptions& options);
+                            const TransportFacts& facts, const SolverOptions& options);
 
 }  // namespace patchlight

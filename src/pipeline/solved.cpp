@@ -20,7 +20,7 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   options.keeps_unfinished = false;
   RaySolution found;
   const Solve once = [&](const SolverOptions& by) {
-    found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts.row_sum, by);
+    found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts, by);
     return found.solution;
   };
   SolvedWith best = solve_for_interest(run, simulation, options, once);

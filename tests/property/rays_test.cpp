@@ -107,6 +107,30 @@ TEST(Rays, AreWithinTheirBarsOfTheMatrixInARoomWithBlocks) {
   EXPECT_LT(by.error, 1.4 * by.stated);
 }
 
+// Two squares that emit alike, in the open, each of which takes a sixteenth of the other's hemisphere: some ten of a
+// patch's rays meet it, which is as uncertain as their number is, though the halves of all rows agree, as both carry
+// the same light and are scaled to the same sums. Root mean squares of four seeds. Rays are stratified, so that the
+// error may be below that of a number of hits by chance, which is stated.
+TEST(Rays, StateWhatSmallRowSumsErr) {
+  Scene scene =
+      with_quad(empty_scene({grey(0.5, 1)}), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 4), Point(0, 2, 4), Point(2, 2, 4), Point(2, 0, 4)});
+  Request request = by_rays(500);
+  request.mesh.sides = Sides::front;
+  const Simulation exact = by_matrix(scene, request);
+  double error = 0;
+  double stated = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    request.assembly.seed = seed;
+    const Compared by = compared(simulate(scene, request), exact);
+    error += by.error * by.error / 4;
+    stated += by.stated * by.stated / 4;
+  }
+  EXPECT_GT(std::sqrt(error), 0.01);
+  EXPECT_LT(std::sqrt(error), 1.4 * std::sqrt(stated));
+  EXPECT_LT(std::sqrt(stated), 3 * std::sqrt(error));
+}
+
 TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
   Request request = by_rays(1500);
   const auto solved = [&](int threads) {
