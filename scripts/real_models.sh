@@ -118,7 +118,7 @@ target = [0.773, 1.763, 2.954]
 field_of_view = 60
 END
       files=("$out/kitchen.toml")
-      options=(--patches 700000)
+      options=(--patches 60000)
       ;;
     furniture)
       # Six pieces, modelled in centimetres, in a room of 5 x 4 x 2.6 m with a lamp under its ceiling.
