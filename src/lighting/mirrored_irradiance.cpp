@@ -291,7 +291,8 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
       receivers.push_back(receiver_at(k));
     const std::vector<WantedChain> near = sampler.chains_to(ball_around_all(receivers), chains);
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
-      const Field replicates_of = sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), near);
+      const Field replicates_of =
+          sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), near);
       const MirroredEstimate found = estimate_from(replicates_of);
       direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
       direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
