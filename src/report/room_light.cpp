@@ -4,10 +4,13 @@
 #include "scene/room_body.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -43,32 +46,45 @@ bool is_bounded_all_around(const NamedRoom& room, const std::vector<PatchIndex>&
   return bounded >= bounded_all_around * whole;
 }
 
-// Patches that are neither of a room nor stand in this one.
+// Patches that are neither of a room nor stand in this one, and from whose centroids some point of it before them is in
+// sight: the layers within a slab are not.
 std::vector<PatchIndex> patches_farther_off(const RoomBody& body, const PatchMesh& mesh,
-                                            const std::vector<char>& has_room) {
-  const auto is_before = [&](PatchIndex i, double distance) {
-    return body.holds(mesh.centroid[i] + distance * mesh.normal[i]);
+                                            const std::vector<char>& has_room, const Occluder& occluder) {
+  const auto place_before = [&](PatchIndex i, double distance) -> Point {
+    return mesh.centroid[i] + distance * mesh.normal[i];
   };
-  std::vector<PatchIndex> found;
+  std::vector<Segment> segments;
+  std::vector<PatchIndex> patches;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    if (has_room[i] != 0 || is_before(i, -body.step())) continue;
-    if (std::any_of(farther_off.begin(), farther_off.end(), [&](double distance) { return is_before(i, distance); }))
-      found.push_back(i);
+    if (has_room[i] != 0 || body.holds(place_before(i, -body.step()))) continue;
+    const auto* const nearest = std::find_if(farther_off.begin(), farther_off.end(),
+                                             [&](double distance) { return body.holds(place_before(i, distance)); });
+    if (nearest == farther_off.end()) continue;
+    segments.push_back({mesh.centroid[i], place_before(i, *nearest), mesh.polygon[i], no_polygon});
+    patches.push_back(i);
+  }
+  const std::vector<std::uint8_t> hidden = occluder.occluded(segments);
+  std::vector<PatchIndex> found;
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    if (hidden[k] == 0) found.push_back(patches[k]);
   }
   return found;
 }
 
-std::vector<RoomBounds> bounds_by_names(const std::vector<NamedRoom>& rooms, const PatchMesh& mesh) {
+std::vector<RoomBounds> bounds_by_names(const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<NamedRoom>& rooms = scene.rooms;
   std::vector<RoomBounds> all;
   std::vector<char> has_room(mesh.size(), 0);
   for (const NamedRoom& room : rooms) {
     all.push_back({room.name, patches_at(RoomBody(room.faces), mesh)});
     for (const PatchIndex i : all.back().patches) has_room[i] = 1;
   }
+  std::optional<Occluder> occluder;
   for (std::size_t k = 0; k < rooms.size(); ++k) {
     std::vector<PatchIndex>& patches = all[k].patches;
     if (is_bounded_all_around(rooms[k], patches, mesh)) continue;
-    const std::vector<PatchIndex> others = patches_farther_off(RoomBody(rooms[k].faces), mesh, has_room);
+    if (!occluder) occluder.emplace(scene, Occluder::Blockers::all);
+    const std::vector<PatchIndex> others = patches_farther_off(RoomBody(rooms[k].faces), mesh, has_room, *occluder);
     patches.insert(patches.end(), others.begin(), others.end());
   }
   std::erase_if(all, [](const RoomBounds& bounds) { return bounds.patches.empty(); });
@@ -97,7 +113,7 @@ std::vector<RoomBounds> bounds_by_shells(const Scene& scene, const PatchMesh& me
 
 std::vector<RoomBounds> bounds_of_rooms(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
-  std::vector<RoomBounds> all = bounds_by_names(scene.rooms, mesh);
+  std::vector<RoomBounds> all = bounds_by_names(scene, mesh);
   if (all.empty()) all = bounds_by_shells(scene, mesh);
   if (!all.empty()) return all;
   const Eigen::VectorXd& enclosed = simulation.enclosed;

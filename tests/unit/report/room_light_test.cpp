@@ -84,6 +84,26 @@ TEST(RoomLight, TakesWallsThatStandOutsideOfTheBody) {
   EXPECT_LE(surfaces[ceiling_of_room].area, 12 + 1);
 }
 
+// The body of the room ends 10 cm above the floor, so that faces farther off count; a layer within the slab, which lies
+// under the floor, does not, though it is lit.
+TEST(RoomLight, LeavesOutLayersWithinASlab) {
+  Scene scene = test::furnished_room(0.5);
+  scene.materials.push_back(test::grey(0.5, 1));
+  const MaterialIndex lit = static_cast<MaterialIndex>(scene.materials.size() - 1);
+  scene = test::with_box(std::move(scene), Point(0, 0, -0.4), Point(4, 3, -0.2), false, lit);
+  NamedRoom room{"A102", "", {}};
+  for (const test::Quad& face : test::box_faces(Point(0.1, 0.1, 0.1), Point(3.9, 2.9, 2.1), false))
+    room.faces.emplace_back(face.begin(), face.end());
+  scene.rooms = {room};
+  Request request;
+  request.mesh.max_edge = 0.5;
+  request.mesh.sides = Sides::both;
+  const Simulation simulation = simulate(scene, request);
+  const Report report = report_of(scene, request, simulation);
+  ASSERT_EQ(report.rooms.size(), 1U);
+  EXPECT_LE(report.rooms[0].surfaces[floor_of_room].area, 12 + 1e-9);
+}
+
 TEST(RoomLight, TakesFloorsByTheAxisThatIsUp) {
   Scene scene = test::furnished_room(0.5);
   scene.up = Vector::UnitY();
