@@ -11,6 +11,8 @@ namespace {
 // Second tries start this share of the way to the centroid, and this share of the scene's extent behind the patch.
 constexpr double toward_centroid = 0.01;
 constexpr double behind_plane = 1e-5;
+// A face that lies farther behind the patch than this share of that is no face in contact which rounding has bent.
+constexpr double bent_by_rounding = 0.2;
 
 }  // namespace
 
@@ -48,8 +50,21 @@ Ray Sights::moved(PatchIndex patch, Ray ray) const {
   return ray;
 }
 
+bool Sights::lies_behind(PatchIndex patch, double height, const Hit& hit) const {
+  // Of two faces in one plane that look the same way, as of a rug on a floor, the lower one is met where it has no
+  // patches.
+  const Side other = hit.side == Side::front ? Side::back : Side::front;
+  if (!has_patches(hit) && occluder_.is_covered(hit.polygon, other, hit.point)) return true;
+  if (height >= behind_) return false;
+  const Vector& normal = mesh_.normal[patch];
+  const Ray back{hit.point + (behind_ - height) * normal, -normal, mesh_.polygon[patch]};
+  const auto next = occluder_.first_hits({&back, 1})[0];
+  return next && next->polygon == hit.polygon && next->distance > bent_by_rounding * behind_;
+}
+
 Sight Sights::sight_of_second_try(PatchIndex patch, const Ray& ray, const Hit& hit) const {
   const double height = hit.distance * ray.direction.dot(mesh_.normal[patch]);
+  if (height < 2 * behind_ && lies_behind(patch, height, hit)) return Sight::nothing;
   return height < 2 * behind_ ? Sight::contact : seen_at(hit).sight;
 }
 
@@ -78,7 +93,8 @@ std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::
   const auto second_hits = occluder_.first_held_hits(second_tries, seed, tried_again);
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (!second_hits[k]) continue;
-    seen[tried_again[k]] = {sight_of_second_try(patch, second_tries[k], *second_hits[k]), second_hits[k]};
+    const Sight sight = sight_of_second_try(patch, second_tries[k], *second_hits[k]);
+    if (sight != Sight::nothing) seen[tried_again[k]] = {sight, second_hits[k]};
   }
   return seen;
 }
@@ -105,7 +121,7 @@ std::vector<SeenWay> Sights::along_ways(PatchIndex patch, std::vector<Ray> rays,
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
     if (has_left(ways[k])) continue;
     const Sight end = sight_of_second_try(patch, second_tries[k], ways[k].back().hit);
-    seen[tried_again[k]] = {std::move(ways[k]), end};
+    if (end != Sight::nothing) seen[tried_again[k]] = {std::move(ways[k]), end};
   }
   return seen;
 }

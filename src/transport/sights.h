@@ -60,6 +60,9 @@ class Sights {
   Seen seen_at(const Hit& hit) const;
   std::vector<std::uint8_t> covered_starts(PatchIndex patch, std::vector<Ray>& rays) const;
   Ray moved(PatchIndex patch, Ray ray) const;
+  // Whether a face that a second try met at this height over its start lies behind the patch, or under it in its plane.
+  bool lies_behind(PatchIndex patch, double height, const Hit& hit) const;
+  // Nothing when the face that was met lies behind the patch.
   Sight sight_of_second_try(PatchIndex patch, const Ray& ray, const Hit& hit) const;
 
   const PatchMesh& mesh_;

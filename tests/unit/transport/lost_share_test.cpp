@@ -124,6 +124,38 @@ TEST(LostShare, TakesNoRugForContact) {
   EXPECT_EQ(lost.covered[top], 0);
 }
 
+// A board before a facade, both of which look into the open. In a scene of 10 m a ray that meets nothing is traced
+// again from 0.1 mm behind the board, and there the facade is before it: the board sees the sky all the same.
+TEST(LostShare, TakesNothingBehindAPatchForContact) {
+  const auto square_at = [](double x, double half) {
+    return Quad{Point(x, 5 - half, 5 - half), Point(x, 5 + half, 5 - half), Point(x, 5 + half, 5 + half),
+                Point(x, 5 - half, 5 + half)};
+  };
+  for (const double distance : {3e-5, 6e-5, 9e-5}) {
+    Scene scene = with_quad(empty_scene({grey(0.5)}), square_at(0, 5));
+    scene = with_quad(std::move(scene), square_at(distance, 0.5));
+    const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 20);
+    ASSERT_EQ(mesh.size(), 2U);
+    const LostShare lost = measure_lost_share(mesh, Occluder(scene), 256, 1);
+    EXPECT_EQ(lost.covered[1], 0) << distance;
+    EXPECT_EQ(lost.escaped[1], 1) << distance;
+    EXPECT_EQ(lost.at_backs[1], 0) << distance;
+  }
+}
+
+// A floor in the open and a rug in its plane: all that the rug sees is the sky.
+TEST(LostShare, TakesNoFloorForContactWithARug) {
+  Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(1, 1, 0), Point(3, 1, 0), Point(3, 3, 0), Point(1, 3, 0)});
+  const KeptSides front = kept_sides(scene, Sides::front);
+  const PatchMesh mesh = tessellate(scene, front, 9);
+  const LostShare lost =
+      measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, front)), 256, 1);
+  const PatchIndex rug = mesh.patches_on(1, Side::front).begin;
+  EXPECT_EQ(lost.covered[rug], 0);
+  EXPECT_EQ(lost.escaped[rug], 1);
+}
+
 // What is known is not measured again: here it is made up.
 TEST(LostShare, OfKnownPatchesIsTakenOver) {
   const Scene scene = test::furnished_room(0.5);
