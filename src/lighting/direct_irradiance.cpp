@@ -16,8 +16,8 @@
 namespace patchlight {
 namespace {
 
-// Independent estimates of each irradiance, of few samples fewer: their spread is its standard error. That of four is
-// often small by chance: patches take the mean of those around, which points do not have.
+// Independent estimates of each irradiance; no more than there are samples. Their spread is its standard error. That of
+// four is often small by chance: patches take the mean of those around, which points do not have.
 constexpr std::uint32_t replicates = 4;
 constexpr std::uint32_t replicates_at_points = 16;
 
@@ -26,7 +26,8 @@ constexpr std::uint32_t scrambles = 64;
 constexpr std::uint32_t step = 17;
 
 // Of as many rays in all, the error of the light on all patches, in the norm of their areas, is least where each takes
-// a number by the square root of its area: times a power of two, with at most this exponent.
+// a number by the square root of its area, if it varies as much over each: Neyman's allocation (1934). Times a power of
+// two, with at most this exponent.
 constexpr int most_doublings = 2;
 
 // Whether so many rays to a ball can be blocked costs as much to find as they do.
@@ -124,8 +125,8 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
 
   const bool more = source.has_extent ? is_point : !left;
   const SampleSets sets = sets_of(effort * (more ? source.effort : 1) * source.samples, is_point);
-  // Few rays are sooner traced than they are found to be free.
-  const bool is_worth_asking = source.may_be_hidden && sets.samples() > few_rays;
+  // Few rays are sooner traced than they are found to be free. At points what is free has no error.
+  const bool is_worth_asking = source.may_be_hidden && (is_point || sets.samples() > few_rays);
   const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
   const Field arriving = replicates_by(source, receiver, key, sets, in_shadow);
   Estimate found = estimate_of(arriving);
@@ -178,8 +179,9 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const double mean_area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0) / static_cast<double>(mesh.size());
   const auto effort = [&](std::size_t k) {
-    const auto doublings = static_cast<int>(std::lround(std::log2(mesh.area[k] / mean_area) / 2));
-    return std::ldexp(1.0, std::clamp(doublings, -most_doublings, most_doublings));
+    constexpr double most = most_doublings;
+    const double doublings = std::clamp(std::log2(mesh.area[k] / mean_area) / 2, -most, most);
+    return std::ldexp(1.0, static_cast<int>(std::lround(doublings)));
   };
   const Estimator estimator = estimator_for(lighting, options, most_doublings);
   return at_receivers(estimator, mesh.size(), patch, effort, options, observer);

@@ -11,17 +11,17 @@
 namespace patchlight {
 
 /// Shadow rays of a patch of mean size; others take a quarter to four times as many, by the square root of their area,
-/// but over mirrors. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball and
-/// over mirrors, and four times as many to the sky.
+/// except over mirrors. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball
+/// and over mirrors, and four times as many to the sky.
 struct LightingOptions {
-  int lamp_samples = 64;      ///< per luminaire; none to a ball that nothing can hide; at a point those without extent
-                              ///< take one
-  int sun_samples = 64;       ///< 64 times that where shadows are too many to be found by geometry; at a point one
+  int lamp_samples = 64;  ///< per luminaire; where they would be more than 16, none to a ball that nothing can hide;
+                          ///< at a point those without extent take one
+  int sun_samples = 64;   ///< 64 times that where shadows are too many to be found by geometry; at a point one
   int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
   int sky_samples = 1024;     ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
-  std::uint32_t alike = 1;  ///< so many patches that follow each other take the same samples, so that little noise is
-                            ///< in their differences
+  std::uint32_t alike = 1;  ///< 1 or more: so many patches that follow each other take the same samples, so that little
+                            ///< noise is in their differences
 };
 
 /// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.

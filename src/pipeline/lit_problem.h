@@ -35,9 +35,9 @@ DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mes
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);
 
 /// The irradiance by luminaires, sun and sky alone, W/m^2, of the four quarters (rows) of each patch, which are the
-/// patches of `quarters`: with `rays`, from 2 to 8, to each luminaire and the sun, eight times as many to the sky, from
-/// 16 to 64, and over each way by mirrors half of `rays`, from 2 to 8. The quarters of a patch take the same samples;
-/// `seed` chooses them. \throws Cancelled.
+/// patches of `quarters`: of a patch of mean size with `rays`, from 2 to 8, to each luminaire and the sun, eight times
+/// as many to the sky, from 16 to 64, others by LightingOptions, and over each way by mirrors half of `rays`, from 2
+/// to 8. Quarters that take as many take the same samples; `seed` chooses them. \throws Cancelled.
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& quarters, std::uint64_t seed,
                               int rays);
 

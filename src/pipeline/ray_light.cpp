@@ -9,6 +9,7 @@
 #include "pipeline/conserved_flux.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
+#include "transport/ray_counts.h"
 #include "transport/smoothing.h"
 #include "transport/weighed_rows.h"
 
@@ -122,34 +123,41 @@ std::array<Field, 2> gathered(const RayTransport& transport, const Field& source
   return halves;
 }
 
-// The variance of what each row sums up to, over its square. A share s that n rays tell has a variance of s (1 - s) /
-// n, and s n of them meet patches. Where sides without patches are seen it is that of the rays which have looked for
-// these.
-Eigen::ArrayXd variance_of_row_sums(const RayTransport& transport, const Eigen::VectorXd& row_sum,
-                                    const LostShare& lost) {
+// How many rays over its hemisphere each patch has, up to rounding to a power of two: ray_counts().
+Eigen::ArrayXd rays_of_patches(const PatchMesh& mesh, double mean) {
+  const Eigen::ArrayXd size =
+      Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), static_cast<Eigen::Index>(mesh.size())).pow(ray_exponent);
+  return (mean / size.mean() * size).max(2.0 * fewest_rays);
+}
+
+// Of the variance that a share of independent rays has, what that of scrambled Sobol points has at most
+// (tests/unit/base/sampling_test.cpp).
+constexpr double of_independent = 0.5;
+
+// The variance of what each row sums up to, over its square: a share s that n independent rays tell has a variance of
+// s (1 - s) / n. Where sides without patches are seen it is that of the rays which have looked for these. Where hits
+// are fewer than one in the mean no more is known than that the row sum is between 0 and twice what was found.
+Eigen::ArrayXd variance_of_row_sums(const Eigen::VectorXd& row_sum, const Eigen::ArrayXd& rays, const LostShare& lost) {
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(row_sum.size());
   for (Eigen::Index i = 0; i < row_sum.size(); ++i) {
     const double s = row_sum[i];
-    const auto row = static_cast<std::size_t>(i);
-    double met = 0;
-    for (const RayRows* half : {&transport.rows(0), &transport.rows(1)})
-      met += static_cast<double>(half->first_hit[row + 1] - half->first_hit[row] + half->first_entry[row + 1] -
-                                 half->first_entry[row]);
-    if (!(s > 0 && met > 0)) continue;
+    if (!(s > 0)) continue;
     const bool sees_backs = lost.rays_per_patch > 0 && (lost.at_backs[i] > 0 || lost.covered[i] > 0);
-    variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * lost.rays_per_patch) : met);
+    const double n = sees_backs ? std::min<double>(rays[i], lost.rays_per_patch) : rays[i];
+    variance[i] = std::min(1.0, of_independent * std::max(0.0, 1 - s) / (s * n));
   }
   return variance;
 }
 
 // Both halves are scaled to the same row sums, so that their difference does not tell what these err: it is added to
-// one half of each patch, chosen at random, and taken from the other.
+// one half of each patch, by a hash of its key, and taken from the other.
+constexpr std::uint32_t of_row_sums = 0x726f77;
 std::array<Field, 2> with_errors_of_row_sums(std::array<Field, 2> halves, const PatchMesh& mesh,
                                              const Eigen::ArrayXd& variance) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   Eigen::ArrayXd drawn = variance.sqrt();
   for (PatchIndex i = 0; i < mesh.size(); ++i)
-    if ((hash({keys[i], 0x726f77}) & 1U) != 0) drawn[i] = -drawn[i];
+    if ((hash({keys[i], of_row_sums}) & 1U) != 0) drawn[i] = -drawn[i];
   const Field error = (0.5 * (halves[0] + halves[1])).colwise() * drawn;
   halves[0] += error;
   halves[1] -= error;
@@ -183,7 +191,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
   const std::array<Field, 2> raw =
       with_errors_of_row_sums(gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area), mesh,
-                              variance_of_row_sums(transport, row_sum, facts.lost));
+                              variance_of_row_sums(row_sum, rays_of_patches(mesh, light.rays_per_patch), facts.lost));
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.

@@ -269,8 +269,8 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!std::isfinite(step.solver)) return std::nullopt;
   // Nor does one mend what as many rays leave as are worth their time.
   const Plan& solved_by = solved.simulation.plan;
-  const bool most_rays = solved_by.assembly.storage == Storage::rays && step.samples >= most_samples(solved_by);
-  if (most_rays && solved.noise_bar > accuracy) return std::nullopt;
+  const bool has_most_rays = solved_by.assembly.storage == Storage::rays && step.samples >= most_samples(solved_by);
+  if (has_most_rays && solved.noise_bar > accuracy) return std::nullopt;
 
   // 1. More patches and samples, by rays where all pairs of them do not fit.
   Plan plan = stored_for(solved, accuracy);

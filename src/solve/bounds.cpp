@@ -22,8 +22,9 @@ constexpr double no_bound = std::numeric_limits<double>::infinity();
 // No bounce of v may be above this one in the end.
 constexpr double last_bounce = 0.5;
 
-// How many more bounces that takes, if each is as much less than the one before as the last few were. The slower a part
-// of the light decays the more of it is left later on: it takes no fewer.
+// How many more bounces that takes, if each is as much less than the one before as the last few were. An estimate:
+// where white patches lie far from all that absorbs, the highest bounce may begin to fall late. Where it is wrong no
+// bound is found, never a wrong one.
 double bounces_left(const std::vector<double>& highest_bounces) {
   constexpr std::size_t some = 4;
   if (highest_bounces.size() <= some) return 0;

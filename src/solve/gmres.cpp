@@ -98,8 +98,11 @@ Solution gmres(Iterations iterations) {
           [&arnoldi, &problem, &start, lengths = least.lengths] { return best(arnoldi, problem, start, lengths); }, k);
       continue;
     }
-    start = best(arnoldi, problem, start, least.lengths);
-    iterations.record(start, k, Residual::recurred);
+    // What was recorded before refers to the directions and the start until a newer iterate replaces it.
+    Iterate next = best(arnoldi, problem, start, least.lengths);
+    iterations.record(next, k, Residual::recurred);
+    if (iterations.ended()) break;
+    start = std::move(next);
     arnoldi = begun(problem, start.residual, restart);
   }
   return iterations.finish();

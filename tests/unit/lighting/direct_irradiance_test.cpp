@@ -419,10 +419,10 @@ TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
   }
 }
 
-// The quarters of a square of 1 m, 3 m below a lamp that stands aside, from four samples each: with those of its own
-// each quarter is off by what the irradiance varies by inside it, over the root of four; with the same samples all are
-// off by nearly the same, and their differences by what changes of that between them, which is a quarter of it and
-// less.
+// The quarters of a square of 1 m, 3 m below a lamp that stands aside, from one sample each, as the floor's are so much
+// larger: with one of its own each quarter is off by what the irradiance varies by inside it; with the same one all are
+// off by nearly the same, and their differences by what changes of that between them, a quarter of it and less: the
+// squares are a sixteenth, and less than a quarter whatever 64 seeds leave to chance.
 TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
   Scene scene = with_quad(only_floor(-5), {Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)});
   scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
