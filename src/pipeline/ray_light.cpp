@@ -9,7 +9,6 @@
 #include "pipeline/conserved_flux.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
-#include "transport/ray_counts.h"
 #include "transport/smoothing.h"
 #include "transport/weighed_rows.h"
 
@@ -123,28 +122,24 @@ std::array<Field, 2> gathered(const RayTransport& transport, const Field& source
   return halves;
 }
 
-// How many rays over its hemisphere each patch has, up to rounding to a power of two: ray_counts().
-Eigen::ArrayXd rays_of_patches(const PatchMesh& mesh, double mean) {
-  const Eigen::ArrayXd size =
-      Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), static_cast<Eigen::Index>(mesh.size())).pow(ray_exponent);
-  return (mean / size.mean() * size).max(2.0 * fewest_rays);
-}
-
-// Of the variance that a share of independent rays has, what that of scrambled Sobol points has at most
-// (tests/unit/base/sampling_test.cpp).
-constexpr double of_independent = 0.5;
-
-// The variance of what each row sums up to, over its square: a share s that n independent rays tell has a variance of
-// s (1 - s) / n. Where sides without patches are seen it is that of the rays which have looked for these. Where hits
-// are fewer than one in the mean no more is known than that the row sum is between 0 and twice what was found.
-Eigen::ArrayXd variance_of_row_sums(const Eigen::VectorXd& row_sum, const Eigen::ArrayXd& rays, const LostShare& lost) {
+// The variance of what each row sums up to, over its square. A share s that n independent rays tell has a variance of
+// s (1 - s) / n, and s n of them meet patches. Shadow rays towards bright patches are counted as well, though they do
+// not tell the sum: rays over the hemisphere are stratified, so that by their own number alone bars are too wide
+// (tests/property/rays_test.cpp). Where sides without patches are seen it is that of the rays which have looked for
+// these.
+Eigen::ArrayXd variance_of_row_sums(const RayTransport& transport, const Eigen::VectorXd& row_sum,
+                                    const LostShare& lost) {
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(row_sum.size());
   for (Eigen::Index i = 0; i < row_sum.size(); ++i) {
     const double s = row_sum[i];
-    if (!(s > 0)) continue;
+    const auto row = static_cast<std::size_t>(i);
+    double met = 0;
+    for (const RayRows* half : {&transport.rows(0), &transport.rows(1)})
+      met += static_cast<double>(half->first_hit[row + 1] - half->first_hit[row] + half->first_entry[row + 1] -
+                                 half->first_entry[row]);
+    if (!(s > 0 && met > 0)) continue;
     const bool sees_backs = lost.rays_per_patch > 0 && (lost.at_backs[i] > 0 || lost.covered[i] > 0);
-    const double n = sees_backs ? std::min<double>(rays[i], lost.rays_per_patch) : rays[i];
-    variance[i] = std::min(1.0, of_independent * std::max(0.0, 1 - s) / (s * n));
+    variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * lost.rays_per_patch) : met);
   }
   return variance;
 }
@@ -191,7 +186,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
   const std::array<Field, 2> raw =
       with_errors_of_row_sums(gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area), mesh,
-                              variance_of_row_sums(row_sum, rays_of_patches(mesh, light.rays_per_patch), facts.lost));
+                              variance_of_row_sums(transport, row_sum, facts.lost));
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.

@@ -6,7 +6,11 @@
 namespace patchlight {
 namespace {
 
-// The power of two next to this.
+// The error of patch i's irradiance falls with its rays, and counts by its area; with patches of very different sizes
+// more rays for the large ones pay. The exponent is measured: docs/theory.md section 12.
+constexpr double exponent = 0.4;
+
+// The power of two next to factor A_i^0.4.
 std::uint32_t rounded(double rays) {
   const double power = std::round(std::log2(std::clamp<double>(rays, fewest_rays, most_rays)));
   return 1U << static_cast<unsigned>(power);
@@ -17,7 +21,7 @@ std::uint32_t rounded(double rays) {
 std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean) {
   std::vector<double> size;
   size.reserve(mesh.size());
-  for (const double area : mesh.area) size.push_back(std::pow(area, ray_exponent));
+  for (const double area : mesh.area) size.push_back(std::pow(area, exponent));
   const auto sum = [&](double factor) {
     double all = 0;
     for (const double s : size) all += rounded(factor * s);

@@ -11,13 +11,9 @@ namespace patchlight {
 inline constexpr std::uint32_t fewest_rays = 8;
 inline constexpr std::uint32_t most_rays = 4096;
 
-/// The error of a patch's irradiance falls with its rays, and counts by its area; with patches of very different sizes
-/// more rays for the large ones pay. The exponent of the area is measured: docs/theory.md section 12.
-inline constexpr double ray_exponent = 0.4;
-
 /// How many rays each patch takes in each of two halves, so that the mean over the patches of both together is about
-/// `mean`: in proportion to its area to the power ray_exponent, rounded to powers of two. Where patches have one size,
-/// all have one number, which is then up to 1.42 times more or less than asked for.
+/// `mean`: in proportion to its area to the power 0.4, rounded to powers of two. Where patches have one size, all have
+/// one number, which is then up to 1.42 times more or less than asked for.
 std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean);
 
 }  // namespace patchlight

@@ -1,12 +1,8 @@
 #include "base/sampling.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <gtest/gtest.h>
 #include <numbers>
-#include <numeric>
 #include <set>
 
 namespace patchlight::sampling_test {
@@ -32,38 +28,6 @@ TEST(ScrambledSobol, FirstTwoDimensionsFormANet) {
     std::set<std::pair<int, int>> cells;
     for (const auto& point : points) cells.insert({std::ldexp(point[0], a), std::ldexp(point[1], 4 - a)});
     EXPECT_EQ(cells.size(), 16U);
-  }
-}
-
-// Of points that do not depend on each other the share s in a half-space has a variance of s (1 - s) / n. The mean over
-// 200 half-spaces and 16 seeds of each is known to some 3 %.
-TEST(ScrambledSobol, SharesOfHalfSpacesVaryByLessThanHalfOfThoseByChance) {
-  const auto many = scrambled_sobol(1 << 14, 1);
-  const auto share = [](const auto& points, const std::array<double, 4>& normal, double level) {
-    const auto inside = [&](const auto& point) {
-      return std::inner_product(point.begin(), point.end(), normal.begin(), 0.0) < level;
-    };
-    return static_cast<double>(std::count_if(points.begin(), points.end(), inside)) /
-           static_cast<double>(points.size());
-  };
-  for (const std::uint32_t n : {16U, 64U, 256U}) {
-    double variance = 0;
-    double by_chance = 0;
-    for (std::uint32_t plane = 0; plane < 200; ++plane) {
-      const auto& drawn = many[plane];
-      const std::array<double, 4> normal{drawn[0] - 0.5, drawn[1] - 0.5, drawn[2] - 0.5, drawn[3] - 0.5};
-      // Through another point.
-      const auto& on_plane = many[plane + 200];
-      const double level = std::inner_product(normal.begin(), normal.end(), on_plane.begin(), 0.0);
-      const double s = share(many, normal, level);
-      by_chance += s * (1 - s) / n;
-      for (std::uint32_t seed = 0; seed < 16; ++seed) {
-        const double off = share(scrambled_sobol(n, hash({plane, seed})), normal, level) - s;
-        variance += off * off / 16;
-      }
-    }
-    EXPECT_LT(variance, by_chance / 2) << n;
-    EXPECT_GT(variance, 0) << n;
   }
 }
 
