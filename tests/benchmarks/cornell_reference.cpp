@@ -81,6 +81,24 @@ void print_differences(const char* how, const Field& ours, const Field& referenc
   std::printf("\n");
 }
 
+void print_comparison(const Scene& scene, std::size_t patches, bool contact_lines, const Reference& reference) {
+  const double begin = cpu_seconds();
+  const Occluder occluder(scene);
+  Request request;
+  request.mesh.patches = patches;
+  request.mesh.sides = Sides::front;
+  request.mesh.contact_lines = contact_lines;
+  request.assembly.storage = Storage::tiles;
+  const Simulation simulation = simulate(scene, request);
+  const double solved = cpu_seconds();
+  const Field gathered =
+      gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder, reference.sensors).irradiance;
+  std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
+              reference.sensors.size(), solved - begin, cpu_seconds() - solved);
+  print_differences("gathered", gathered, reference.irradiance);
+  print_differences("interpolated", interpolated(simulation, occluder, reference.sensors), reference.irradiance);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,21 +111,11 @@ int main(int argc, char** argv) {
   ReadOptions options;
   options.metres_per_unit = 1e-3;
   const Scene scene = read_scene(folder / "cornell.obj", options);
-  const Occluder occluder(scene);
-  for (int k = 2; k < argc; ++k) {
-    const double begin = cpu_seconds();
-    Request request;
-    request.mesh.patches = std::strtoul(argv[k], nullptr, 10);
-    request.mesh.sides = Sides::front;
-    request.assembly.storage = Storage::tiles;
-    const Simulation simulation = simulate(scene, request);
-    const double solved = cpu_seconds();
-    const Field gathered =
-        gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder, reference.sensors).irradiance;
-    std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
-                reference.sensors.size(), solved - begin, cpu_seconds() - solved);
-    print_differences("gathered", gathered, reference.irradiance);
-    print_differences("interpolated", interpolated(simulation, occluder, reference.sensors), reference.irradiance);
+  for (const bool contact_lines : {true, false}) {
+    std::printf("%s contact lines\n", contact_lines ? "with" : "without");
+    for (int k = 2; k < argc; ++k) {
+      print_comparison(scene, std::strtoul(argv[k], nullptr, 10), contact_lines, reference);
+    }
   }
   return 0;
 }
