@@ -20,6 +20,7 @@ struct Count {
   int dark = 0;     // solids without a lamp: inner sides left out
   int outside = 0;  // solids that hold every lamp: outer sides left out
   int outward = 0;  // solids with outward normals that hold a lamp: inner sides kept
+  int sealed = 0;   // solids that hold a lamp, and that daylight is all around but does not get into
   std::uint32_t first_outward_line = 0;
 };
 
@@ -31,6 +32,10 @@ std::vector<std::string> notes_on(const Count& count) {
   if (count.dark > 0) notes.push_back("the inner sides of " + solids(count.dark) + " without a lamp are left out");
   if (count.outside > 0) {
     notes.push_back("the outer sides of " + solids(count.outside) + " around all lamps are left out");
+  }
+  if (count.sealed > 0) {
+    notes.push_back("no daylight gets into " + solids(count.sealed) + " around lamps, as no face of " +
+                    (count.sealed == 1 ? "it" : "them") + " lets light through");
   }
   if (count.outward > 0) {
     const std::string line =
@@ -178,6 +183,7 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
     if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
       count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     }
+    count.sealed += daylight && lit.inside && !solid.has_opening;
     count.dark += !lit.inside && !in_the_dark.unreached;
     count.outside += !lit.outside && !in_the_dark.turned_away;
     if (!lit.inside) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});

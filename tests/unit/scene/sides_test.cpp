@@ -140,6 +140,21 @@ TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   expect_all(inward, 0, 6, front_only);
 }
 
+// A room with a lamp under the sky: nobody is left to wonder why daylight changes nothing in it.
+TEST(KeptSides, SaysWhereNoDaylightGetsIn) {
+  const auto says_so = [](const Scene& scene) {
+    const KeptSides kept = automatic(scene);
+    return std::any_of(kept.notes.begin(), kept.notes.end(),
+                       [](const std::string& note) { return note.find("no daylight gets into") == 0; });
+  };
+  Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2});
+  EXPECT_FALSE(says_so(scene)) << "there is none";
+  scene.sky = Sky{};
+  EXPECT_TRUE(says_so(scene));
+  scene.polygons.erase(scene.polygons.begin());
+  EXPECT_FALSE(says_so(scene)) << "one wall is open";
+}
+
 TEST(KeptSides, ALuminaireIsALampWhereItStands) {
   Scene scene = among_others(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward));
   scene.luminaires.resize(1);
