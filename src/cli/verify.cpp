@@ -99,11 +99,13 @@ std::string sums_of(const VerifiedPart& part) {
   const bool all = part.name == "all";
   Eigen::Index band = 0;
   part.offset.abs().maxCoeff(&band);
+  const double dark = part.dark.minCoeff();
   std::ostringstream text;
   text << std::setprecision(3) << (all ? "" : part.name + ": ") << "chi-square " << part.chi_square.maxCoeff() << " of "
-       << part.rows.size() << " patches in the worst band; mean difference " << percent(part.mean_difference[band], 3)
-       << " %, " << part.offset[band] << " of its standard errors; bars " << percent(part.width, 2)
-       << " % of the light\n";
+       << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
+       << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string())
+       << "; mean difference " << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
+       << " of its standard errors; bars " << percent(part.width, 2) << " % of the light\n";
   return text.str();
 }
 

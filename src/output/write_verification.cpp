@@ -22,6 +22,7 @@ std::vector<double> row(const Field& field, Eigen::Index i) { return list(Spectr
 Json part_of(const VerifiedPart& part) {
   return {{"part", part.name},
           {"checked", part.rows.size()},
+          {"dark", list(part.dark)},
           {"chi_square", list(part.chi_square)},
           {"mean_difference", list(part.mean_difference)},
           {"offset", list(part.offset)},

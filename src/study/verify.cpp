@@ -67,10 +67,10 @@ Field rows_of(const FieldView& field, const std::vector<PatchIndex>& patches) {
 }
 
 // The probability that a chi-square of so many degrees of freedom is this or larger.
-double upper_tail(double chi_square, std::size_t degrees) {
+double upper_tail(double chi_square, double degrees) {
   if (degrees == 0) return 1;
   if (!std::isfinite(chi_square)) return 0;
-  return boost::math::gamma_q(static_cast<double>(degrees) / 2, chi_square / 2);
+  return boost::math::gamma_q(degrees / 2, chi_square / 2);
 }
 
 // That of a normal deviate this far from 0 or farther, either way.
@@ -100,7 +100,7 @@ Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
 
 VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
                      const FieldView& bars) {
-  VerifiedPart part{.name = space.name, .rows = {}, .chi_square = {}, .mean_difference = {}, .offset = {}};
+  VerifiedPart part{.name = space.name, .rows = {}, .dark = {}, .chi_square = {}, .mean_difference = {}, .offset = {}};
   for (std::size_t k = 0; k < result.patches.size(); ++k) {
     if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
   }
@@ -108,6 +108,7 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
   const Field traced = rows_at(result.paths.irradiance, part.rows);
   const Field bar = rows_at(result.bar, part.rows);
   const Field variance = rows_at(variance_of(result.paths), part.rows);
+  part.dark = (solved == 0 && traced == 0).cast<double>().colwise().sum().transpose();
   part.chi_square = sum_over_patches(rows_at(deviations(result), part.rows).square());
 
   // The common offset. Bars of different patches hang together, one cannot say how: as if they were the same.
@@ -132,7 +133,8 @@ Verification judged(Verification result) {
   bool wide = false;
   for (const VerifiedPart& part : result.parts) {
     for (Eigen::Index band = 0; band < part.chi_square.size(); ++band) {
-      least = std::min({least, upper_tail(part.chi_square[band], part.rows.size()), both_tails(part.offset[band])});
+      const auto degrees = static_cast<double>(part.rows.size()) - part.dark[band];
+      least = std::min({least, upper_tail(part.chi_square[band], degrees), both_tails(part.offset[band])});
       tests += 2;
     }
     wide = wide || !(part.width <= widest_bar);

@@ -48,7 +48,8 @@ struct LeftOutSide {
 struct VerifiedPart {
   std::string name;                ///< "inside", "outside" or "all"
   std::vector<Eigen::Index> rows;  ///< of the verification
-  Eigen::ArrayXd chi_square;       ///< sum of deviations() squared
+  Eigen::ArrayXd dark;             ///< how many of them got no light, solved and traced: these test nothing
+  Eigen::ArrayXd chi_square;       ///< sum of deviations() squared, of the others
   Eigen::ArrayXd mean_difference;  ///< sum of what is solved over the sum of what is traced, less 1
   Eigen::ArrayXd offset;           ///< the difference of both sums over its standard error: sigma_path^2 31/29 in
                                    ///< quadrature, and the bars as if all were of one sign

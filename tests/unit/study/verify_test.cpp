@@ -135,6 +135,28 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   EXPECT_LT((ratio - std::sqrt(31.0 / 29)).abs().maxCoeff(), 1e-3);
 }
 
+// Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of twice their
+// area that looks away from all light: its patches are 0 to both, and do not make the others' differences likely.
+TEST(Verify, PatchesThatAreDarkInBothGrantNothing) {
+  Scene scene = empty_scene({grey(0.5, 1), grey(0.5, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 2, 1), Point(2, 2, 1), Point(2, 0, 1)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 3), Point(4, 0, 3), Point(4, 4, 3), Point(0, 4, 3)});
+  scene.polygons.back().material = 1;
+  const Simulation simulation = simulate(scene, request_for(100, Sides::front));
+  scene.materials[0].reflectance *= 1.2;
+  const Verification verification =
+      verify(scene, simulation, irradiance_bar(simulation, 0.03), {.paths = 1 << 14, .checked = 1000});
+  ASSERT_EQ(verification.parts.size(), 1U);
+  const VerifiedPart& part = verification.parts.front();
+  ASSERT_EQ(part.rows.size(), simulation.mesh.size());
+  const auto lit = static_cast<double>((simulation.solution.irradiance.col(0) > 0).count());
+  EXPECT_EQ(part.dark[0], static_cast<double>(part.rows.size()) - lit);
+  EXPECT_GT(part.dark[0], lit);
+  EXPECT_GT(part.chi_square[0], 2 * lit);
+  EXPECT_EQ(verification.verdict, Verdict::disagrees) << "p = " << verification.probability;
+}
+
 TEST(Verify, LargePatchesAreChosenMoreOften) {
   // Two plates that see each other, a patch of 4 m^2 and sixteen that add up to as much: of one checked patch, half the
   // seeds choose the large one. 200 seeds: 100 with a standard deviation of 7.
