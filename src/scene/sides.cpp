@@ -57,7 +57,7 @@ std::string name_of_solid(const Scene& scene, const Solid& solid) {
 // At 2 * polygon + side.
 using SideMask = std::vector<std::uint8_t>;
 
-std::size_t at(PolygonIndex polygon, Side side) { return 2 * polygon + static_cast<std::size_t>(side); }
+std::size_t at(PolygonIndex polygon, Side side) { return std::size_t{2} * polygon + static_cast<std::size_t>(side); }
 
 SideMask either(SideMask first, const SideMask& second) {
   for (std::size_t k = 0; k < first.size(); ++k) first[k] |= second[k];
