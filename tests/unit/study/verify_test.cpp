@@ -135,13 +135,13 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   EXPECT_LT((ratio - std::sqrt(31.0 / 29)).abs().maxCoeff(), 1e-3);
 }
 
-// Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of twice their
-// area that looks away from all light: its patches are 0 to both, and do not make the others' differences likely.
+// Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of four times
+// their area that looks away from all light: its patches are 0 to both, and do not make the others' differences likely.
 TEST(Verify, PatchesThatAreDarkInBothGrantNothing) {
   Scene scene = empty_scene({grey(0.5, 1), grey(0.5, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 2, 1), Point(2, 2, 1), Point(2, 0, 1)});
-  scene = with_quad(std::move(scene), {Point(0, 0, 3), Point(4, 0, 3), Point(4, 4, 3), Point(0, 4, 3)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 3), Point(8, 0, 3), Point(8, 4, 3), Point(0, 4, 3)});
   scene.polygons.back().material = 1;
   const Simulation simulation = simulate(scene, request_for(100, Sides::front));
   scene.materials[0].reflectance *= 1.2;
