@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <vector>
 
 namespace patchlight {
@@ -29,21 +31,34 @@ constexpr double off_plane = 0.2;
 // one side.
 constexpr double ridge = 0.05;
 
-constexpr std::size_t smoothed_at_once = 256;
+// Slots of the table that one task looks through, and how many patches there are to a slot.
+constexpr std::size_t found_at_once = 4096;
+constexpr std::uint32_t slots_at_once = 64;
+constexpr std::size_t patches_per_slot = 8;
+
+using Cell = std::array<std::int64_t, 3>;
+
+// Centroids that may be near, with their patches.
+struct Candidates {
+  std::vector<PatchIndex> patches;
+  std::vector<Point> centroids;
+};
 
 // The centroids of all patches in cubic cells, found by a hash of the cell.
 class Cells {
  public:
   Cells(const PatchMesh& mesh, double edge);
 
-  // Calls use(patch, from the point to its centroid) for all patches whose centroids lie within a distance of a point
-  // that is at most a cell's edge.
-  template <typename Use>
-  void for_near(const Point& point, double distance, Use use) const;
+  Cell cell_of(const Point& point) const;
+  std::uint32_t slots() const { return mask_ + 1; }
+  // The patches of a slot; cells may share it.
+  std::span<const PatchIndex> patches_in(std::uint32_t slot) const {
+    return {patches_.data() + first_[slot], first_[slot + 1] - first_[slot]};
+  }
+  // All patches in a cell and in those around: none else is nearer than a cell's edge to what lies in it.
+  Candidates around(const Cell& home) const;
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-  Cell cell_of(const Point& point) const;
   std::uint32_t slot(const Cell& cell) const;
 
   double edge_;
@@ -53,7 +68,7 @@ class Cells {
   std::vector<Point> centroids_;  // of patches_
 };
 
-Cells::Cell Cells::cell_of(const Point& point) const {
+Cell Cells::cell_of(const Point& point) const {
   Cell cell{};
   for (int d = 0; d < 3; ++d)
     cell[static_cast<std::size_t>(d)] = static_cast<std::int64_t>(std::floor(point[d] / edge_));
@@ -68,12 +83,16 @@ std::uint32_t Cells::slot(const Cell& cell) const {
 
 Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
   std::uint32_t slots = 1;
-  while (slots < mesh.size()) slots *= 2;
+  while (slots * patches_per_slot < mesh.size()) slots *= 2;
   mask_ = slots - 1;
   // Sort by counting.
   std::vector<std::uint32_t> slot_of(mesh.size());
   first_.assign(std::size_t{slots} + 1, 0);
-  for (PatchIndex i = 0; i < mesh.size(); ++i) ++first_[1 + (slot_of[i] = slot(cell_of(mesh.centroid[i])))];
+  parallel_for((mesh.size() + found_at_once - 1) / found_at_once, [&](std::size_t task) {
+    const std::size_t end = std::min<std::size_t>(mesh.size(), (task + 1) * found_at_once);
+    for (std::size_t i = task * found_at_once; i < end; ++i) slot_of[i] = slot(cell_of(mesh.centroid[i]));
+  });
+  for (const std::uint32_t s : slot_of) ++first_[1 + s];
   for (std::size_t s = 0; s < slots; ++s) first_[s + 1] += first_[s];
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   patches_.resize(mesh.size());
@@ -82,18 +101,19 @@ Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
   for (const PatchIndex i : patches_) centroids_.push_back(mesh.centroid[i]);
 }
 
-template <typename Use>
-void Cells::for_near(const Point& point, double distance, Use use) const {
-  const Cell home = cell_of(point);
+Candidates Cells::around(const Cell& home) const {
+  Candidates found;
   for (int k = 0; k < 27; ++k) {
     const Cell cell{home[0] + k / 9 - 1, home[1] + k / 3 % 3 - 1, home[2] + k % 3 - 1};
     const std::uint32_t s = slot(cell);
     for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
-      const Vector to = centroids_[p] - point;
       // Cells may share a slot; each of its patches counts once.
-      if (to.squaredNorm() <= distance * distance && cell_of(centroids_[p]) == cell) use(patches_[p], to);
+      if (cell_of(centroids_[p]) != cell) continue;
+      found.patches.push_back(patches_[p]);
+      found.centroids.push_back(centroids_[p]);
     }
   }
+  return found;
 }
 
 struct Neighbour {
@@ -110,26 +130,31 @@ struct Smoother {
     return std::min(reach * static_cast<double>(distance[i]),
                     std::sqrt(most_neighbours / std::numbers::pi * mesh.area[i]));
   }
-  std::vector<Neighbour> neighbours(PatchIndex i, const Cells& cells) const;
+  std::vector<Neighbour> neighbours(PatchIndex i, const Candidates& candidates) const;
 };
 
 // With itself.
-std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const Cells& cells) const {
+std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const Candidates& candidates) const {
   const double r = radius(i);
+  const Point& centroid = mesh.centroid[i];
   const Vector& normal = mesh.normal[i];
   const Vector along = normal.unitOrthogonal();
   const Vector across = normal.cross(along);
   std::vector<Neighbour> found;
-  cells.for_near(mesh.centroid[i], r, [&](PatchIndex j, const Vector& to) {
+  found.reserve(2 * static_cast<std::size_t>(most_neighbours));
+  for (std::size_t k = 0; k < candidates.patches.size(); ++k) {
+    const Vector to = candidates.centroids[k] - centroid;
     const double squared = to.squaredNorm();
+    if (squared > r * r) continue;
+    const PatchIndex j = candidates.patches[k];
     const double cosine = normal.dot(mesh.normal[j]);
-    if (cosine < least_cosine) return;
+    if (cosine < least_cosine) continue;
     const double reach_of_other = reach * static_cast<double>(distance[j]);
-    if (squared > reach_of_other * reach_of_other || std::abs(to.dot(normal)) > off_plane * r) return;
+    if (squared > reach_of_other * reach_of_other || std::abs(to.dot(normal)) > off_plane * r) continue;
     const double near = 1 - 0.75 * squared / (r * r);
     const double alike = (cosine - least_cosine) / (1 - least_cosine);
     found.push_back({j, mesh.area[j] * near * alike, to.dot(along) / r, to.dot(across) / r});
-  });
+  }
   return found;
 }
 
@@ -144,6 +169,7 @@ std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
   moments(2, 2) += ridge * moments(0, 0);
   const Vector dual = moments.inverse().col(0);
   std::vector<double> of_each;
+  of_each.reserve(neighbours.size());
   double sum = 0;
   for (const Neighbour& n : neighbours) sum += of_each.emplace_back(n.weight * dual.dot(Vector(1, n.u, n.v)));
   for (double& c : of_each) c /= sum;
@@ -166,15 +192,28 @@ bool is_apart(PatchIndex i, const SmoothedHalves& smooth, const std::array<Field
 // The value of patch i in both halves, and the variance of their mean.
 void smooth_patch(PatchIndex i, const std::vector<Neighbour>& neighbours, const std::array<Field, 2>& halves,
                   SmoothedHalves& into) {
+  using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
   const std::vector<double> c = coefficients(neighbours);
-  Eigen::Array<double, 1, Eigen::Dynamic> scatter = Eigen::Array<double, 1, Eigen::Dynamic>::Zero(halves[0].cols());
+  const Eigen::Index bands = halves[0].cols();
+  Row scatter = Row::Zero(bands);
   double weights = 0;
   double squares = 0;
-  for (std::size_t half = 0; half < 2; ++half) into.halves[half].row(i).setZero();
+  const auto own = static_cast<Eigen::Index>(i) * bands;
+  double* const smooth_a = into.halves[0].data() + own;
+  double* const smooth_b = into.halves[1].data() + own;
+  std::fill_n(smooth_a, bands, 0.0);
+  std::fill_n(smooth_b, bands, 0.0);
   for (std::size_t k = 0; k < neighbours.size(); ++k) {
-    const auto& [j, weight, u, v] = neighbours[k];
-    for (std::size_t half = 0; half < 2; ++half) into.halves[half].row(i) += c[k] * halves[half].row(j);
-    scatter += weight * (0.5 * (halves[0].row(j) - halves[1].row(j))).square();
+    const auto of_neighbour = static_cast<Eigen::Index>(neighbours[k].patch) * bands;
+    const double* const a = halves[0].data() + of_neighbour;
+    const double* const b = halves[1].data() + of_neighbour;
+    const double weight = neighbours[k].weight;
+    for (Eigen::Index band = 0; band < bands; ++band) {
+      smooth_a[band] += c[k] * a[band];
+      smooth_b[band] += c[k] * b[band];
+      const double off = 0.5 * (a[band] - b[band]);
+      scatter[band] += weight * off * off;
+    }
     weights += weight;
     squares += c[k] * c[k];
   }
@@ -185,30 +224,44 @@ void smooth_patch(PatchIndex i, const std::vector<Neighbour>& neighbours, const 
   into.variance.row(i) = squares / weights * scatter;
 }
 
+// The lowest power of two that a cell's edge may be.
+constexpr int lowest_level = -32;
+
+// The power of two next above each patch's radius, from the lowest on; -1 where nothing is smoothed.
+std::vector<int> levels_of(const Smoother& smoother) {
+  std::vector<int> levels(smoother.mesh.size(), -1);
+  for (PatchIndex i = 0; i < smoother.mesh.size(); ++i) {
+    const double r = smoother.radius(i);
+    if (r > 0) levels[i] = std::max(0, static_cast<int>(std::ceil(std::log2(r))) - lowest_level);
+  }
+  return levels;
+}
+
 }  // namespace
 
 SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, const std::array<Field, 2>& halves) {
   SmoothedHalves into{halves, (0.5 * (halves[0] - halves[1])).square()};
   const Smoother smoother{mesh, distance};
-  // Patches by the power of two next above their radius, so that cells are as wide as they look.
-  std::vector<std::vector<PatchIndex>> by_level;
-  constexpr int lowest = -32;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const double r = smoother.radius(i);
-    if (!(r > 0)) continue;
-    const auto level = static_cast<std::size_t>(std::max(0, static_cast<int>(std::ceil(std::log2(r))) - lowest));
-    if (by_level.size() <= level) by_level.resize(level + 1);
-    by_level[level].push_back(i);
-  }
-  for (std::size_t level = 0; level < by_level.size(); ++level) {
-    const std::vector<PatchIndex>& patches = by_level[level];
-    if (patches.empty()) continue;
-    const Cells cells(mesh, std::ldexp(1.0, static_cast<int>(level) + lowest));
-    parallel_for((patches.size() + smoothed_at_once - 1) / smoothed_at_once, [&](std::size_t task) {
-      const std::size_t end = std::min(patches.size(), (task + 1) * smoothed_at_once);
-      for (std::size_t k = task * smoothed_at_once; k < end; ++k) {
-        const std::vector<Neighbour> neighbours = smoother.neighbours(patches[k], cells);
-        if (neighbours.size() > 1) smooth_patch(patches[k], neighbours, halves, into);
+  // Patches by their radius, so that cells are as wide as they look, and then by cells, which share candidates.
+  const std::vector<int> level_of = levels_of(smoother);
+  const std::set<int> levels(level_of.begin(), level_of.end());
+  for (const int level : levels) {
+    if (level < 0) continue;
+    const Cells cells(mesh, std::ldexp(1.0, level + lowest_level));
+    parallel_for((cells.slots() + slots_at_once - 1) / slots_at_once, [&](std::size_t task) {
+      const auto begin = static_cast<std::uint32_t>(task * slots_at_once);
+      for (std::uint32_t slot = begin; slot < std::min(cells.slots(), begin + slots_at_once); ++slot) {
+        std::optional<Cell> cell;
+        Candidates candidates;
+        for (const PatchIndex i : cells.patches_in(slot)) {
+          if (level_of[i] != level) continue;
+          if (const Cell own = cells.cell_of(mesh.centroid[i]); own != cell) {
+            candidates = cells.around(own);
+            cell = own;
+          }
+          const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
+          if (neighbours.size() > 1) smooth_patch(i, neighbours, halves, into);
+        }
       }
     });
   }
