@@ -1,5 +1,6 @@
 #include "transport/ray_transport.h"
 
+#include "patchlight/base/large_array.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -52,7 +53,8 @@ void add_half(const RayRows& rows, const FieldView& radiosity, double factor, Fi
   const auto most = static_cast<Eigen::Index>(add_rows_of_width.size());
   for (Eigen::Index first = 0; first < radiosity.cols(); first += most) {
     const Eigen::Index width = std::min(most, radiosity.cols() - first);
-    const Field packed = radiosity.middleCols(first, width);
+    LargeArray<double> packed(static_cast<std::size_t>(radiosity.rows() * width));
+    Eigen::Map<Field>(packed.data(), radiosity.rows(), width) = radiosity.middleCols(first, width);
     const AddRows add = add_rows_of_width[static_cast<std::size_t>(width - 1)];
     const Columns columns{packed.data(), irradiance.data() + first, irradiance.cols()};
     parallel_for((size + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {

@@ -49,22 +49,25 @@ class Cells {
  public:
   Cells(const PatchMesh& mesh, double edge);
 
-  Cell cell_of(const Point& point) const;
   std::uint32_t slots() const { return mask_ + 1; }
-  // The patches of a slot; cells may share it.
-  std::span<const PatchIndex> patches_in(std::uint32_t slot) const {
-    return {patches_.data() + first_[slot], first_[slot + 1] - first_[slot]};
+  // The patches of a slot are those at these places of the table; cells may share it.
+  std::pair<std::uint32_t, std::uint32_t> places_in(std::uint32_t slot) const {
+    return {first_[slot], first_[slot + 1]};
   }
+  PatchIndex patch(std::uint32_t place) const { return patches_[place]; }
+  const Cell& cell(std::uint32_t place) const { return cells_[place]; }
   // All patches in a cell and in those around: none else is nearer than a cell's edge to what lies in it.
   Candidates around(const Cell& home) const;
 
  private:
+  Cell cell_of(const Point& point) const;
   std::uint32_t slot(const Cell& cell) const;
 
   double edge_;
   std::uint32_t mask_ = 0;
   std::vector<std::uint32_t> first_;  // per slot; one more at the end
   std::vector<PatchIndex> patches_;
+  std::vector<Cell> cells_;       // of patches_
   std::vector<Point> centroids_;  // of patches_
 };
 
@@ -97,8 +100,12 @@ Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   patches_.resize(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) patches_[next[slot_of[i]]++] = i;
+  cells_.reserve(mesh.size());
   centroids_.reserve(mesh.size());
-  for (const PatchIndex i : patches_) centroids_.push_back(mesh.centroid[i]);
+  for (const PatchIndex i : patches_) {
+    cells_.push_back(cell_of(mesh.centroid[i]));
+    centroids_.push_back(mesh.centroid[i]);
+  }
 }
 
 Candidates Cells::around(const Cell& home) const {
@@ -108,7 +115,7 @@ Candidates Cells::around(const Cell& home) const {
     const std::uint32_t s = slot(cell);
     for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
       // Cells may share a slot; each of its patches counts once.
-      if (cell_of(centroids_[p]) != cell) continue;
+      if (cells_[p] != cell) continue;
       found.patches.push_back(patches_[p]);
       found.centroids.push_back(centroids_[p]);
     }
@@ -253,11 +260,13 @@ SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, 
       for (std::uint32_t slot = begin; slot < std::min(cells.slots(), begin + slots_at_once); ++slot) {
         std::optional<Cell> cell;
         Candidates candidates;
-        for (const PatchIndex i : cells.patches_in(slot)) {
+        const auto [first, last] = cells.places_in(slot);
+        for (std::uint32_t place = first; place < last; ++place) {
+          const PatchIndex i = cells.patch(place);
           if (level_of[i] != level) continue;
-          if (const Cell own = cells.cell_of(mesh.centroid[i]); own != cell) {
-            candidates = cells.around(own);
-            cell = own;
+          if (cells.cell(place) != cell) {
+            cell = cells.cell(place);
+            candidates = cells.around(*cell);
           }
           const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
           if (neighbours.size() > 1) smooth_patch(i, neighbours, halves, into);
