@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace patchlight {
@@ -88,8 +89,14 @@ Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityPr
   // With y = R psi it reads y = R interest + R F y.
   const Field wanted = interest.array().replicate(1, problem.exitance.cols());
   const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
-  const Solver solver = usual_solver(transport, problem);
-  const Solution found = solve(transport, adjoint, {.solver = solver, .relative_error = 0.05, .patch_bounds = false});
+  SolverOptions loosely{.solver = usual_solver(transport, problem), .relative_error = 0.05, .patch_bounds = false};
+  if (!transport.is_reciprocal()) {
+    // A bound would cost as much as the solution: the residual ends it.
+    loosely.relative_error = 0.02;
+    loosely.max_iterations = 100;
+    loosely.largest_row_sum = std::numeric_limits<double>::infinity();
+  }
+  const Solution found = solve(transport, adjoint, loosely);
   const Field psi = found.irradiance.colwise() + interest.array();
   return psi.rowwise().maxCoeff().matrix();
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "patchlight/solve/solve.h"
-#include "patchlight/transport/transport_operator.h"
+
+#include "transport/ray_transport.h"
 
 #include <Eigen/Core>
+#include <array>
 
 namespace patchlight {
 
@@ -20,17 +22,18 @@ struct ConservedFlux {
   Field completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const;
 };
 
-/// A solution and what it conserves. `solution` has the radiosity of that; its irradiance is the one before.
+/// A solution and what it conserves. `solution` has the radiosity B of that; its irradiance is the one before.
 struct ConservingSolution {
   Solution solution;
   ConservedFlux flux;
+  std::array<Field, 2> gathered;  ///< F B by each half of the rays, W/m^2
 };
 
 /// A solution B = E + R (F B + H_direct) made one that conserves flux, by the Sherman-Morrison formula: a second
 /// solution, of `shape` reflected, tells what a missing watt changes. What the second leaves is added to the error of
 /// the first. `row_sum` is s_j. Where one of both does not converge, the solution stays as it is, and `shape` is 0.
 /// \throws Cancelled.
-ConservingSolution conserving_flux(const TransportOperator& transport, const RadiosityProblem& problem,
-                                   Solution solution, const Eigen::VectorXd& row_sum, const Observer& observer = {});
+ConservingSolution conserving_flux(const RayTransport& transport, const RadiosityProblem& problem, Solution solution,
+                                   const Eigen::VectorXd& row_sum, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -55,16 +55,18 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
 namespace {
 
 // B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
-Solution reflected_once(const RayTransport& transport, const RadiosityProblem& problem) {
-  Solution solution;
-  solution.irradiance = transport.apply(problem.exitance) + problem.direct_irradiance;
+ConservingSolution reflected_once(const RayTransport& transport, const RadiosityProblem& problem) {
+  ConservingSolution once;
+  once.gathered = {transport.apply_half(0, problem.exitance), transport.apply_half(1, problem.exitance)};
+  Solution& solution = once.solution;
+  solution.irradiance = 0.5 * (once.gathered[0] + once.gathered[1]) + problem.direct_irradiance;
   solution.direct_irradiance = solution.irradiance;
   solution.radiosity = radiosity_from(problem, solution.irradiance);
   solution.error = Field::Zero(solution.radiosity.rows(), solution.radiosity.cols());
   solution.patch_bound = 0;
   solution.converged = true;
   solution.history = {{.work = 1}};
-  return solution;
+  return once;
 }
 
 // The square of what smoothing has wrong over the variance that it leaves, of all patches together, per band: (S - H)
@@ -109,17 +111,6 @@ Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, c
   for (Eigen::Index i = 0; i < squares.rows(); ++i)
     if (light.is_missed[static_cast<std::size_t>(i)] == 0) squares.row(i) = 0;
   return area_sum(squares, area.cwiseProduct(row_sum)) / (light.rays_per_patch * total(area));
-}
-
-// The last gather by each half of the rays.
-std::array<Field, 2> gathered(const RayTransport& transport, const Field& sources, const ConservedFlux* flux,
-                              const Eigen::VectorXd& area) {
-  std::array<Field, 2> halves;
-  for (std::size_t half = 0; half < 2; ++half) {
-    halves[half] = transport.apply_half(half, sources);
-    if (flux != nullptr) halves[half] = flux->completed(std::move(halves[half]), sources, area);
-  }
-  return halves;
 }
 
 // The variance of what each row sums up to, over its square. A share s that n independent rays tell has a variance of
@@ -177,16 +168,17 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
 
   // 1. Solve for what the rows carry, without losing any of it.
   const bool reflects_twice = simulates(run.plan, Effect::interreflection);
-  auto [solution, flux] = reflects_twice
-                              ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer),
-                                                row_sum, without_iterates(run.observer))
-                              : ConservingSolution{reflected_once(transport, problem), {}};
+  auto [solution, flux, gathered] =
+      reflects_twice ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer), row_sum,
+                                       without_iterates(run.observer))
+                     : reflected_once(transport, problem);
 
-  // 2. Gather once more, by each half, and smooth.
+  // 2. The last gather, by each half, smoothed.
   const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
+  if (reflects_twice)
+    for (Field& half : gathered) half = flux.completed(std::move(half), sources, all.area);
   const std::array<Field, 2> raw =
-      with_errors_of_row_sums(gathered(transport, sources, reflects_twice ? &flux : nullptr, all.area), mesh,
-                              variance_of_row_sums(transport, row_sum, facts.lost));
+      with_errors_of_row_sums(std::move(gathered), mesh, variance_of_row_sums(transport, row_sum, facts.lost));
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.
@@ -207,7 +199,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   solution.radiosity = radiosity_from(all, solution.irradiance);
 
   // 5. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
-  if (reflects_twice) {
+  if (reflects_twice && solution.trapped.empty()) {
     const Eigen::ArrayXd level = variance_of_level(transport, {problem, solution}, flux, single);
     variance += scaled((solution.irradiance - problem.direct_irradiance).square(), level);
   }

@@ -19,8 +19,8 @@ constexpr double least_escape = 1e-6;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
-// No bounce of v may be above this one in the end.
-constexpr double last_bounce = 0.5;
+// No bounce that is left out of v may be above this one.
+constexpr double last_bounce = 0.75;
 
 // How many more bounces that takes, if each is as much less than the one before as the last few were. An estimate:
 // where white patches lie far from all that absorbs, the highest bounce may begin to fall late. Where it is wrong no
@@ -33,22 +33,25 @@ double bounces_left(const std::vector<double>& highest_bounces) {
   return decay > 0 ? std::log(now / last_bounce) / decay : no_bound;
 }
 
-// v = 1 + K v by Jacobi's iteration, until no residual is above 1/2: for rows that are not reciprocal, and for sheets.
-// Given up as soon as it will not get there.
-GlowingRadiosity glowing_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
-                                    int most_iterations) {
-  const Field ones = Field::Ones(problem.exitance.rows(), problem.exitance.cols());
-  GlowingRadiosity glowing{ones, 0};
-  Field bounce = ones;
+// v = 1 + K 1 + ... + K^n 1, Jacobi's iteration for v = 1 + K v, which leaves v - K v = 1 - K^(n+1) 1: for rows that
+// are not reciprocal, and for sheets. It goes on until no K^(n+1) 1 is above 3/4, and is given up as soon as it will
+// not get there. Where K 1 is the same everywhere, the bound does not depend on n.
+PatchWeights weights_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
+                                int most_applications) {
+  PatchWeights weights{Field::Ones(problem.exitance.rows(), problem.exitance.cols()), {}, 0};
+  Field bounce = weights.v;
   std::vector<double> highest_bounces{1};
-  while (highest_bounces.back() > last_bounce &&
-         glowing.applications + bounces_left(highest_bounces) < most_iterations) {
+  for (;;) {
     bounce = problem.scattering.reflect(transport.apply(bounce));
-    glowing.radiosity += bounce;
-    ++glowing.applications;
+    ++weights.applications;
     highest_bounces.push_back(highest(bounce).maxCoeff());
+    if (!(highest_bounces.back() > last_bounce) ||
+        weights.applications + bounces_left(highest_bounces) >= most_applications)
+      break;
+    weights.v += bounce;
   }
-  return glowing;
+  weights.g = 1 - bounce;
+  return weights;
 }
 
 // With fewer bands each has weights of its own, which are somewhat tighter.
@@ -66,12 +69,13 @@ RadiosityProblem glowing(const Scattering& scattering, const Eigen::VectorXd& ar
   return {scattering, Field::Ones(scattering.reflectance.rows(), scattering.reflectance.cols()), area};
 }
 
-// v of all bands, or of one for them all.
-GlowingRadiosity loosely_solved(const TransportOperator& transport, const RadiosityProblem& problem) {
-  constexpr int most_iterations = 60;
-  const bool is_symmetric = transport.is_reciprocal() && problem.scattering.is_diagonal();
-  return is_symmetric ? glowing_radiosity(transport, problem, most_iterations)
-                      : glowing_by_bounces(transport, problem, most_iterations);
+// Weights of all bands of a problem in which all patches emit 1.
+PatchWeights weights_of(const TransportOperator& transport, const RadiosityProblem& glowing) {
+  constexpr int most_applications = 60;
+  if (!transport.is_reciprocal() || !glowing.scattering.is_diagonal())
+    return weights_by_bounces(transport, glowing, most_applications);
+  const auto [v, applications] = glowing_radiosity(transport, glowing, most_applications);
+  return {v, v - glowing.scattering.reflect(transport.apply(v)), applications + 1};
 }
 
 bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() && (weights.g > 0).all(); }
@@ -79,11 +83,10 @@ bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() &&
 // The same v for all bands, from R that is as large as any of theirs: v - K v is not below what it is with that.
 PatchWeights shared_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
   const Eigen::Index bands = problem.exitance.cols();
-  const auto [v, applications] =
-      loosely_solved(transport, glowing(of_brightest_bands(problem.scattering), problem.area));
-  const Field irradiance = transport.apply(v).replicate(1, bands);
-  const Field of_all = v.replicate(1, bands);
-  return {of_all, of_all - problem.scattering.reflect(irradiance), applications + 1};
+  const PatchWeights brightest = weights_of(transport, glowing(of_brightest_bands(problem.scattering), problem.area));
+  const Field irradiance = transport.apply(brightest.v).replicate(1, bands);
+  const Field of_all = brightest.v.replicate(1, bands);
+  return {of_all, of_all - problem.scattering.reflect(irradiance), brightest.applications + 1};
 }
 
 }  // namespace
@@ -104,16 +107,15 @@ Eigen::ArrayXd contraction_of(const TransportOperator& transport, const Radiosit
 }
 
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
-  // v = 1 + K v is the radiosity of patches that all emit 1; with the residual r of an approximation g = v - K v = 1 -
-  // r.
+  // v = 1 + K v is the radiosity of patches that all emit 1; any approximation will do, of which g = v - K v > 0.
   int in_vain = 0;
   if (problem.exitance.cols() > few_bands) {
     PatchWeights weights = shared_weights(transport, problem);
     if (are_positive(weights)) return weights;
     in_vain = weights.applications;
   }
-  const auto [v, applications] = loosely_solved(transport, glowing(problem.scattering, problem.area));
-  PatchWeights weights{v, v - problem.scattering.reflect(transport.apply(v)), in_vain + applications + 1};
+  PatchWeights weights = weights_of(transport, glowing(problem.scattering, problem.area));
+  weights.applications += in_vain;
   if (!are_positive(weights)) return std::nullopt;
   return weights;
 }

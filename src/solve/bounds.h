@@ -32,7 +32,7 @@ Eigen::ArrayXd contraction_of(const TransportOperator& transport, const Radiosit
                               const SolverOptions& options);
 
 /// Weights from a loose solution of (I - K) v = 1. Nothing when none is found: then K does not contract. Costs some
-/// five applications. Of more than three bands v is that of the largest R of each patch, in one column, which bounds
+/// three to five applications. Of more than three bands v is that of the largest R of each patch, in one column, which bounds
 /// the errors of every band; each has its own only where that one does not contract.
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem);
 

@@ -36,7 +36,10 @@ constexpr std::size_t found_at_once = 4096;
 constexpr std::uint32_t slots_at_once = 64;
 constexpr std::size_t patches_per_slot = 8;
 
-using Cell = std::array<std::int64_t, 3>;
+struct Cell {
+  std::int64_t x = 0, y = 0, z = 0;
+  bool operator==(const Cell&) const = default;
+};
 
 // Centroids that may be near, with their patches.
 struct Candidates {
@@ -72,15 +75,14 @@ class Cells {
 };
 
 Cell Cells::cell_of(const Point& point) const {
-  Cell cell{};
-  for (int d = 0; d < 3; ++d)
-    cell[static_cast<std::size_t>(d)] = static_cast<std::int64_t>(std::floor(point[d] / edge_));
-  return cell;
+  const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(point[axis] / edge_)); };
+  return {at(0), at(1), at(2)};
 }
 
 std::uint32_t Cells::slot(const Cell& cell) const {
   std::uint32_t state = 0;
-  for (const std::int64_t c : cell) state = hash(state ^ (static_cast<std::uint32_t>(c) * 0x9e3779b9U));
+  for (const std::int64_t c : {cell.x, cell.y, cell.z})
+    state = hash(state ^ (static_cast<std::uint32_t>(c) * 0x9e3779b9U));
   return state & mask_;
 }
 
@@ -111,7 +113,7 @@ Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
 Candidates Cells::around(const Cell& home) const {
   Candidates found;
   for (int k = 0; k < 27; ++k) {
-    const Cell cell{home[0] + k / 9 - 1, home[1] + k / 3 % 3 - 1, home[2] + k % 3 - 1};
+    const Cell cell{home.x + k / 9 - 1, home.y + k / 3 % 3 - 1, home.z + k % 3 - 1};
     const std::uint32_t s = slot(cell);
     for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
       // Cells may share a slot; each of its patches counts once.
@@ -187,48 +189,84 @@ std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
 // smoothed that is more than nine of it once in some 500 times.
 constexpr double most_off = 9;
 
-// Does patch i see other light than its neighbours, as both halves tell? A face that lies a little behind another may
-// look into a space of its own.
-bool is_apart(PatchIndex i, const SmoothedHalves& smooth, const std::array<Field, 2>& halves,
-              const Eigen::Array<double, 1, Eigen::Dynamic>& variance) {
-  const auto off = [&](std::size_t half) { return smooth.halves[half].row(i) - halves[half].row(i); };
-  const auto own = (0.5 * (halves[0].row(i) - halves[1].row(i))).square();
-  return (off(0) * off(1) > most_off * variance.max(own)).any();
+// The same places of fields of as many patches and bands.
+struct Smoothing {
+  const std::array<Field, 2>& halves;
+  SmoothedHalves& into;
+};
+
+// Of neighbours with their coefficients: the means of `width` bands from `place` on in both halves, and as the variance
+// the weighted sum of the squares of what either half is off their mean.
+template <std::size_t width>
+void sum_up(const Smoothing& fields, Eigen::Index place, Eigen::Index band, const std::vector<Neighbour>& neighbours,
+            const std::vector<double>& c) {
+  using Sum = std::array<double, width>;
+  Sum mean_a{};
+  Sum mean_b{};
+  Sum scatter{};
+  const Eigen::Index bands = fields.halves[0].cols();
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const Eigen::Index of_neighbour = static_cast<Eigen::Index>(neighbours[k].patch) * bands + band;
+    const double* const a = fields.halves[0].data() + of_neighbour;
+    const double* const b = fields.halves[1].data() + of_neighbour;
+    for (std::size_t w = 0; w < width; ++w) {
+      const double off = 0.5 * (a[w] - b[w]);
+      mean_a[w] += c[k] * a[w];
+      mean_b[w] += c[k] * b[w];
+      scatter[w] += neighbours[k].weight * off * off;
+    }
+  }
+  std::copy_n(mean_a.begin(), width, fields.into.halves[0].data() + place);
+  std::copy_n(mean_b.begin(), width, fields.into.halves[1].data() + place);
+  std::copy_n(scatter.begin(), width, fields.into.variance.data() + place);
+}
+
+using SumUp = void (*)(const Smoothing&, Eigen::Index place, Eigen::Index band, const std::vector<Neighbour>&,
+                       const std::vector<double>&);
+constexpr std::array<SumUp, 4> sum_up_of_width{sum_up<1>, sum_up<2>, sum_up<3>, sum_up<4>};
+
+double squared_difference(const std::array<Field, 2>& halves, Eigen::Index place) {
+  const double half = 0.5 * (halves[0].data()[place] - halves[1].data()[place]);
+  return half * half;
+}
+
+// Does a patch, its bands at [first, last), see other light than its neighbours, as both halves tell? A face that lies
+// a little behind another may look into a space of its own. The variance is that of `fields` times a factor.
+bool is_apart(const Smoothing& fields, Eigen::Index first, Eigen::Index last, double factor) {
+  for (Eigen::Index place = first; place < last; ++place) {
+    const auto off = [&](std::size_t half) {
+      return fields.into.halves[half].data()[place] - fields.halves[half].data()[place];
+    };
+    const double variance =
+        std::max(factor * fields.into.variance.data()[place], squared_difference(fields.halves, place));
+    if (off(0) * off(1) > most_off * variance) return true;
+  }
+  return false;
 }
 
 // The value of patch i in both halves, and the variance of their mean.
-void smooth_patch(PatchIndex i, const std::vector<Neighbour>& neighbours, const std::array<Field, 2>& halves,
-                  SmoothedHalves& into) {
-  using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
+void smooth_patch(PatchIndex i, const std::vector<Neighbour>& neighbours, const Smoothing& fields) {
   const std::vector<double> c = coefficients(neighbours);
-  const Eigen::Index bands = halves[0].cols();
-  Row scatter = Row::Zero(bands);
-  double weights = 0;
-  double squares = 0;
-  const auto own = static_cast<Eigen::Index>(i) * bands;
-  double* const smooth_a = into.halves[0].data() + own;
-  double* const smooth_b = into.halves[1].data() + own;
-  std::fill_n(smooth_a, bands, 0.0);
-  std::fill_n(smooth_b, bands, 0.0);
-  for (std::size_t k = 0; k < neighbours.size(); ++k) {
-    const auto of_neighbour = static_cast<Eigen::Index>(neighbours[k].patch) * bands;
-    const double* const a = halves[0].data() + of_neighbour;
-    const double* const b = halves[1].data() + of_neighbour;
-    const double weight = neighbours[k].weight;
-    for (Eigen::Index band = 0; band < bands; ++band) {
-      smooth_a[band] += c[k] * a[band];
-      smooth_b[band] += c[k] * b[band];
-      const double off = 0.5 * (a[band] - b[band]);
-      scatter[band] += weight * off * off;
-    }
-    weights += weight;
-    squares += c[k] * c[k];
+  const Eigen::Index bands = fields.halves[0].cols();
+  const Eigen::Index first = static_cast<Eigen::Index>(i) * bands;
+  const auto most = static_cast<Eigen::Index>(sum_up_of_width.size());
+  for (Eigen::Index band = 0; band < bands; band += most) {
+    const auto width = static_cast<std::size_t>(std::min(most, bands - band));
+    sum_up_of_width[width - 1](fields, first + band, band, neighbours, c);
   }
-  if (is_apart(i, into, halves, scatter / weights)) {
-    for (std::size_t half = 0; half < 2; ++half) into.halves[half].row(i) = halves[half].row(i);
+
+  double weights = 0;
+  for (const Neighbour& neighbour : neighbours) weights += neighbour.weight;
+  auto& [halves, variance] = fields.into;
+  if (is_apart(fields, first, first + bands, 1 / weights)) {
+    for (std::size_t half = 0; half < 2; ++half) halves[half].row(i) = fields.halves[half].row(i);
+    for (Eigen::Index place = first; place < first + bands; ++place)
+      variance.data()[place] = squared_difference(fields.halves, place);
     return;
   }
-  into.variance.row(i) = squares / weights * scatter;
+  double squares = 0;
+  for (const double of_each : c) squares += of_each * of_each;
+  variance.row(i) *= squares / weights;
 }
 
 // The lowest power of two that a cell's edge may be.
@@ -269,7 +307,7 @@ SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, 
             candidates = cells.around(*cell);
           }
           const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
-          if (neighbours.size() > 1) smooth_patch(i, neighbours, halves, into);
+          if (neighbours.size() > 1) smooth_patch(i, neighbours, {halves, into});
         }
       }
     });

@@ -8,16 +8,27 @@ namespace patchlight::conserved_flux_test {
 namespace {
 
 // Rows that sum up to what is seen; columns do not.
-class Rows : public TransportOperator {
- public:
-  PatchIndex size() const override { return 3; }
-  Field apply(const FieldView& radiosity) const override { return (factors_ * radiosity.matrix()).array(); }
-  bool is_reciprocal() const override { return false; }
-  Eigen::VectorXd row_sum() const { return factors_.rowwise().sum(); }
+const Eigen::Matrix3d factors{{0, 0.7, 0.3}, {0.45, 0, 0.55}, {0.35, 0.5, 0}};
+const Eigen::VectorXd row_sum = factors.rowwise().sum();
 
- private:
-  Eigen::Matrix3d factors_{{0, 0.7, 0.3}, {0.45, 0, 0.55}, {0.35, 0.5, 0}};
-};
+// One half of them, the other one of which has what this one lacks.
+RayRows half_of_rows(double off) {
+  RayRows rows;
+  rows.first_hit.assign(4, 0);
+  rows.hit_weight.assign(3, 0);
+  rows.first_entry = {0};
+  for (PatchIndex i = 0; i < 3; ++i) {
+    for (PatchIndex j = 0; j < 3; ++j) {
+      if (i == j) continue;
+      const double share = 1 + (j == (i + 1) % 3 ? off : -off);
+      rows.entries.push_back({j, static_cast<float>(share * factors(i, j))});
+    }
+    rows.first_entry.push_back(rows.entries.size());
+  }
+  return rows;
+}
+
+RayTransport two_halves() { return RayTransport({half_of_rows(0.1), half_of_rows(-0.1)}); }
 
 const Eigen::VectorXd area = Eigen::Vector3d(1, 1.5, 2);
 
@@ -27,19 +38,24 @@ RadiosityProblem lit(double reflectance) {
   return {{Field::Constant(3, 2, reflectance)}, exitance, area};
 }
 
-Solution solved(const Rows& rows, const RadiosityProblem& problem) {
+Solution solved(const RayTransport& rows, const RadiosityProblem& problem) {
   return solve(rows, problem, {.solver = Solver::gmres, .relative_error = 1e-12});
 }
 
 // sum_i A_i (F B + g d(B))_i = sum_j A_j s_j B_j by construction, and B solves B = E + R (F B + g d(B)): to the 1 % of
 // what is added that the second solution may leave.
 TEST(ConservedFlux, IsThatOfTheSolution) {
-  const Rows rows;
+  const RayTransport rows = two_halves();
   const RadiosityProblem problem = lit(0.8);
   const Solution plain = solved(rows, problem);
-  const auto [solution, flux] = conserving_flux(rows, problem, plain, rows.row_sum());
-  const Field irradiance = flux.completed(rows.apply(solution.radiosity), solution.radiosity, area);
-  const Eigen::VectorXd seen = area.cwiseProduct(rows.row_sum());
+  const auto [solution, flux, gathered] = conserving_flux(rows, problem, plain, row_sum);
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Field by_half = rows.apply_half(half, solution.radiosity);
+    EXPECT_LT((gathered[half] - by_half).abs().maxCoeff(), 1e-12 * by_half.maxCoeff()) << "rounding";
+  }
+  const Field of_all = 0.5 * (gathered[0] + gathered[1]);
+  const Field irradiance = flux.completed(of_all, solution.radiosity, area);
+  const Eigen::VectorXd seen = area.cwiseProduct(row_sum);
   EXPECT_NEAR(area_sum(irradiance, area)[0], area_sum(solution.radiosity, seen)[0], 1e-9);
   const Field again = problem.exitance + problem.scattering.reflect(irradiance);
   const double added = (solution.radiosity - plain.radiosity).abs().maxCoeff();
@@ -49,11 +65,11 @@ TEST(ConservedFlux, IsThatOfTheSolution) {
 }
 
 TEST(ConservedFlux, LeavesWhatHasNotConverged) {
-  const Rows rows;
+  const RayTransport rows = two_halves();
   const RadiosityProblem problem = lit(0.8);
   Solution plain = solved(rows, problem);
   plain.converged = false;
-  const auto [solution, flux] = conserving_flux(rows, problem, plain, rows.row_sum());
+  const auto [solution, flux, gathered] = conserving_flux(rows, problem, plain, row_sum);
   EXPECT_TRUE((solution.radiosity == plain.radiosity).all());
   EXPECT_EQ(flux.shape.abs().maxCoeff(), 0);
 }
