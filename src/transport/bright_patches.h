@@ -17,7 +17,8 @@ class Occluder;
 /// proportion to its share of their flux. What is expected decides about the error alone, never about the mean.
 class BrightPatches {
  public:
-  /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area.
+  /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area;
+  /// none where rays that meet them by chance scatter so little that more of these cost less.
   BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expected, double threshold, const Occluder& occluder);
 
   bool empty() const { return patches_.empty(); }
