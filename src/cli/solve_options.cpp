@@ -87,8 +87,10 @@ SolveArguments finish_solve(const SolveOptions& options) {
   arguments.form_factors = options.form_factors;
   arguments.checkpoint = options.checkpoint;
   arguments = with_solution(std::move(arguments), "solve", options.solution);
-  const bool solver_given = options.solution.solver_given || !options.solution.series.empty();
-  arguments.request = with_fitting_solver(std::move(arguments.request), solver_given);
+  const bool in_series = !options.solution.series.empty();
+  Storage& storage = arguments.request.assembly.storage;
+  if (in_series && storage == Storage::automatic) storage = Storage::tiles;
+  arguments.request = with_fitting_solver(std::move(arguments.request), options.solution.solver_given || in_series);
   require_checkpoint_of_rays(arguments);
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;

@@ -37,8 +37,8 @@ void add_storage_options(CLI::App& command, Request& request) {
       "how form factors are kept: of all pairs of patches; sparse rows of\nwhat some rays from each patch meet, for "
       "many patches, with a\nstandard error for each; or not at all, as --on-demand; default\nauto: pairs; rays for "
       "more than 10,000 patches, from 1,000 where\nfaces have few each, for mirrors and panes, and where the memory\n"
-      "is too small; always pairs where something is asked for that\nrays do not have: a solver, another estimator and "
-      "the like",
+      "is too small; always pairs where something is asked for that\nrays do not have: a solver by single rows or cg, "
+      "another\nestimator and the like",
       [&request](const std::string& text) { request.assembly.storage = storage_named(text); });
   add_rays_option(command, request);
 }
@@ -59,7 +59,8 @@ void add_stored_options(CLI::App& command, Request& request) {
 Request with_fitting_solver(Request request, bool solver_given) {
   Storage& storage = request.assembly.storage;
   if (solver_given) {
-    if (storage == Storage::automatic) storage = Storage::tiles;
+    const Solver solver = request.solver.solver;
+    if (storage == Storage::automatic && (takes_rows(solver) || takes_reciprocity(solver))) storage = Storage::tiles;
   } else if (storage == Storage::rays) {
     request.solver.solver = Solver::gmres;
   } else if (storage == Storage::on_demand) {

@@ -12,8 +12,8 @@ void add_storage_options(CLI::App& command, Request& request);
 /// --storage tiles|rays and --rays, of form factors that are kept for good.
 void add_stored_options(CLI::App& command, Request& request);
 
-/// Where no solver is asked for, one that can do with the storage; where one is, pairs unless another storage is asked
-/// for.
+/// Where no solver is asked for, one that can do with the storage; where one is that rows of rays do not serve, pairs
+/// unless another storage is asked for.
 Request with_fitting_solver(Request request, bool solver_given);
 
 }  // namespace patchlight::cli

@@ -48,6 +48,14 @@ class OptionsTest(ToolTest):
         walls = [[m["reflectance"] for m in r["materials"] if m["name"] == "white"] for r in (bare, stated)]
         self.assertEqual(walls, [[[0.3] * 3]] * 2)
 
+    def test_solvers_that_serve_rows_of_rays_leave_the_storage_open(self):
+        # More than 10,000 patches: pairs would take gigabytes.
+        for solver in ("gmres", "bicgstab"):
+            self.good("solve", "room.obj", "--patches", "11000", "--solver", solver, "--report", "report.json", "-q")
+            report = json.loads((self.folder / "report.json").read_text())
+            self.assertEqual(report["plan"]["storage"], "rays", solver)
+            self.assertEqual(report["plan"]["solver"], solver)
+
     def test_maintained_lamps_give_their_share(self):
         # The light is linear in the lamps, and all of it is theirs.
         def irradiances(*words, scene="scene.toml"):
