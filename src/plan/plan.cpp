@@ -200,9 +200,11 @@ SolverOptions decided(SolverOptions solver) {
 }
 
 // Of sheets R is not diagonal, and may have negative eigenvalues.
-SolverOptions decided(SolverOptions solver, bool every_band, Storage storage, const EffectFacts& facts) {
+SolverOptions decided(SolverOptions solver, bool every_band, const AssemblyOptions& assembly,
+                      const EffectFacts& facts) {
   if (facts.sheets > 0 && solver.solver == Solver::cg) solver.solver = Solver::gmres;
-  if (storage == Storage::rays && !solver.relative_error) solver.relative_error = default_ray_tolerance;
+  if (assembly.storage == Storage::rays && !solver.relative_error)
+    solver.relative_error = default_ray_tolerance(assembly.rays);
   solver.every_band = solver.every_band || every_band;
   return decided(std::move(solver));
 }
@@ -243,7 +245,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .graded_edges = asked.mesh.graded_edges,
           .max_edge = size.max_edge,
           .assembly = decided(request, facts, decisions, given),
-          .solver = decided(request.solver, in_colour && one_colour, request.assembly.storage, facts),
+          .solver = decided(request.solver, in_colour && one_colour, request.assembly, facts),
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = std::move(decisions),

@@ -28,26 +28,31 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
   return arnoldi;
 }
 
-// The next direction: (I - K) v_k, orthogonalised; once more where most of it was along the others, as then rounding
-// leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and Stewart 1976).
+// The next direction: K v_k, orthogonalised, as the rest of (I - K) v_k lies along v_k; once more where nearly all of
+// it was along the others, as then rounding leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and
+// Stewart 1976).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
-  constexpr double much_is_left = 0.5;
+  constexpr double much_is_left = 0.1;
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
-  Field next = arnoldi.v.back() - problem.scattering.reflect(irradiance);
+  Field next = problem.scattering.reflect(irradiance);
   arnoldi.irradiance.push_back(std::move(irradiance));
   Eigen::ArrayXd before = area_norm(next, problem.area);
   Eigen::ArrayXd norm;
+  Eigen::ArrayXXd along_all = Eigen::ArrayXXd::Zero(k + 1, next.cols());
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::ArrayXXd along = inner_products(next, arnoldi.v, problem.area);
     next = plus_combination(std::move(next), arnoldi.v, -along);
-    for (Eigen::Index band = 0; band < along.cols(); ++band)
-      arnoldi.hessenberg[static_cast<std::size_t>(band)].col(k).head(k + 1) += along.col(band).matrix();
+    along_all += along;
     norm = area_norm(next, problem.area);
     if ((norm >= much_is_left * before).all()) break;
     before = norm;
   }
-  for (Eigen::Index band = 0; band < norm.size(); ++band)
-    arnoldi.hessenberg[static_cast<std::size_t>(band)](k + 1, k) = norm[band];
+  for (Eigen::Index band = 0; band < norm.size(); ++band) {
+    Eigen::MatrixXd& hessenberg = arnoldi.hessenberg[static_cast<std::size_t>(band)];
+    hessenberg.col(k).head(k + 1) = -along_all.col(band).matrix();
+    hessenberg(k, k) += 1;
+    hessenberg(k + 1, k) = -norm[band];
+  }
   arnoldi.v.push_back(scaled(next, quotient(Eigen::ArrayXd::Ones(norm.size()), norm)));
   return arnoldi;
 }

@@ -7,6 +7,7 @@
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -87,8 +88,8 @@ struct Given {
   bool solver = false;
 };
 
-/// The same with rows of rays, whose own error is some hundred times that.
-inline constexpr double default_ray_tolerance = 1e-4;
+/// The solver's relative error when none is asked for and rows are of so many rays: some sixteenth of what they err.
+inline double default_ray_tolerance(int rays) { return 4e-3 / std::sqrt(rays); }
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
 inline constexpr std::size_t default_patches = 4000;
