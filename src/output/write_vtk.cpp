@@ -4,6 +4,7 @@
 #include "light/photometry.h"
 #include "output/vtk_polygons.h"
 #include "render/tone_map.h"
+#include "solve/scattering.h"
 #include "visibility/tracing.h"
 
 #include <array>
@@ -47,7 +48,7 @@ constexpr std::array<std::array<const char*, 2>, 25> units_of_arrays = {
 void add_errors(vtkCellData& cell_data, const Simulation& simulation) {
   // dL = R dH / pi
   const auto scattered = [&](const Field& irradiance) -> Field {
-    return simulation.problem.scattering.reflect(irradiance) / std::numbers::pi;
+    return reflected_error(simulation.problem.scattering, irradiance) / std::numbers::pi;
   };
   const Field& of_lights = simulation.direct_standard_error;
   if (of_lights.size() > 0) cell_data.AddArray(floats("error_direct_irradiance", of_lights));

@@ -5,6 +5,7 @@
 #include "page/drawn_faces.h"
 #include "page/looks.h"
 #include "page/packed.h"
+#include "solve/scattering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,8 @@ Json values_part(const SolvedSurface& surface, const RowMeans& means) {
   };
   const auto add_scattered = [&](const char* name, const Field& irradiance) {
     if (irradiance.rows() == static_cast<Eigen::Index>(simulation.mesh.size()))
-      add_luminous(name, simulation.problem.scattering.reflect(irradiance) / std::numbers::pi);  // dL = R dH / pi
+      add_luminous(name,
+                   reflected_error(simulation.problem.scattering, irradiance) / std::numbers::pi);  // dL = R dH / pi
   };
   add("radiance", solution.radiosity / std::numbers::pi);  // L = B / pi
   add("irradiance", solution.irradiance);

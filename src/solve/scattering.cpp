@@ -78,6 +78,15 @@ Field irradiance_errors(const Scattering& scattering, const Field& error) {
   return is_known.select(bound, largest_of_all);
 }
 
+Field reflected_error(const Scattering& scattering, const Field& error) {
+  const Field& rho = scattering.reflectance;
+  Field reflected = (rho > 0).select(rho * error, 0.0);
+  if (scattering.is_diagonal()) return reflected;
+  const Field& t = scattering.transmittance;
+  reflected += (t > 0).select(t * on_other_side(scattering, error), 0.0);
+  return reflected;
+}
+
 Field reflected_variance(const Scattering& scattering, const Field& variance) {
   Field reflected = scattering.reflectance.square() * variance;
   if (!scattering.is_diagonal()) reflected += scattering.transmittance.square() * on_other_side(scattering, variance);

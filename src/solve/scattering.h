@@ -32,6 +32,9 @@ Field irradiance_behind(const Scattering& scattering, const Field& reflected, co
 /// nothing the largest of the others. On sheets the smaller of what either side tells.
 Field irradiance_errors(const Scattering& scattering, const Field& error);
 
+/// R times an error of the irradiance, which may be infinite where it is not known: 0 of what reflects nothing.
+Field reflected_error(const Scattering& scattering, const Field& error);
+
 /// The variances of R H, from those of irradiances that do not depend on each other.
 Field reflected_variance(const Scattering& scattering, const Field& variance);
 

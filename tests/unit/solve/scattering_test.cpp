@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace patchlight::scattering_test {
 
@@ -43,6 +44,18 @@ TEST(Scattering, TheAdjointGivesTheSameProducts) {
     const Field x = Field::Random(size, 2);
     const Field y = Field::Random(size, 2);
     EXPECT_TRUE(((product(R.reflect(x), y) - product(x, R.adjoint(y))).abs() < 1e-14).all());
+  }
+}
+
+// Of errors that are known it is R; of those that are not known it is none where nothing is scattered.
+TEST(Scattering, WhatScattersNothingHasNoErrorThatIsNotKnown) {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  for (const Scattering& R : {grey_and_coloured(), with_sheets()}) {
+    const Field error = Field::Random(size, 2).abs();
+    EXPECT_TRUE((reflected_error(R, error) == R.reflect(error)).all());
+    const Field of_unknown = reflected_error(R, Field::Constant(size, 2, unknown));
+    const Field share = R.reflect(Field::Ones(size, 2));
+    EXPECT_TRUE(((share > 0).select(of_unknown == unknown, of_unknown == 0)).all());
   }
 }
 
