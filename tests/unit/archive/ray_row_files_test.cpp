@@ -31,6 +31,16 @@ Request by_rays() {
   return request;
 }
 
+// A point lamp just above the floor makes a patch so bright that rays are sent towards it: their hits are entries.
+Scene room_with_bright_spot() {
+  Scene scene = test_room(0.6);
+  Luminaire lamp;
+  lamp.position = Point(0.6, 0.6, 0.1);
+  lamp.light = PointLight{Spectrum::Constant(scene.materials[0].reflectance.size(), 0.5)};
+  scene.luminaires = {lamp};
+  return scene;
+}
+
 // A folder of the rows of the room.
 class RayRowFiles : public testing::Test {
  protected:
@@ -57,7 +67,7 @@ class RayRowFiles : public testing::Test {
     write_npy_numbers(place_ / name, std::span<const Number>(values));
   }
 
-  Scene scene_ = test_room(0.6);
+  Scene scene_ = room_with_bright_spot();
   RayFormFactors found_ = find_ray_form_factors(scene_, by_rays());
   TemporaryFolder folder_;
   fs::path place_ = folder_.path() / "room.ff";
@@ -77,12 +87,17 @@ TEST_F(RayRowFiles, GiveBackEveryBit) {
 TEST_F(RayRowFiles, AreOfAnyLight) {
   Scene brighter = scene_;
   for (Material& material : brighter.materials) material.exitance = material.exitance * 2;
+  for (Luminaire& lamp : brighter.luminaires) std::get<PointLight>(lamp.light).intensity *= 2;
   const Simulation once = relit(scene_);
   EXPECT_TRUE((relit(brighter).solution.radiosity == 2 * once.solution.radiosity).all());
 }
 
-// Other reflectances, against all pairs on the same mesh. The bars are those of the rays alone.
+// Other reflectances, against all pairs on the same mesh, which without a luminaire is that of rays. The bars are those
+// of the rays alone.
 TEST_F(RayRowFiles, AreOfAnyMaterial) {
+  scene_.luminaires.clear();
+  found_ = find_ray_form_factors(scene_, by_rays());
+  write_ray_rows(place_, scene_, found_, "a command");
   Scene darker = scene_;
   for (Material& material : darker.materials) material.reflectance = material.reflectance * 0.5;
   const Simulation relit_room = relit(darker);
