@@ -189,7 +189,8 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   const std::size_t count = scene.polygons.size();
   std::vector<FlatFace> faces(count);
   parallel_for(count, [&](std::size_t p) { faces[p] = flat_face(corner_points(scene, static_cast<PolygonIndex>(p))); });
-  const Search search{scene, kept, FaceTree(std::move(faces), FaceOrder::by_place), in_plane_tolerance * extent_of(scene)};
+  const Search search{scene, kept, FaceTree(std::move(faces), FaceOrder::by_place),
+                      in_plane_tolerance * extent_of(scene)};
   std::vector<std::vector<Covered>> found(count);
   parallel_for(count, [&](std::size_t p) { found[p] = search.of(static_cast<PolygonIndex>(p)); });
   std::vector<std::vector<PolygonIndex>> over(2 * count);

@@ -9,8 +9,9 @@
 namespace patchlight {
 namespace {
 
-// Rays towards bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s in
-// the room with spheres of scripts/large_rooms.py. So many more rays over the hemisphere divide the variance by this.
+// Rays towards bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
+// in the room with spheres of scripts/large_rooms.py. So many more rays over the hemisphere divide the variance by
+// this.
 constexpr double least_gain = 1.75;
 
 // The variance of radiosity over the area, of those values that are not above a limit; the others are 0.

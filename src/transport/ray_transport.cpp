@@ -1,6 +1,7 @@
 #include "transport/ray_transport.h"
 
 #include "patchlight/base/large_array.h"
+
 #include "base/parallel.h"
 
 #include <algorithm>
