@@ -10,7 +10,7 @@ namespace {
 
 // The second solution is multiplied by what is missing, some thousandths of the light.
 constexpr double error_of_response = 0.01;  // as its residual tells
-constexpr int most_iterations = 100;
+constexpr int most_iterations = 100;        // where light is caught between white faces, its flux is left as it is
 
 // sum_j A_j s_j B_j - sum_i A_i (F B)_i, W per band.
 Eigen::ArrayXd missing(const ConservedFlux& flux, const Field& gathered, const Field& radiosity,

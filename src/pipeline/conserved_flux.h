@@ -26,13 +26,13 @@ struct ConservedFlux {
 struct ConservingSolution {
   Solution solution;
   ConservedFlux flux;
-  std::array<Field, 2> gathered;  ///< F B by each half of the rays, W/m^2
+  std::array<Field, 2> gathered;  ///< F B by each half of the rays, W/m^2; F E of light that is not reflected twice
 };
 
 /// A solution B = E + R (F B + H_direct) made one that conserves flux, by the Sherman-Morrison formula: a second
-/// solution, of `shape` reflected, tells what a missing watt changes. What the second leaves is added to the error of
-/// the first. `row_sum` is s_j. Where one of both does not converge, the solution stays as it is, and `shape` is 0.
-/// \throws Cancelled.
+/// solution, of `shape` reflected, tells what a missing watt changes. What its residual leaves of the second, an
+/// estimate, is added to the error of the first. `row_sum` is s_j. Where one of both does not converge, the solution
+/// stays as it is, and `shape` is 0. \throws Cancelled.
 ConservingSolution conserving_flux(const RayTransport& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
 

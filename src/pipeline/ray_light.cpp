@@ -93,8 +93,10 @@ Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProb
                                  const SingleVariances& variances) {
   const RadiosityProblem& problem = solved.problem;
   const Eigen::VectorXd& area = problem.area;
-  const Eigen::VectorXd psi = importance(transport, problem, Eigen::VectorXd::Ones(area.size()));
-  const Field again = (psi.array() - 1).replicate(1, problem.exitance.cols());
+  // Where no light gets to nothing errs; in there psi might grow without end.
+  const Eigen::VectorXd lit = (solved.solution.irradiance > 0).rowwise().any().cast<double>().matrix();
+  const Eigen::VectorXd psi = importance(transport, problem, lit);
+  const Field again = (psi - lit).array().replicate(1, problem.exitance.cols());
   const Field gain = problem.scattering.reflect(again);
   const Field beyond_mean = gain.rowwise() - area_sum(flux.shape * gain, area).transpose();
   const Field variance = beyond_mean.square() * variances.of_rows + gain.square() * variances.of_lights;

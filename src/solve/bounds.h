@@ -31,9 +31,9 @@ struct Bounds {
 Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
                               const SolverOptions& options);
 
-/// Weights from a loose solution of (I - K) v = 1. Nothing when none is found: then K does not contract. Costs some
-/// three to five applications. Of more than three bands v is that of the largest R of each patch, in one column, which
-/// bounds the errors of every band; each has its own only where that one does not contract.
+/// Weights from a loose solution of (I - K) v = 1. Nothing when g is not positive where the search is given up: then no
+/// bound is known. Costs some three to five applications. Of more than three bands v is that of the largest R of each
+/// patch, in one column, which bounds the errors of every band; each has its own only where that one does not contract.
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem);
 
 /// Per patch and band a bound on the error of E + rho o F B, W/m^2, for the residual r of B: (K |B* - B|)_i <=

@@ -32,7 +32,7 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
 // it was along the others, as then rounding leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and
 // Stewart 1976).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
-  constexpr double much_is_left = 0.1;
+  constexpr double much_is_left = 0.1;  // one digit of orthogonality at a step
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
   Field next = problem.scattering.reflect(irradiance);
   arnoldi.irradiance.push_back(std::move(irradiance));

@@ -14,11 +14,20 @@ namespace {
 // this.
 constexpr double least_gain = 1.75;
 
+// Rays of 32 neighbours, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
+// scatter.
+constexpr double least_share_by_chance = 1.0 / 128;
+
 // The variance of radiosity over the area, of those values that are not above a limit; the others are 0.
 double variance_up_to(const Eigen::VectorXd& radiosity, const Eigen::Map<const Eigen::VectorXd>& area, double limit) {
   const Eigen::ArrayXd kept = (radiosity.array() > limit).select(0, radiosity.array());
   const double mean = (area.array() * kept).sum() / area.sum();
   return (area.array() * (kept - mean).square()).sum() / area.sum();
+}
+
+// The share of the area that is brighter.
+double share_above(const Eigen::VectorXd& radiosity, const Eigen::Map<const Eigen::VectorXd>& area, double limit) {
+  return (radiosity.array() > limit).select(area.array(), 0).sum() / area.sum();
 }
 
 }  // namespace
@@ -29,8 +38,9 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
   // 1. Those above the threshold, if rays towards them are worth it.
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   const double least = threshold * expected.dot(area) / area.sum();
-  const double without_bright = variance_up_to(expected, area, least);
-  if (variance_up_to(expected, area, std::numeric_limits<double>::infinity()) < least_gain * without_bright) return;
+  const double all = variance_up_to(expected, area, std::numeric_limits<double>::infinity());
+  const bool meets_by_chance = share_above(expected, area, least) >= least_share_by_chance;
+  if (meets_by_chance && all < least_gain * variance_up_to(expected, area, least)) return;
   double flux = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (!(expected[i] > least)) continue;

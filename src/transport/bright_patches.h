@@ -18,7 +18,7 @@ class Occluder;
 class BrightPatches {
  public:
   /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area;
-  /// none where rays that meet them by chance scatter so little that more of these cost less.
+  /// none where rays often meet them by chance, and scatter so little that more of these cost less.
   BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expected, double threshold, const Occluder& occluder);
 
   bool empty() const { return patches_.empty(); }

@@ -1,7 +1,7 @@
 #include "transport/smoothing.h"
 
 #include "base/parallel.h"
-#include "base/sampling.h"
+#include "transport/patch_cells.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -31,99 +31,8 @@ constexpr double off_plane = 0.2;
 // one side.
 constexpr double ridge = 0.05;
 
-// Slots of the table that one task looks through, and how many patches there are to a slot.
-constexpr std::size_t found_at_once = 4096;
+// Slots of cells that one task looks through.
 constexpr std::uint32_t slots_at_once = 64;
-constexpr std::size_t patches_per_slot = 8;
-
-struct Cell {
-  std::int64_t x = 0, y = 0, z = 0;
-  bool operator==(const Cell&) const = default;
-};
-
-// Centroids that may be near, with their patches.
-struct Candidates {
-  std::vector<PatchIndex> patches;
-  std::vector<Point> centroids;
-};
-
-// The centroids of all patches in cubic cells, found by a hash of the cell.
-class Cells {
- public:
-  Cells(const PatchMesh& mesh, double edge);
-
-  std::uint32_t slots() const { return mask_ + 1; }
-  // The patches of a slot are those at these places of the table; cells may share it.
-  std::pair<std::uint32_t, std::uint32_t> places_in(std::uint32_t slot) const {
-    return {first_[slot], first_[slot + 1]};
-  }
-  PatchIndex patch(std::uint32_t place) const { return patches_[place]; }
-  const Cell& cell(std::uint32_t place) const { return cells_[place]; }
-  // All patches in a cell and in those around: none else is nearer than a cell's edge to what lies in it.
-  Candidates around(const Cell& home) const;
-
- private:
-  Cell cell_of(const Point& point) const;
-  std::uint32_t slot(const Cell& cell) const;
-
-  double edge_;
-  std::uint32_t mask_ = 0;
-  std::vector<std::uint32_t> first_;  // per slot; one more at the end
-  std::vector<PatchIndex> patches_;
-  std::vector<Cell> cells_;       // of patches_
-  std::vector<Point> centroids_;  // of patches_
-};
-
-Cell Cells::cell_of(const Point& point) const {
-  const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(point[axis] / edge_)); };
-  return {at(0), at(1), at(2)};
-}
-
-std::uint32_t Cells::slot(const Cell& cell) const {
-  std::uint32_t state = 0;
-  for (const std::int64_t c : {cell.x, cell.y, cell.z})
-    state = hash(state ^ (static_cast<std::uint32_t>(c) * 0x9e3779b9U));
-  return state & mask_;
-}
-
-Cells::Cells(const PatchMesh& mesh, double edge) : edge_(edge) {
-  std::uint32_t slots = 1;
-  while (slots * patches_per_slot < mesh.size()) slots *= 2;
-  mask_ = slots - 1;
-  // Sort by counting.
-  std::vector<std::uint32_t> slot_of(mesh.size());
-  first_.assign(std::size_t{slots} + 1, 0);
-  parallel_for((mesh.size() + found_at_once - 1) / found_at_once, [&](std::size_t task) {
-    const std::size_t end = std::min<std::size_t>(mesh.size(), (task + 1) * found_at_once);
-    for (std::size_t i = task * found_at_once; i < end; ++i) slot_of[i] = slot(cell_of(mesh.centroid[i]));
-  });
-  for (const std::uint32_t s : slot_of) ++first_[1 + s];
-  for (std::size_t s = 0; s < slots; ++s) first_[s + 1] += first_[s];
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  patches_.resize(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) patches_[next[slot_of[i]]++] = i;
-  cells_.reserve(mesh.size());
-  centroids_.reserve(mesh.size());
-  for (const PatchIndex i : patches_) {
-    cells_.push_back(cell_of(mesh.centroid[i]));
-    centroids_.push_back(mesh.centroid[i]);
-  }
-}
-
-Candidates Cells::around(const Cell& home) const {
-  Candidates found;
-  for (int k = 0; k < 27; ++k) {
-    const Cell cell{home.x + k / 9 - 1, home.y + k / 3 % 3 - 1, home.z + k % 3 - 1};
-    const std::uint32_t s = slot(cell);
-    for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
-      // Cells may share a slot; each of its patches counts once.
-      if (cells_[p] != cell) continue;
-      found.patches.push_back(patches_[p]);
-      found.centroids.push_back(centroids_[p]);
-    }
-  }
-  return found;
-}
 
 struct Neighbour {
   PatchIndex patch = 0;
@@ -139,11 +48,11 @@ struct Smoother {
     return std::min(reach * static_cast<double>(distance[i]),
                     std::sqrt(most_neighbours / std::numbers::pi * mesh.area[i]));
   }
-  std::vector<Neighbour> neighbours(PatchIndex i, const Candidates& candidates) const;
+  std::vector<Neighbour> neighbours(PatchIndex i, const NearPatches& candidates) const;
 };
 
 // With itself.
-std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const Candidates& candidates) const {
+std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const NearPatches& candidates) const {
   const double r = radius(i);
   const Point& centroid = mesh.centroid[i];
   const Vector& normal = mesh.normal[i];
@@ -282,34 +191,40 @@ std::vector<int> levels_of(const Smoother& smoother) {
   return levels;
 }
 
+// The patches of a slot that are of this level; those of one cell follow each other, and share candidates.
+void smooth_slot(const Smoother& smoother, const PatchCells& cells, std::uint32_t slot,
+                 const std::vector<int>& level_of, int level, const Smoothing& fields) {
+  std::optional<Cell> cell;
+  NearPatches candidates;
+  const auto [first, last] = cells.places_in(slot);
+  for (std::uint32_t place = first; place < last; ++place) {
+    const PatchIndex i = cells.patch(place);
+    if (level_of[i] != level) continue;
+    if (cells.cell(place) != cell) {
+      cell = cells.cell(place);
+      candidates = cells.around(*cell);
+    }
+    const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
+    if (neighbours.size() > 1) smooth_patch(i, neighbours, fields);
+  }
+}
+
 }  // namespace
 
 SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, const std::array<Field, 2>& halves) {
   SmoothedHalves into{halves, (0.5 * (halves[0] - halves[1])).square()};
   const Smoother smoother{mesh, distance};
-  // Patches by their radius, so that cells are as wide as they look, and then by cells, which share candidates.
+  // Patches by their radius, so that cells are as wide as they look.
   const std::vector<int> level_of = levels_of(smoother);
   const std::set<int> levels(level_of.begin(), level_of.end());
   for (const int level : levels) {
     if (level < 0) continue;
-    const Cells cells(mesh, std::ldexp(1.0, level + lowest_level));
+    const PatchCells cells(mesh, std::ldexp(1.0, level + lowest_level));
     parallel_for((cells.slots() + slots_at_once - 1) / slots_at_once, [&](std::size_t task) {
       const auto begin = static_cast<std::uint32_t>(task * slots_at_once);
-      for (std::uint32_t slot = begin; slot < std::min(cells.slots(), begin + slots_at_once); ++slot) {
-        std::optional<Cell> cell;
-        Candidates candidates;
-        const auto [first, last] = cells.places_in(slot);
-        for (std::uint32_t place = first; place < last; ++place) {
-          const PatchIndex i = cells.patch(place);
-          if (level_of[i] != level) continue;
-          if (cells.cell(place) != cell) {
-            cell = cells.cell(place);
-            candidates = cells.around(*cell);
-          }
-          const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
-          if (neighbours.size() > 1) smooth_patch(i, neighbours, {halves, into});
-        }
-      }
+      const std::uint32_t end = std::min(cells.slots(), begin + slots_at_once);
+      for (std::uint32_t slot = begin; slot < end; ++slot)
+        smooth_slot(smoother, cells, slot, level_of, level, {halves, into});
     });
   }
   return into;

@@ -88,7 +88,8 @@ struct Given {
   bool solver = false;
 };
 
-/// The solver's relative error when none is asked for and rows are of so many rays: some sixteenth of what they err.
+/// The solver's relative error when none is asked for and rows are of so many rays: about a tenth of what they
+/// err, docs/models.md.
 inline double default_ray_tolerance(int rays) { return 4e-3 / std::sqrt(rays); }
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.

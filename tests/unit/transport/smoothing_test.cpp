@@ -105,5 +105,29 @@ TEST(Smoothing, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((found(1).variance == found(2).variance).all());
 }
 
+// Bands that are powers of two times one of them, in which the same patches are apart, to the bit; with patches that
+// look around near and far, so that cells of several sizes are used.
+TEST(Smoothing, TreatsAllBandsAlike) {
+  constexpr Eigen::Index bands = 6;
+  const PatchMesh mesh = floor_and_wall();
+  std::vector<float> distance;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) distance.push_back(i % 3 == 0 ? 1.0F : 3.0F);
+  const auto noisy = [&](std::uint32_t seed) {
+    return column(mesh, [&](PatchIndex i) { return 2 + 0.1 * (hash({seed, i}) * 0x1p-32 - 0.5); });
+  };
+  const std::array<Field, 2> one{noisy(1), noisy(2)};
+  const auto in_bands = [&](const Field& field, double base) {
+    Field all(field.rows(), bands);
+    for (Eigen::Index band = 0; band < bands; ++band) all.col(band) = std::pow(base, band) * field.col(0);
+    return all;
+  };
+  const SmoothedHalves alone = smoothed(mesh, distance, one);
+  const SmoothedHalves together = smoothed(mesh, distance, {in_bands(one[0], 2), in_bands(one[1], 2)});
+  for (std::size_t half = 0; half < 2; ++half)
+    EXPECT_TRUE((together.halves[half] == in_bands(alone.halves[half], 2)).all());
+  EXPECT_TRUE((together.variance == in_bands(alone.variance, 4)).all());
+  EXPECT_GT((alone.halves[0] - one[0]).abs().maxCoeff(), 0.01) << "they are smoothed";
+}
+
 }  // namespace
 }  // namespace patchlight::smoothing_test
