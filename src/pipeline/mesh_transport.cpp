@@ -49,12 +49,14 @@ TransportFacts facts_of(const Exchange& exchange) {
 
 // Rows of rays are closed one by one as they are made.
 MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts) {
+  const Field& reflectance = found.light.lit.problem.scattering.reflectance;
+  RayTransport rays = with_pockets(RayTransport(std::move(found.rows.halves)), reflectance.rowwise().maxCoeff());
   MeshTransport transport{.rows = {},
                           .area = found.rows.area,
                           .facts = std::move(facts),
                           .assembly = {},
                           .of_parents = {},
-                          .rays = std::make_unique<RayTransport>(std::move(found.rows.halves)),
+                          .rays = std::make_unique<RayTransport>(std::move(rays)),
                           .light = std::move(found.light)};
   transport.facts.row_sum = transport.rays->apply(Field::Ones(transport.area.size(), 1)).matrix();
   return transport;

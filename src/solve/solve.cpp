@@ -5,11 +5,14 @@
 #include "base/vectors.h"
 #include "solve/iterations.h"
 #include "solve/krylov.h"
+#include "solve/pocket_transport.h"
 #include "solve/relaxation.h"
 #include "solve/scattering.h"
 #include "solve/solved_bands.h"
 #include "solve/southwell.h"
+#include "transport/ray_transport.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -120,6 +123,29 @@ Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem&
   return solution;
 }
 
+// The pockets of a transport, if they are known and may be followed by themselves. Where light starts on closed ones
+// the system may be singular.
+const Pockets* pockets_in(const TransportOperator& transport, const RadiosityProblem& problem) {
+  const auto* const by_rays = dynamic_cast<const RayTransport*>(&transport);
+  if (by_rays == nullptr || by_rays->pockets() == nullptr || !problem.scattering.is_diagonal()) return nullptr;
+  const std::vector<PatchIndex>& closed = by_rays->pockets()->closed;
+  const bool is_lit = std::any_of(closed.begin(), closed.end(),
+                                  [&](PatchIndex patch) { return (problem.exitance.row(patch) > 0).any(); });
+  return is_lit ? nullptr : by_rays->pockets();
+}
+
+// What the patches of pockets send to each other at first is a source where it gets out, as direct irradiance is.
+Solution solved_around(const PocketTransport& transport, RadiosityProblem problem, const SolverOptions& options,
+                       const Observer& observer) {
+  const Field within = transport.within(problem.exitance);
+  if (problem.direct_irradiance.size() == 0) problem.direct_irradiance = Field::Zero(within.rows(), within.cols());
+  problem.direct_irradiance += within;
+  problem.exitance = plus_reflected(std::move(problem.exitance), problem.scattering, within);
+  Solution solution = solution_by(options.solver, Iterations(transport, problem, options, observer), nullptr);
+  solution.irradiance += within;
+  return solution;
+}
+
 }  // namespace
 
 std::vector<Solver> all_solvers() {
@@ -212,18 +238,24 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
 
   // 2. A singular system is said before any iteration. What shoots does not look at the whole transport.
   const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
-  std::string trapped = known ? trapped_light(transport, needed) : std::string();
-  Solution solution = trapped.empty()
-                          ? solution_by(options.solver, Iterations(transport, needed, used, of_needed), rows)
-                          : lamps_alone(transport, needed, std::move(trapped));
+  const Pockets* const pockets = pockets_in(transport, needed);
+  std::string trapped = known && pockets == nullptr ? trapped_light(transport, needed) : std::string();
+  Solution solution;
+  if (!trapped.empty()) {
+    solution = lamps_alone(transport, needed, std::move(trapped));
+  } else if (pockets != nullptr) {
+    solution = solved_around({transport, *pockets, needed.scattering}, needed, used, of_needed);
+  } else {
+    solution = solution_by(options.solver, Iterations(transport, needed, used, of_needed), rows);
+  }
 
   // 3. All bands again, and all of the irradiance.
   for (Field* field :
        {&solution.radiosity, &solution.irradiance, &solution.direct_irradiance, &solution.ambient, &solution.error}) {
     *field = expanded(*field, bands);
   }
-  if (problem.direct_irradiance.size() == 0) return solution;
-  solution.irradiance += problem.direct_irradiance;
+  if (problem.direct_irradiance.size() == 0 && pockets == nullptr) return solution;
+  if (problem.direct_irradiance.size() > 0) solution.irradiance += problem.direct_irradiance;
   solution.direct_irradiance = with_direct(from_lamps(transport, rows, problem.exitance), problem);
   return solution;
 }
