@@ -45,6 +45,11 @@ namespace {
 // A path may go on for ever between surfaces that absorb nothing.
 constexpr double highest_survival = 0.9999;
 
+// After so many bounces luminaires and sun are looked for at one vertex of so many, whose light counts as that of all:
+// between white faces paths take thousands, and each would ask every chain of mirrors.
+constexpr std::uint64_t many_bounces = 32;
+constexpr double asked_of_many = 1.0 / 16;
+
 // A place where light arrives on its way to the receiver.
 struct Vertex {
   Point point;
@@ -118,7 +123,8 @@ struct PathTracer {
   std::size_t rays_of_vertex() const;
   std::vector<Vertex> starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
   Spectrum light_from_lamps(const std::vector<Vertex>& vertices, const Samples& samples) const;
-  Spectrum light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed) const;
+  Spectrum light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed,
+                                 double asked) const;
   Spectrum light_from_outside(const std::vector<Vertex>& vertices, const std::vector<Ray>& rays,
                               const std::vector<std::optional<Hit>>& hits) const;
   std::optional<Vertex> next_vertex(const Hit& hit, const Spectrum& throughput, const PathSeed& path) const;
@@ -169,21 +175,23 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
   return sum;
 }
 
-// Light of luminaires and sun by shadow rays.
+// Light of luminaires and sun by shadow rays from a share of the vertices, `asked`, chosen by chance.
 Spectrum PathTracer::light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples,
-                                           std::uint64_t seed) const {
+                                           std::uint64_t seed, double asked) const {
   Spectrum sum = Spectrum::Zero(bands);
   if (!lights) return sum;
   std::vector<LitPlace> places;
+  std::vector<Spectrum> weights;
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Vertex& vertex = vertices[k];
+    if (asked < 1 && uniform({seed, vertex.path, 10}) >= asked) continue;
+    weights.emplace_back(vertex.throughput / asked);
     places.push_back({{vertex.point, surfaces.at(vertex.polygon, vertex.side).normal, vertex.polygon},
                       uniform({seed, vertex.path, 5}),
                       {samples[k][0], samples[k][1]}});
   }
   const Field found = irradiance_by_lights(*lights, places) + irradiance_in_mirrors(*lights, places);
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    sum += vertices[k].throughput * found.row(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * found.row(static_cast<Eigen::Index>(k));
   return sum;
 }
 
@@ -297,7 +305,7 @@ Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::
     const std::uint32_t seed_here = hash({seed, length});
     const Samples samples = samples_at(vertices, paths, seed_here);
     batch.irradiance += light_from_lamps(vertices, samples);
-    batch.irradiance += light_from_luminaires(vertices, samples, seed_here);
+    batch.irradiance += light_from_luminaires(vertices, samples, seed_here, length > many_bounces ? asked_of_many : 1);
     batch.rays += rays_of_vertex() * vertices.size();
     Step step = scatter(vertices, samples, seed_here);
     batch.irradiance += step.irradiance;

@@ -3,16 +3,19 @@
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
+#include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "unit/output/temporary_folder.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -82,6 +85,31 @@ TEST_F(RayRowFiles, GiveBackEveryBit) {
   // No ray is traced, so that nothing is known of the size of the patches.
   EXPECT_EQ(from_folder.transport.counts.shadow_rays, 0);
   EXPECT_FALSE(from_folder.error_bars);
+}
+
+// A tent of mirrors on the floor. Under it rays meet nothing but what touches the floor, unless mirrors send them on:
+// what lies covered, and has no patch, is the same for rows and for solutions.
+TEST(RayRowFilesOfMirrors, AreOfTheSamePatchesAsASolution) {
+  Scene scene = test_room(0.6);
+  Material mirror = scene.materials[0];
+  mirror.name = "mirror";
+  mirror.reflectance *= 0;
+  mirror.specular_reflectance = Spectrum::Constant(mirror.reflectance.size(), 0.9);
+  scene.materials.push_back(mirror);
+  const auto material = static_cast<MaterialIndex>(scene.materials.size() - 1);
+  const Point ridge(0.7, 0.7, 0.2);
+  const std::array<Point, 4> feet{Point(0.5, 0.5, 0), {0.9, 0.5, 0}, {0.9, 0.9, 0}, {0.5, 0.9, 0}};
+  for (std::size_t k = 0; k < 4; ++k)
+    scene = with_polygon(std::move(scene), {feet[k], feet[(k + 1) % 4], ridge}, material);
+  const RayFormFactors found = find_ray_form_factors(scene, by_rays());
+  Steps with;
+  std::string hash;
+  with.ray_exchange = [&](const PatchMesh& mesh) -> RayExchange {
+    hash = geometry_hash(mesh);
+    throw Cancelled();
+  };
+  EXPECT_THROW(simulate(scene, by_rays(), {}, with), Cancelled);
+  EXPECT_EQ(hash, geometry_hash(found.mesh));
 }
 
 // B is linear in E: a lamp of twice the exitance gives twice the light, to the bit as 2 is a power of two.
