@@ -105,7 +105,9 @@ std::string sums_of(const VerifiedPart& part) {
        << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
        << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string())
        << "; mean difference " << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
-       << " of its standard errors; bars " << percent(part.width, 2) << " % of the light\n";
+       << " of its standard errors; patches off by " << percent(part.error.maxCoeff(), 2)
+       << " % in the root mean square"
+       << "; bars " << percent(part.width, 2) << " % of the light\n";
   return text.str();
 }
 

@@ -25,6 +25,7 @@ Json part_of(const VerifiedPart& part) {
           {"dark", list(part.dark)},
           {"chi_square", list(part.chi_square)},
           {"mean_difference", list(part.mean_difference)},
+          {"error", list(part.error)},
           {"offset", list(part.offset)},
           {"width", part.width}};
 }

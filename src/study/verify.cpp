@@ -100,7 +100,8 @@ Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
 
 VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
                      const FieldView& bars) {
-  VerifiedPart part{.name = space.name, .rows = {}, .dark = {}, .chi_square = {}, .mean_difference = {}, .offset = {}};
+  VerifiedPart part{
+      .name = space.name, .rows = {}, .dark = {}, .chi_square = {}, .mean_difference = {}, .offset = {}, .error = {}};
   for (std::size_t k = 0; k < result.patches.size(); ++k) {
     if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
   }
@@ -115,6 +116,12 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
   const Eigen::ArrayXd difference = sum_over_patches(solved - traced);
   part.mean_difference = ratio(difference, sum_over_patches(traced));
   part.offset = ratio(difference, (sum_over_patches(variance) + sum_over_patches(bar).square()).sqrt());
+
+  // How far patches are off: noise of the paths adds its squares to those of the differences.
+  const Eigen::ArrayXd noise = sum_over_patches(rows_at(result.paths.standard_error, part.rows).square());
+  part.error = ratio((sum_over_patches((solved - traced).square()) - noise).max(0.0),
+                     (sum_over_patches(traced.square()) - noise).max(0.0))
+                   .sqrt();
 
   // How much that would grant.
   const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(space.holds.matrix());

@@ -1,0 +1,172 @@
+#include "solve/pocket_transport.h"
+
+#include "patchlight/solve/solve.h"
+
+#include "base/sampling.h"
+#include "transport/ray_transport.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace patchlight::pocket_transport_test {
+namespace {
+
+// A room of grey patches, a pocket of white ones that a thousandth of their light leaves, and closed white ones.
+constexpr PatchIndex in_room = 180;
+constexpr PatchIndex in_pocket = 12;
+constexpr PatchIndex in_closed = 3;
+constexpr PatchIndex patches = in_room + in_pocket + in_closed;
+constexpr double leak = 1e-3;
+
+using Rows = std::vector<std::vector<RayEntry>>;
+
+RayRows of(const Rows& rows) {
+  RayRows made;
+  made.first_hit.assign(rows.size() + 1, 0);
+  made.hit_weight.assign(rows.size(), 0);
+  made.first_entry = {0};
+  for (const auto& row : rows) {
+    for (const RayEntry& entry : row) made.entries.push_back(entry);
+    made.first_entry.push_back(made.entries.size());
+  }
+  return made;
+}
+
+// Each patch of the room sees sixteen others, and some a patch of the pocket.
+Rows rows_of_building() {
+  Rows rows(patches);
+  constexpr std::uint32_t seen = 16;
+  for (PatchIndex i = 0; i < in_room; ++i) {
+    const bool sees_pocket = i < in_pocket;
+    const double rest = sees_pocket ? 1 - leak : 1;
+    for (std::uint32_t k = 0; k < seen; ++k)
+      rows[i].push_back({hash({i, k}) % in_room, static_cast<float>(rest / seen)});
+    if (sees_pocket) rows[i].push_back({in_room + i, static_cast<float>(leak)});
+  }
+  for (PatchIndex k = 0; k < in_pocket; ++k) {
+    const PatchIndex i = in_room + k;
+    // Along the pocket, to and fro.
+    rows[i].push_back({in_room + (k + 1) % in_pocket, static_cast<float>((1 - leak) / 2)});
+    rows[i].push_back({in_room + (k + in_pocket - 1) % in_pocket, static_cast<float>((1 - leak) / 2)});
+    rows[i].push_back({k, static_cast<float>(leak)});
+  }
+  for (PatchIndex k = 0; k < in_closed; ++k) {
+    const PatchIndex first = in_room + in_pocket;
+    rows[first + k].push_back({first + (k + 1) % in_closed, 0.5F});
+    rows[first + k].push_back({first + (k + 2) % in_closed, 0.5F});
+  }
+  return rows;
+}
+
+RayTransport building() { return RayTransport({of(rows_of_building()), of(rows_of_building())}); }
+
+// Of so many bands; a tenth of the room is lit.
+RadiosityProblem lit(Eigen::Index bands) {
+  RadiosityProblem problem{
+      {Field::Constant(patches, bands, 1)}, Field::Zero(patches, bands), Eigen::VectorXd::LinSpaced(patches, 1, 2)};
+  for (Eigen::Index band = 0; band < bands; ++band) {
+    problem.scattering.reflectance.col(band).head(in_room) = 0.3 + 0.1 * static_cast<double>(band);
+    problem.exitance.col(band).head(in_room / 10) = 1 + 0.2 * static_cast<double>(band * band);
+  }
+  return problem;
+}
+
+RayTransport with_its_pockets(const RadiosityProblem& problem) {
+  return with_pockets(building(), problem.scattering.reflectance.rowwise().maxCoeff());
+}
+
+// B = (I - R F)^-1 E without the closed patches, which light does not get to.
+Field by_elimination(const RayTransport& transport, const RadiosityProblem& problem) {
+  const Eigen::Index reached = in_room + in_pocket;
+  const Eigen::MatrixXd F =
+      transport.apply(Eigen::MatrixXd::Identity(patches, patches).array()).topLeftCorner(reached, reached).matrix();
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(reached, reached);
+  Field B = Field::Zero(patches, problem.exitance.cols());
+  for (Eigen::Index band = 0; band < B.cols(); ++band) {
+    const Eigen::VectorXd rho = problem.scattering.reflectance.col(band).head(reached);
+    const Eigen::VectorXd E = problem.exitance.col(band).head(reached);
+    B.col(band).head(reached) = (I - rho.asDiagonal() * F).partialPivLu().solve(E).array();
+  }
+  return B;
+}
+
+TEST(Pockets, AreThePatchesThatKeepTheirLight) {
+  const RadiosityProblem problem = lit(1);
+  const RayTransport transport = with_its_pockets(problem);
+  ASSERT_NE(transport.pockets(), nullptr);
+  std::vector<PatchIndex> pocket(in_pocket);
+  std::vector<PatchIndex> closed(in_closed);
+  std::iota(pocket.begin(), pocket.end(), in_room);
+  std::iota(closed.begin(), closed.end(), in_room + in_pocket);
+  EXPECT_EQ(transport.pockets()->patches, pocket);
+  EXPECT_EQ(transport.pockets()->closed, closed);
+}
+
+TEST(Pockets, AreNoneOfARoomThatIsWhiteAltogether) {
+  EXPECT_EQ(pockets_of(building(), Eigen::VectorXd::Constant(patches, 0.99)), nullptr);
+  EXPECT_EQ(pockets_of(building(), Eigen::VectorXd::Constant(patches, 0.5)), nullptr);
+}
+
+// Light takes some thousand bounces to get out of the pocket. With these followed apart the bound on every patch is
+// known, and holds, in as many bands as there are.
+TEST(PocketTransport, GivesTheSolutionWithABoundThatHolds) {
+  for (const Eigen::Index bands : {1, 2, 5}) {
+    const RadiosityProblem problem = lit(bands);
+    const RayTransport transport = with_its_pockets(problem);
+    const Field exact = by_elimination(transport, problem);
+    ASSERT_LT(exact.row(in_room).maxCoeff(), exact.maxCoeff()) << "the pocket is lit from the room";
+    ASSERT_GT(exact.row(in_room).minCoeff(), 0.01 * exact.maxCoeff());
+    for (const Solver solver : {Solver::gmres, Solver::bicgstab, Solver::jacobi}) {
+      const SolverOptions options{.solver = solver, .relative_error = 1e-5, .every_band = true};
+      const Solution found = solve(transport, problem, options);
+      ASSERT_TRUE(found.converged) << name_of(solver);
+      ASSERT_EQ(found.error.rows(), exact.rows()) << name_of(solver);
+      const Field off = (found.radiosity - exact).abs();
+      // What is followed in pockets ends by a residual of 1e-8, and light stays for a thousand bounces.
+      EXPECT_LE((off - found.error).maxCoeff(), 1e-5 * exact.maxCoeff()) << name_of(solver);
+      EXPECT_LE(relative_error(exact, found.radiosity, problem), 1e-5 + 1e-5) << name_of(solver);
+      const Field again = problem.exitance + problem.scattering.reflect(found.irradiance);
+      EXPECT_LT((again - found.radiosity).abs().maxCoeff(), 1e-12 * exact.maxCoeff()) << "B = E + R H";
+      EXPECT_TRUE((found.direct_irradiance == transport.apply(problem.exitance)).all()) << "F E";
+    }
+  }
+}
+
+// Without that the bounces hardly fall, and nothing bounds the error.
+TEST(PocketTransport, IsWhatTheBoundRestsOn) {
+  const RadiosityProblem problem = lit(1);
+  EXPECT_EQ(solve(building(), problem, {.solver = Solver::gmres, .relative_error = 1e-5}).error.size(), 0);
+}
+
+// A lamp within the pocket, and light from no patch that arrives there.
+TEST(PocketTransport, TakesWhatStartsInThePocket) {
+  RadiosityProblem problem = lit(1);
+  problem.exitance(in_room + 3, 0) = 0.5;
+  const RayTransport transport = with_its_pockets(problem);
+  const Field exact = by_elimination(transport, problem);
+  const SolverOptions tight{.solver = Solver::gmres, .relative_error = 1e-8};
+  EXPECT_LT(relative_error(exact, solve(transport, problem, tight).radiosity, problem), 1e-5);
+  RadiosityProblem arriving = problem;
+  arriving.direct_irradiance = problem.exitance;
+  arriving.exitance.setZero();
+  problem.exitance = arriving.scattering.reflect(arriving.direct_irradiance);
+  const Field from_nowhere = by_elimination(transport, problem);
+  const Solution found = solve(transport, arriving, tight);
+  EXPECT_LT((found.radiosity - from_nowhere).abs().maxCoeff(), 1e-5 * from_nowhere.maxCoeff());
+  EXPECT_LT((found.irradiance - transport.apply(found.radiosity) - arriving.direct_irradiance).abs().maxCoeff(),
+            1e-5 * from_nowhere.maxCoeff())
+      << "H = F B + H_direct";
+}
+
+TEST(PocketTransport, SaysWhatIsTrappedInClosedOnes) {
+  RadiosityProblem problem = lit(1);
+  problem.exitance(patches - 1, 0) = 1;
+  EXPECT_FALSE(solve(with_its_pockets(problem), problem, {.solver = Solver::gmres}).trapped.empty());
+}
+
+}  // namespace
+}  // namespace patchlight::pocket_transport_test
