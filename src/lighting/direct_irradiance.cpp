@@ -6,11 +6,11 @@
 #include "lighting/sampled_sources.h"
 #include "lighting/shifted_points.h"
 #include "mesh/means_around.h"
+#include "mesh/small_patches.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 namespace patchlight {
@@ -177,10 +177,9 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more) {
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
                                    const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  const double mean_area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0) / static_cast<double>(mesh.size());
-  const auto effort = [&](std::size_t k) {
+  const auto effort = [&, mean = mean_area(mesh)](std::size_t k) {
     constexpr double most = most_doublings;
-    const double doublings = std::clamp(std::log2(mesh.area[k] / mean_area) / 2, -most, most);
+    const double doublings = std::clamp(std::log2(mesh.area[k] / mean) / 2, -most, most);
     return std::ldexp(1.0, static_cast<int>(std::lround(doublings)));
   };
   const Estimator estimator = estimator_for(lighting, options, most_doublings);

@@ -5,6 +5,7 @@
 #include "lighting/receiver.h"
 #include "lighting/receivers.h"
 #include "lighting/shifted_points.h"
+#include "mesh/small_patches.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>
@@ -133,8 +134,9 @@ struct MirrorSampler {
   void add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places, Field& sums) const;
   Spectrum sky_in(std::span<const MirrorRay> rays) const;
   Spectrum of_sky(std::span<const SampledPlace> places, bool is_point) const;
-  std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key) const;
-  Field replicates_at(const Receiver& receiver, std::uint32_t key, std::span<const WantedChain> among) const;
+  std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, std::size_t replicates) const;
+  Field replicates_at(const Receiver& receiver, std::uint32_t key, std::size_t replicates,
+                      std::span<const WantedChain> among) const;
 };
 
 std::vector<WantedChain> MirrorSampler::all_chains() const {
@@ -228,10 +230,11 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
 }
 
 // Those over which no other polygon lies; replicates without such a place are left out of the numbers.
-std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std::uint32_t key) const {
+std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std::uint32_t key,
+                                                   std::size_t replicates) const {
   std::vector<SampledPlace> places;
   Eigen::Index replicate = 0;
-  for (std::uint32_t r = 0; r < points.size(); ++r) {
+  for (std::uint32_t r = 0; r < std::min(points.size(), replicates); ++r) {
     const std::size_t before = places.size();
     for (const auto& sample : shifted(points[r], hash({key, r}))) {
       const SurfacePoint at = receiver.place(sample[0], sample[1]);
@@ -243,11 +246,11 @@ std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std
 }
 
 // One row each, of those with a place over which no other polygon lies.
-Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key,
+Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, std::size_t replicates,
                                    std::span<const WantedChain> among) const {
   const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
   if (chains.empty() && !lighting.sky) return Field::Zero(1, lighting.bands);
-  const std::vector<SampledPlace> places = places_on(receiver, key);
+  const std::vector<SampledPlace> places = places_on(receiver, key, replicates);
   Field found = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
   add_over_chains(chains, places, found);
   const std::span all(places);
@@ -270,11 +273,12 @@ MirroredEstimate estimate_from(const Field& replicates) {
   return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
 }
 
-// `receiver_at` gives the receiver of each number up to `count`.
-template <class ReceiverAt>
+// `receiver_at` and `share_at` give the receiver of each number up to `count`, and which share of the replicates it
+// takes.
+template <class ReceiverAt, class ShareAt>
 DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps, std::size_t count,
-                               const ReceiverAt& receiver_at, const LightingOptions& options, int effort,
-                               const Observer& observer) {
+                               const ReceiverAt& receiver_at, const ShareAt& share_at, const LightingOptions& options,
+                               int effort, const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, effort * options.mirrored_samples)));
   const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
@@ -291,8 +295,9 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
       receivers.push_back(receiver_at(k));
     const std::vector<WantedChain> near = sampler.chains_to(ball_around_all(receivers), chains);
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
-      const Field replicates_of =
-          sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), near);
+      const auto wanted = static_cast<std::size_t>(std::lround(share_at(k) * replicates));
+      const Field replicates_of = sampler.replicates_at(
+          receivers[k - begin], hash({options.seed, k / options.alike, 8}), std::max<std::size_t>(2, wanted), near);
       const MirroredEstimate found = estimate_from(replicates_of);
       direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
       direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
@@ -323,14 +328,19 @@ std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  return in_mirrors_at(lighting, lamps, mesh.size(), patch, options, 1, observer);
+  const auto share = [&, mean = mean_area(mesh)](std::size_t k) {
+    constexpr double least = 0.25;
+    return std::clamp(std::sqrt(mesh.area[k] / mean), least, 1.0);
+  };
+  return in_mirrors_at(lighting, lamps, mesh.size(), patch, share, options, 1, observer);
 }
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
                                      std::span<const SurfacePoint> points, const LightingOptions& options,
                                      const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
-  return in_mirrors_at(lighting, lamps, points.size(), point, options, effort_at_points, observer);
+  const auto all = [](std::size_t) { return 1.0; };
+  return in_mirrors_at(lighting, lamps, points.size(), point, all, options, effort_at_points, observer);
 }
 
 }  // namespace patchlight

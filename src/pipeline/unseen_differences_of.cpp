@@ -1,22 +1,46 @@
 #include "pipeline/unseen_differences_of.h"
 
 #include "base/sampling.h"
+#include "mesh/kept_patches.h"
 #include "mesh/refine.h"
+#include "mesh/small_patches.h"
 #include "pipeline/lit_problem.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace patchlight {
+namespace {
+
+// Light from no patch at quarters of patches, in the needed bands. Of small ones it is the mean over the patch.
+std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
+                                        const QuarterLook& look) {
+  const PatchMesh& mesh = simulation.mesh;
+  const double small = small_area(mesh);
+  std::vector<std::uint8_t> is_small;
+  for (const double area : mesh.area) is_small.insert(is_small.end(), 4, area < small ? 1 : 0);
+  const PatchMesh quarters = without_patches(refine(mesh), is_small);
+  const Field means = reduced(simulation.problem.direct_irradiance, bands);
+  std::array<Field, 2> direct;
+  for (std::size_t half = 0; half < direct.size(); ++half) {
+    const Field found =
+        reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), look.rays), bands);
+    direct[half].resize(4 * means.rows(), means.cols());
+    Eigen::Index next = 0;
+    for (Eigen::Index q = 0; q < direct[half].rows(); ++q)
+      direct[half].row(q) = is_small[static_cast<std::size_t>(q)] != 0 ? means.row(q / 4) : found.row(next++);
+  }
+  return direct;
+}
+
+}  // namespace
 
 UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const InNeededBands& needed,
                                         const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
   QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
-  if (has_point_or_daylight(run.scene)) {
-    const PatchMesh quarters = refine(simulation.mesh);
-    for (std::size_t half = 0; half < look.direct.size(); ++half)
-      look.direct[half] =
-          reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), rays), needed.bands);
-  }
+  if (has_point_or_daylight(run.scene)) look.direct = direct_at_quarters(run, simulation, needed.bands, look);
   const Occluder& occluder = run.tracing->between_patches();
   const SolvedProblem solved = needed.solved();
   UnseenDifferences unseen = unseen_differences({simulation.mesh, occluder, simulation.transport.lost, solved},

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
+#include "mesh/small_patches.h"
 #include "transport/patch_frame.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
@@ -38,6 +39,7 @@ struct HemisphereSampler {
   Sights sights;
   bool ends_at_specular;
   bool sees_backs;
+  double small;  // area in m^2 below which patches are small
 
   std::vector<Seen> look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const;
   std::vector<Ray> hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const;
@@ -144,7 +146,12 @@ Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed
     const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
     if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   }
-  // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid.
+  // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid. Where a
+  //    quarter of them find no part of a small one covered, that is enough.
+  if (sees_backs && mesh.area[patch] < small) {
+    const Shares few = measure_groups(patch, hemisphere_rays(patch, std::max(1, rays / 4), rays_per_point, seed), seed);
+    if (few.covered == 0) return few;
+  }
   return measure_groups(patch, hemisphere_rays(patch, rays, rays_per_point, seed), seed);
 }
 
@@ -178,7 +185,8 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
                              std::uint64_t seed, const Observer& observer) {
   const LostShare& before = known.lost;
   assert(known.place.size() == mesh.size());
-  const HemisphereSampler sampler{mesh, occluder, Sights(mesh, occluder), known.ends_at_specular, known.sees_backs};
+  const HemisphereSampler sampler{
+      mesh, occluder, Sights(mesh, occluder), known.ends_at_specular, known.sees_backs, small_area(mesh)};
 
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
