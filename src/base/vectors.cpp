@@ -61,6 +61,12 @@ double largest(const Eigen::VectorXd& x) { return x.maxCoeff(); }
 
 Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (b != 0).select(a / b, 0.0); }
 
+Field chosen_rows(const FieldView& field, std::span<const PatchIndex> patches) {
+  Field rows(static_cast<Eigen::Index>(patches.size()), field.cols());
+  for (std::size_t k = 0; k < patches.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = field.row(patches[k]);
+  return rows;
+}
+
 Field scaled(const FieldView& field, const Eigen::ArrayXd& factors) { return field.rowwise() * factors.transpose(); }
 
 Field plus_combination(Field field, std::span<const Field> others, const Eigen::ArrayXXd& factors) {

@@ -37,6 +37,9 @@ double largest(const Eigen::VectorXd& x);
 /// step.
 Eigen::ArrayXd quotient(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
 
+/// The rows of some patches, in their order.
+Field chosen_rows(const FieldView& field, std::span<const PatchIndex> patches);
+
 /// A field with each band multiplied by a factor.
 Field scaled(const FieldView& field, const Eigen::ArrayXd& factors);
 

@@ -94,6 +94,13 @@ std::string bars(const std::optional<double>& bar, const Simulation& simulation)
          (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
 }
 
+// How far patches are off in the worst band; nothing where the noise of the paths hides all light.
+std::string off_by(const VerifiedPart& part) {
+  const double error = part.error.maxCoeff();
+  if (!std::isfinite(error)) return {};
+  return "patches off by " + percent(error, 2) + " % in the root mean square, without the noise of the paths; ";
+}
+
 // What the differences of a part come to.
 std::string sums_of(const VerifiedPart& part) {
   const bool all = part.name == "all";
@@ -105,9 +112,7 @@ std::string sums_of(const VerifiedPart& part) {
        << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
        << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string())
        << "; mean difference " << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
-       << " of its standard errors; patches off by " << percent(part.error.maxCoeff(), 2)
-       << " % in the root mean square"
-       << "; bars " << percent(part.width, 2) << " % of the light\n";
+       << " of its standard errors; " << off_by(part) << "bars " << percent(part.width, 2) << " % of the light\n";
   return text.str();
 }
 

@@ -11,8 +11,8 @@
 namespace patchlight {
 
 /// Shadow rays of a patch of mean size; others take a quarter to four times as many, by the square root of their area,
-/// except over mirrors. Powers of two that are at least 4 stratify best. Points take sixteen times as many to a ball
-/// and over mirrors, and four times as many to the sky.
+/// over mirrors no more than as many. Powers of two that are at least 4 stratify best. Points take sixteen times as
+/// many to a ball and over mirrors, and four times as many to the sky.
 struct LightingOptions {
   int lamp_samples = 64;  ///< per luminaire; where they would be more than 16, none to a ball that nothing can hide;
                           ///< at a point those without extent take one

@@ -18,8 +18,8 @@ Eigen::ArrayXd missing(const ConservedFlux& flux, const Field& gathered, const F
   return area_sum(radiosity, flux.seen_area) - area_sum(gathered, area);
 }
 
-std::array<Field, 2> gathered_by_halves(const RayTransport& transport, const Field& radiosity) {
-  return {transport.apply_half(0, radiosity), transport.apply_half(1, radiosity)};
+std::array<Field, 2> gathered_by_halves(const RaysWithPockets& transport, const Field& radiosity) {
+  return {transport.rays().apply_half(0, radiosity), transport.rays().apply_half(1, radiosity)};
 }
 
 Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + halves[1]); }
@@ -31,7 +31,7 @@ Field ConservedFlux::completed(Field gathered, const Field& radiosity, const Eig
   return gathered;
 }
 
-ConservingSolution conserving_flux(const RayTransport& transport, const RadiosityProblem& problem, Solution solution,
+ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer) {
   // 1. What is missing, and where it goes.
   const Eigen::VectorXd& area = problem.area;

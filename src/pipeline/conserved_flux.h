@@ -2,7 +2,7 @@
 
 #include "patchlight/solve/solve.h"
 
-#include "transport/ray_transport.h"
+#include "solve/pockets.h"
 
 #include <Eigen/Core>
 #include <array>
@@ -33,7 +33,7 @@ struct ConservingSolution {
 /// solution, of `shape` reflected, tells what a missing watt changes. What its residual leaves of the second, an
 /// estimate, is added to the error of the first. `row_sum` is s_j. Where one of both does not converge, the solution
 /// stays as it is, and `shape` is 0. \throws Cancelled.
-ConservingSolution conserving_flux(const RayTransport& transport, const RadiosityProblem& problem, Solution solution,
+ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -49,15 +49,18 @@ TransportFacts facts_of(const Exchange& exchange) {
 
 // Rows of rays are closed one by one as they are made.
 MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts) {
-  const Field& reflectance = found.light.lit.problem.scattering.reflectance;
-  RayTransport rays = with_pockets(RayTransport(std::move(found.rows.halves)), reflectance.rowwise().maxCoeff());
-  MeshTransport transport{.rows = {},
-                          .area = found.rows.area,
-                          .facts = std::move(facts),
-                          .assembly = {},
-                          .of_parents = {},
-                          .rays = std::make_unique<RayTransport>(std::move(rays)),
-                          .light = std::move(found.light)};
+  // Between translucent sheets no pockets are followed.
+  const Scattering& scattering = found.light.lit.problem.scattering;
+  Eigen::VectorXd highest = Eigen::VectorXd::Zero(scattering.reflectance.rows());
+  if (scattering.is_diagonal()) highest = scattering.reflectance.rowwise().maxCoeff();
+  MeshTransport transport{
+      .rows = {},
+      .area = found.rows.area,
+      .facts = std::move(facts),
+      .assembly = {},
+      .of_parents = {},
+      .rays = std::make_unique<RaysWithPockets>(RayTransport(std::move(found.rows.halves)), highest),
+      .light = std::move(found.light)};
   transport.facts.row_sum = transport.rays->apply(Field::Ones(transport.area.size(), 1)).matrix();
   return transport;
 }

@@ -5,6 +5,7 @@
 #include "mesh/nested_mesh.h"
 #include "pipeline/ray_light.h"
 #include "pipeline/run.h"
+#include "solve/pockets.h"
 #include "transport/closure.h"
 
 #include <memory>
@@ -27,7 +28,7 @@ struct MeshTransport {
   TransportFacts facts;
   std::optional<Assembly> assembly;               ///< with error bars: exchange areas before closure
   std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed up over parents
-  std::unique_ptr<RayTransport> rays;             ///< with rows of rays, else null
+  std::unique_ptr<RaysWithPockets> rays;          ///< with rows of rays, else null
   std::optional<RayLight> light;                  ///< with them, the light that goes with them
 };
 

@@ -6,6 +6,7 @@
 #include "base/vectors.h"
 #include "form_factor/patch_keys.h"
 #include "mesh/means_around.h"
+#include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
@@ -55,9 +56,9 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
 namespace {
 
 // B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
-ConservingSolution reflected_once(const RayTransport& transport, const RadiosityProblem& problem) {
+ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
   ConservingSolution once;
-  once.gathered = {transport.apply_half(0, problem.exitance), transport.apply_half(1, problem.exitance)};
+  once.gathered = {transport.rays().apply_half(0, problem.exitance), transport.rays().apply_half(1, problem.exitance)};
   Solution& solution = once.solution;
   solution.irradiance = 0.5 * (once.gathered[0] + once.gathered[1]) + problem.direct_irradiance;
   solution.direct_irradiance = solution.irradiance;
@@ -89,8 +90,8 @@ struct SingleVariances {
 // The variance of the flux that all patches reflect of light from other patches, relative to its square, per band. What
 // a patch sends is reflected by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is
 // more than its own error; but for rows only how far it is from the mean counts, as no flux gets lost.
-Eigen::ArrayXd variance_of_level(const RayTransport& transport, const SolvedProblem& solved, const ConservedFlux& flux,
-                                 const SingleVariances& variances) {
+Eigen::ArrayXd variance_of_level(const RaysWithPockets& transport, const SolvedProblem& solved,
+                                 const ConservedFlux& flux, const SingleVariances& variances) {
   const RadiosityProblem& problem = solved.problem;
   const Eigen::VectorXd& area = problem.area;
   // Where no light gets to nothing errs; in there psi might grow without end.
@@ -120,19 +121,21 @@ Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, c
 // not tell the sum: rays over the hemisphere are stratified, so that by their own number alone bars are too wide
 // (tests/property/rays_test.cpp). Where sides without patches are seen it is that of the rays which have looked for
 // these.
-Eigen::ArrayXd variance_of_row_sums(const RayTransport& transport, const Eigen::VectorXd& row_sum,
-                                    const LostShare& lost) {
+Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const PatchMesh& mesh,
+                                    const Eigen::VectorXd& row_sum, const LostShare& lost) {
+  const double small = small_area(mesh);
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(row_sum.size());
   for (Eigen::Index i = 0; i < row_sum.size(); ++i) {
     const double s = row_sum[i];
     const auto row = static_cast<std::size_t>(i);
     double met = 0;
-    for (const RayRows* half : {&transport.rows(0), &transport.rows(1)})
+    for (const RayRows* half : {&transport.rays().rows(0), &transport.rays().rows(1)})
       met += static_cast<double>(half->first_hit[row + 1] - half->first_hit[row] + half->first_entry[row + 1] -
                                  half->first_entry[row]);
     if (!(s > 0 && met > 0)) continue;
     const bool sees_backs = lost.rays_per_patch > 0 && (lost.at_backs[i] > 0 || lost.covered[i] > 0);
-    variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * lost.rays_per_patch) : met);
+    const double to_backs = mesh.area[row] < small ? lost.rays_per_patch / 4.0 : lost.rays_per_patch;
+    variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * to_backs) : met);
   }
   return variance;
 }
@@ -162,8 +165,8 @@ Observer without_iterates(const Observer& observer) {
 
 }  // namespace
 
-RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const TransportFacts& facts, const SolverOptions& options) {
+RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
+                            const RayLight& light, const TransportFacts& facts, const SolverOptions& options) {
   const Eigen::VectorXd& row_sum = facts.row_sum;
   const RadiosityProblem& all = light.lit.problem;
   const RadiosityProblem problem{all.scattering, emitted_in_rows(light), all.area, direct_of(light)};
@@ -180,7 +183,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTran
   if (reflects_twice)
     for (Field& half : gathered) half = flux.completed(std::move(half), sources, all.area);
   const std::array<Field, 2> raw =
-      with_errors_of_row_sums(std::move(gathered), mesh, variance_of_row_sums(transport, row_sum, facts.lost));
+      with_errors_of_row_sums(std::move(gathered), mesh, variance_of_row_sums(transport, mesh, row_sum, facts.lost));
   SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
 
   // 3. What that scatters, and how far it is off where irradiance is not linear.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/exchange_and_light.h"
-#include "transport/ray_transport.h"
+#include "solve/pockets.h"
 
 namespace patchlight {
 
@@ -24,7 +24,7 @@ struct RaySolution {
 /// the error, with that of the row sums, which the halves have in common, the bias of smoothing, and what errors of
 /// single rows do to the level of the light. \throws Cancelled; InputError for solvers that rows of rays
 /// cannot serve.
-RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RayTransport& transport, const RayLight& light,
-                            const TransportFacts& facts, const SolverOptions& options);
+RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
+                            const RayLight& light, const TransportFacts& facts, const SolverOptions& options);
 
 }  // namespace patchlight

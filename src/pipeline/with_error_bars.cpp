@@ -179,7 +179,7 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
 }
 
 // Rows of rays know what they err by themselves; the patches' part is found with rays of their own.
-SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTransport& transport) {
+SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPockets& transport) {
   // Where rows are known no further ray is traced.
   if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
@@ -191,11 +191,11 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RayTranspo
   const UnseenDifferences unseen =
       unseen_differences_of(run, simulation, needed, transport, weight, rays_of_quarters(simulation));
   const auto within_parents = [&] {
-    return expanded(errors_within_parents(result.mesh, transport, needed.solved()), needed.bands);
+    return expanded(errors_within_parents(result.mesh, transport.rays(), needed.solved()), needed.bands);
   };
   const bool has_parents = result.mesh.parents.size() > 0;
   const BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
-                        gap_errors(simulation.mesh, transport, solved)};
+                        gap_errors(simulation.mesh, transport.rays(), solved)};
   simulation.error_bars = {.mesh = (bars.of_light.square() + bars.in_gaps.square()).sqrt(),
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),

@@ -3,34 +3,46 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/transport_operator.h"
 
-#include "transport/pockets.h"
+#include "solve/pockets.h"
 
 #include <Eigen/SparseCore>
 #include <vector>
 
 namespace patchlight {
 
-/// The transport by which light within pockets goes on until it gets out: H = F B outside; of a pocket's patches H =
-/// (I - F_PP R)^-1 F_PO B_O, with P the pockets and O all others, and of closed ones 0. With `within()` added to what
-/// arrives from no patch, B = E + R H has the same solution as with F, in the iterations of a room without pockets.
+/// The transport by which light within pockets P goes on until it gets out, O being all other patches:
+///
+///   H_O = F_OO B_O + F_OP B_P,   H_P = (I - F_PP R)^-1 F_PO B_O.
+///
+/// With irradiance_within() added to what arrives from no patch, B = E + R H has the same solution as with F, in the
+/// iterations of a room without pockets.
 class PocketTransport : public TransportOperator {
  public:
-  /// Both are referred to. R is diagonal and has the bands of all fields; one of a single column, where there are more,
-  /// goes with the highest R of each patch in any band.
-  PocketTransport(const TransportOperator& transport, const Pockets& pockets, const Scattering& scattering);
+  /// Refers to all three but the last. R is diagonal and has the bands of all fields; one of a single column, where
+  /// there are more, goes with the highest R of each patch in any band. `closed_are_dark` says that no light starts on
+  /// closed patches, so that H is 0 there. H_P is within `accuracy` times its highest value of each band, as far as
+  /// rounding lets it, and not finite where what arrives is not.
+  PocketTransport(const TransportOperator& transport, const Pockets& pockets, const Scattering& scattering,
+                  bool closed_are_dark, double accuracy);
 
   PatchIndex size() const override { return transport_.size(); }
   Field apply(const FieldView& radiosity) const override;
   bool is_reciprocal() const override { return false; }
 
   /// The irradiance within pockets by what their own patches send out, (I - F_PP R)^-1 F_PP B_P, W/m^2; elsewhere 0.
-  Field within(const Field& radiosity) const;
+  Field irradiance_within(const FieldView& radiosity) const;
 
  private:
+  Field sent_within(const FieldView& radiosity) const;
   Field followed(const Field& irradiance) const;
+  Eigen::VectorXd followed_in_band(const Eigen::SparseMatrix<double, Eigen::RowMajor>& system,
+                                   const Eigen::VectorXd& irradiance) const;
+  Field with_pockets(Field irradiance, const Field& of_pockets) const;
 
   const TransportOperator& transport_;
   const Pockets& pockets_;
+  bool closed_are_dark_;
+  double accuracy_;
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> systems_;  // I - F_PP R, per band
   Eigen::SparseMatrix<double, Eigen::RowMajor> highest_;               // with the highest R of all bands
 };

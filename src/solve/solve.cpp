@@ -10,7 +10,6 @@
 #include "solve/scattering.h"
 #include "solve/solved_bands.h"
 #include "solve/southwell.h"
-#include "transport/ray_transport.h"
 
 #include <algorithm>
 #include <cassert>
@@ -123,27 +122,54 @@ Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem&
   return solution;
 }
 
-// The pockets of a transport, if they are known and may be followed by themselves. Where light starts on closed ones
-// the system may be singular.
-const Pockets* pockets_in(const TransportOperator& transport, const RadiosityProblem& problem) {
-  const auto* const by_rays = dynamic_cast<const RayTransport*>(&transport);
-  if (by_rays == nullptr || by_rays->pockets() == nullptr || !problem.scattering.is_diagonal()) return nullptr;
-  const std::vector<PatchIndex>& closed = by_rays->pockets()->closed;
-  const bool is_lit = std::any_of(closed.begin(), closed.end(),
-                                  [&](PatchIndex patch) { return (problem.exitance.row(patch) > 0).any(); });
-  return is_lit ? nullptr : by_rays->pockets();
+// The pockets of a transport, if they are known, and light that patches of this R reflect gets out of them in time.
+const Pockets* pockets_in(const TransportOperator& transport, const Scattering& scattering) {
+  const auto* const rays = dynamic_cast<const RaysWithPockets*>(&transport);
+  if (rays == nullptr || rays->pockets() == nullptr || !scattering.is_diagonal()) return nullptr;
+  const Pockets& pockets = *rays->pockets();
+  const Eigen::VectorXd highest = chosen_rows(scattering.reflectance, pockets.patches).rowwise().maxCoeff();
+  return bounces_hold(pockets, highest) ? &pockets : nullptr;
 }
 
-// What the patches of pockets send to each other at first is a source where it gets out, as direct irradiance is.
-Solution solved_around(const PocketTransport& transport, RadiosityProblem problem, const SolverOptions& options,
-                       const Observer& observer) {
-  const Field within = transport.within(problem.exitance);
+// What the patches of pockets send to each other at first arrives at them as direct irradiance does.
+Solution solved_around(const TransportOperator& transport, const Pockets& pockets, bool closed_are_dark,
+                       RadiosityProblem problem, const SolverOptions& options, const Observer& observer) {
+  constexpr double share_of_tolerance = 0.01;
+  constexpr double least = 1e-9;  // of what rounding leaves of light that is reflected thousands of times
+  const double accuracy = std::max(least, share_of_tolerance * tolerance_of(options));
+  const PocketTransport around(transport, pockets, problem.scattering, closed_are_dark, accuracy);
+  const Field within = around.irradiance_within(problem.exitance);
+  const Field by_lamps = transport.apply(problem.exitance);
   if (problem.direct_irradiance.size() == 0) problem.direct_irradiance = Field::Zero(within.rows(), within.cols());
   problem.direct_irradiance += within;
   problem.exitance = plus_reflected(std::move(problem.exitance), problem.scattering, within);
-  Solution solution = solution_by(options.solver, Iterations(transport, problem, options, observer), nullptr);
+  Observer of_all;
+  if (observer) {
+    of_all = [&](const Progress& progress) {
+      if (!progress.irradiance) return observer(progress);
+      Progress all = progress;
+      all.irradiance = [&] { return Field(progress.irradiance() + within); };
+      return observer(all);
+    };
+  }
+  Solution solution = solution_by(options.solver, Iterations(around, problem, options, of_all), nullptr);
   solution.irradiance += within;
+  solution.direct_irradiance = by_lamps;
   return solution;
+}
+
+// A singular system is said before any iteration: it has lamps on patches that no light leaves, all of which are closed
+// pockets where these are known. What shoots does not look at the whole transport.
+Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
+                     const Observer& observer) {
+  const Pockets* const pockets = pockets_in(transport, problem.scattering);
+  const bool closed_are_dark = pockets != nullptr && !(chosen_rows(problem.exitance, pockets->closed) > 0).any();
+  const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
+  std::string trapped = known && !closed_are_dark ? trapped_light(transport, problem) : std::string();
+  if (!trapped.empty()) return lamps_alone(transport, problem, std::move(trapped));
+  if (pockets != nullptr) return solved_around(transport, *pockets, closed_are_dark, problem, options, observer);
+  return solution_by(options.solver, Iterations(transport, problem, options, observer),
+                     rows_of(transport, options.solver));
 }
 
 }  // namespace
@@ -236,26 +262,16 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
   if (options.reference) used.reference = reduced(*options.reference, bands);
   const Observer of_needed = for_all_bands(observer, bands, problem);
 
-  // 2. A singular system is said before any iteration. What shoots does not look at the whole transport.
-  const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
-  const Pockets* const pockets = pockets_in(transport, needed);
-  std::string trapped = known && pockets == nullptr ? trapped_light(transport, needed) : std::string();
-  Solution solution;
-  if (!trapped.empty()) {
-    solution = lamps_alone(transport, needed, std::move(trapped));
-  } else if (pockets != nullptr) {
-    solution = solved_around({transport, *pockets, needed.scattering}, needed, used, of_needed);
-  } else {
-    solution = solution_by(options.solver, Iterations(transport, needed, used, of_needed), rows);
-  }
+  // 2. The solution of these.
+  Solution solution = solution_of(transport, needed, used, of_needed);
 
   // 3. All bands again, and all of the irradiance.
   for (Field* field :
        {&solution.radiosity, &solution.irradiance, &solution.direct_irradiance, &solution.ambient, &solution.error}) {
     *field = expanded(*field, bands);
   }
-  if (problem.direct_irradiance.size() == 0 && pockets == nullptr) return solution;
-  if (problem.direct_irradiance.size() > 0) solution.irradiance += problem.direct_irradiance;
+  if (problem.direct_irradiance.size() == 0) return solution;
+  solution.irradiance += problem.direct_irradiance;
   solution.direct_irradiance = with_direct(from_lamps(transport, rows, problem.exitance), problem);
   return solution;
 }

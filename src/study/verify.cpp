@@ -60,12 +60,6 @@ std::vector<PathReceiver> receivers_of(const PatchMesh& mesh, const std::vector<
   return receivers;
 }
 
-Field rows_of(const FieldView& field, const std::vector<PatchIndex>& patches) {
-  Field rows(static_cast<Eigen::Index>(patches.size()), field.cols());
-  for (std::size_t k = 0; k < patches.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = field.row(patches[k]);
-  return rows;
-}
-
 // The probability that a chi-square of so many degrees of freedom is this or larger.
 double upper_tail(double chi_square, double degrees) {
   if (degrees == 0) return 1;
@@ -159,8 +153,8 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
                       const VerifyOptions& options, const Observer& observer) {
   Verification result;
   result.patches = patches;
-  result.irradiance = rows_of(simulation.solution.irradiance, patches);
-  result.bar = rows_of(bar, patches);
+  result.irradiance = chosen_rows(simulation.solution.irradiance, patches);
+  result.bar = chosen_rows(bar, patches);
   const Scene seen = scene_for_sensors(scene, simulation.plan);
   const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
   result.paths = trace_irradiance(

@@ -40,7 +40,7 @@ struct RayRows {
 struct RayOptions {
   int rays = 64;              ///< mean number of a patch, see ray_counts()
   int toward_bright = 32;     ///< and towards bright patches; a multiple of 32
-  int lost_share_rays = 256;  ///< of patches from which backs are seen, LostShare
+  int lost_share_rays = 256;  ///< of patches from which backs are seen, LostShare; of small ones mostly a quarter
   std::uint64_t seed = 1;
 };
 

@@ -79,9 +79,4 @@ Field RayTransport::apply_half(std::size_t half, const FieldView& radiosity) con
   return irradiance;
 }
 
-RayTransport with_pockets(RayTransport transport, const Eigen::VectorXd& reflectance) {
-  transport.pockets_ = pockets_of(transport, reflectance);
-  return transport;
-}
-
 }  // namespace patchlight

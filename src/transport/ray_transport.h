@@ -2,13 +2,10 @@
 
 #include "patchlight/transport/transport_operator.h"
 
-#include "transport/pockets.h"
 #include "transport/ray_rows.h"
 
 #include <array>
 #include <cstddef>
-#include <memory>
-#include <utility>
 
 namespace patchlight {
 
@@ -27,17 +24,8 @@ class RayTransport : public TransportOperator {
 
   const RayRows& rows(std::size_t half) const { return halves_[half]; }
 
-  /// Where light stays for hundreds of bounces; null where that has not been looked for, or is nowhere.
-  const Pockets* pockets() const { return pockets_.get(); }
-
  private:
-  friend RayTransport with_pockets(RayTransport transport, const Eigen::VectorXd& reflectance);
-
   std::array<RayRows, 2> halves_;
-  std::shared_ptr<const Pockets> pockets_;
 };
-
-/// The same with its pockets, pockets_of().
-RayTransport with_pockets(RayTransport transport, const Eigen::VectorXd& reflectance);
 
 }  // namespace patchlight

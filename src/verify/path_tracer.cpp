@@ -120,7 +120,7 @@ struct PathTracer {
   Eigen::Index bands;
 
   Batch trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
-  std::size_t rays_of_vertex() const;
+  std::uint64_t rays_of(std::size_t count, double asked) const;
   std::vector<Vertex> starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
   Spectrum light_from_lamps(const std::vector<Vertex>& vertices, const Samples& samples) const;
   Spectrum light_from_luminaires(const std::vector<Vertex>& vertices, const Samples& samples, std::uint64_t seed,
@@ -293,9 +293,10 @@ std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& th
   return Vertex{hit.point, hit.polygon, other, path.path, through / (survival - on_this_side)};
 }
 
-std::size_t PathTracer::rays_of_vertex() const {
-  if (!lights) return 2;
-  return std::size_t{2} + (lights->luminaires.empty() ? 0 : 1) + (lights->sun ? 1 : 0);
+// Rays from so many vertices, of a share of which lights are asked.
+std::uint64_t PathTracer::rays_of(std::size_t count, double asked) const {
+  const int lights_each = lights ? (lights->luminaires.empty() ? 0 : 1) + (lights->sun ? 1 : 0) : 0;
+  return 2 * count + static_cast<std::uint64_t>(std::lround(asked * static_cast<double>(count) * lights_each));
 }
 
 Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
@@ -305,8 +306,9 @@ Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::
     const std::uint32_t seed_here = hash({seed, length});
     const Samples samples = samples_at(vertices, paths, seed_here);
     batch.irradiance += light_from_lamps(vertices, samples);
-    batch.irradiance += light_from_luminaires(vertices, samples, seed_here, length > many_bounces ? asked_of_many : 1);
-    batch.rays += rays_of_vertex() * vertices.size();
+    const double asked = length > many_bounces ? asked_of_many : 1;
+    batch.irradiance += light_from_luminaires(vertices, samples, seed_here, asked);
+    batch.rays += rays_of(vertices.size(), asked);
     Step step = scatter(vertices, samples, seed_here);
     batch.irradiance += step.irradiance;
     vertices = std::move(step.vertices);

@@ -53,7 +53,8 @@ struct KnownShares {
   const std::vector<PatchIndex>&
       place;                      ///< of each patch of the new mesh: the same patch in the other one, or no_patch
   bool ends_at_specular = false;  ///< rays end at clear polygons and mirrors as at all others
-  bool sees_backs = false;        ///< all others are known to see backs: no rays find that out first
+  bool sees_backs = false;        ///< all others are known to see backs: no rays find that out first; and small ones,
+                                  ///< small_area(), take a quarter of the rays where these find nothing covered
 };
 
 /// The same bits, with as many rays, but without tracing those of patches that are known.

@@ -28,7 +28,9 @@ RayRows half_of_rows(double off) {
   return rows;
 }
 
-RayTransport two_halves() { return RayTransport({half_of_rows(0.1), half_of_rows(-0.1)}); }
+RaysWithPockets two_halves() {
+  return {RayTransport({half_of_rows(0.1), half_of_rows(-0.1)}), Eigen::VectorXd::Constant(3, 0.8)};
+}
 
 const Eigen::VectorXd area = Eigen::Vector3d(1, 1.5, 2);
 
@@ -38,19 +40,19 @@ RadiosityProblem lit(double reflectance) {
   return {{Field::Constant(3, 2, reflectance)}, exitance, area};
 }
 
-Solution solved(const RayTransport& rows, const RadiosityProblem& problem) {
+Solution solved(const RaysWithPockets& rows, const RadiosityProblem& problem) {
   return solve(rows, problem, {.solver = Solver::gmres, .relative_error = 1e-12});
 }
 
 // sum_i A_i (F B + g d(B))_i = sum_j A_j s_j B_j by construction, and B solves B = E + R (F B + g d(B)): to the 1 % of
 // what is added that the second solution may leave.
 TEST(ConservedFlux, IsThatOfTheSolution) {
-  const RayTransport rows = two_halves();
+  const RaysWithPockets rows = two_halves();
   const RadiosityProblem problem = lit(0.8);
   const Solution plain = solved(rows, problem);
   const auto [solution, flux, gathered] = conserving_flux(rows, problem, plain, row_sum);
   for (std::size_t half = 0; half < 2; ++half) {
-    const Field by_half = rows.apply_half(half, solution.radiosity);
+    const Field by_half = rows.rays().apply_half(half, solution.radiosity);
     EXPECT_LT((gathered[half] - by_half).abs().maxCoeff(), 1e-12 * by_half.maxCoeff()) << "rounding";
   }
   const Field of_all = 0.5 * (gathered[0] + gathered[1]);
@@ -65,7 +67,7 @@ TEST(ConservedFlux, IsThatOfTheSolution) {
 }
 
 TEST(ConservedFlux, LeavesWhatHasNotConverged) {
-  const RayTransport rows = two_halves();
+  const RaysWithPockets rows = two_halves();
   const RadiosityProblem problem = lit(0.8);
   Solution plain = solved(rows, problem);
   plain.converged = false;

@@ -2,12 +2,14 @@
 
 #include "patchlight/solve/solve.h"
 
+#include "base/parallel.h"
 #include "base/sampling.h"
-#include "transport/ray_transport.h"
+#include "solve/pockets.h"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -70,17 +72,19 @@ RadiosityProblem lit(Eigen::Index bands) {
       {Field::Constant(patches, bands, 1)}, Field::Zero(patches, bands), Eigen::VectorXd::LinSpaced(patches, 1, 2)};
   for (Eigen::Index band = 0; band < bands; ++band) {
     problem.scattering.reflectance.col(band).head(in_room) = 0.3 + 0.1 * static_cast<double>(band);
+    // White in the first band alone.
+    problem.scattering.reflectance.col(band).segment(in_room, in_pocket) = 1 / (1.0 + static_cast<double>(band));
     problem.exitance.col(band).head(in_room / 10) = 1 + 0.2 * static_cast<double>(band * band);
   }
   return problem;
 }
 
-RayTransport with_its_pockets(const RadiosityProblem& problem) {
-  return with_pockets(building(), problem.scattering.reflectance.rowwise().maxCoeff());
+RaysWithPockets with_its_pockets(const RadiosityProblem& problem) {
+  return {building(), problem.scattering.reflectance.rowwise().maxCoeff()};
 }
 
 // B = (I - R F)^-1 E without the closed patches, which light does not get to.
-Field by_elimination(const RayTransport& transport, const RadiosityProblem& problem) {
+Field by_elimination(const TransportOperator& transport, const RadiosityProblem& problem) {
   const Eigen::Index reached = in_room + in_pocket;
   const Eigen::MatrixXd F =
       transport.apply(Eigen::MatrixXd::Identity(patches, patches).array()).topLeftCorner(reached, reached).matrix();
@@ -96,7 +100,7 @@ Field by_elimination(const RayTransport& transport, const RadiosityProblem& prob
 
 TEST(Pockets, AreThePatchesThatKeepTheirLight) {
   const RadiosityProblem problem = lit(1);
-  const RayTransport transport = with_its_pockets(problem);
+  const RaysWithPockets transport = with_its_pockets(problem);
   ASSERT_NE(transport.pockets(), nullptr);
   std::vector<PatchIndex> pocket(in_pocket);
   std::vector<PatchIndex> closed(in_closed);
@@ -112,26 +116,31 @@ TEST(Pockets, AreNoneOfARoomThatIsWhiteAltogether) {
 }
 
 // Light takes some thousand bounces to get out of the pocket. With these followed apart the bound on every patch is
-// known, and holds, in as many bands as there are.
+// known, and holds, in as many bands as there are; for a loose solution it is not far off.
 TEST(PocketTransport, GivesTheSolutionWithABoundThatHolds) {
   for (const Eigen::Index bands : {1, 2, 5}) {
     const RadiosityProblem problem = lit(bands);
-    const RayTransport transport = with_its_pockets(problem);
+    const RaysWithPockets transport = with_its_pockets(problem);
     const Field exact = by_elimination(transport, problem);
-    ASSERT_LT(exact.row(in_room).maxCoeff(), exact.maxCoeff()) << "the pocket is lit from the room";
-    ASSERT_GT(exact.row(in_room).minCoeff(), 0.01 * exact.maxCoeff());
+    ASSERT_GT(exact(in_room, 0), 0.01 * exact.maxCoeff()) << "the pocket is lit from the room";
     for (const Solver solver : {Solver::gmres, Solver::bicgstab, Solver::jacobi}) {
-      const SolverOptions options{.solver = solver, .relative_error = 1e-5, .every_band = true};
-      const Solution found = solve(transport, problem, options);
-      ASSERT_TRUE(found.converged) << name_of(solver);
-      ASSERT_EQ(found.error.rows(), exact.rows()) << name_of(solver);
-      const Field off = (found.radiosity - exact).abs();
-      // What is followed in pockets ends by a residual of 1e-8, and light stays for a thousand bounces.
-      EXPECT_LE((off - found.error).maxCoeff(), 1e-5 * exact.maxCoeff()) << name_of(solver);
-      EXPECT_LE(relative_error(exact, found.radiosity, problem), 1e-5 + 1e-5) << name_of(solver);
-      const Field again = problem.exitance + problem.scattering.reflect(found.irradiance);
-      EXPECT_LT((again - found.radiosity).abs().maxCoeff(), 1e-12 * exact.maxCoeff()) << "B = E + R H";
-      EXPECT_TRUE((found.direct_irradiance == transport.apply(problem.exitance)).all()) << "F E";
+      for (const double tolerance : {1e-2, 1e-5}) {
+        const SolverOptions options{.solver = solver, .relative_error = tolerance, .every_band = true};
+        const Solution found = solve(transport, problem, options);
+        ASSERT_TRUE(found.converged) << name_of(solver);
+        ASSERT_EQ(found.error.rows(), exact.rows()) << name_of(solver);
+        const Field off = (found.radiosity - exact).abs();
+        // What is followed in pockets is so to a hundredth of the tolerance.
+        const double followed = 0.01 * tolerance * exact.maxCoeff();
+        EXPECT_LE((off - found.error).maxCoeff(), followed) << name_of(solver);
+        EXPECT_LE(found.error.maxCoeff(), tolerance * 30 * exact.maxCoeff()) << name_of(solver);
+        EXPECT_LE(relative_error(exact, found.radiosity, problem), 1.01 * tolerance) << name_of(solver);
+        const Field again = problem.exitance + problem.scattering.reflect(found.irradiance);
+        EXPECT_LT((again - found.radiosity).abs().maxCoeff(), 1e-12 * exact.maxCoeff()) << "B = E + R H";
+        EXPECT_LT((found.direct_irradiance - transport.apply(problem.exitance)).abs().maxCoeff(),
+                  1e-12 * exact.maxCoeff())
+            << "F E";
+      }
     }
   }
 }
@@ -146,7 +155,7 @@ TEST(PocketTransport, IsWhatTheBoundRestsOn) {
 TEST(PocketTransport, TakesWhatStartsInThePocket) {
   RadiosityProblem problem = lit(1);
   problem.exitance(in_room + 3, 0) = 0.5;
-  const RayTransport transport = with_its_pockets(problem);
+  const RaysWithPockets transport = with_its_pockets(problem);
   const Field exact = by_elimination(transport, problem);
   const SolverOptions tight{.solver = Solver::gmres, .relative_error = 1e-8};
   EXPECT_LT(relative_error(exact, solve(transport, problem, tight).radiosity, problem), 1e-5);
@@ -162,10 +171,68 @@ TEST(PocketTransport, TakesWhatStartsInThePocket) {
       << "H = F B + H_direct";
 }
 
+// Light on closed patches is trapped where these reflect all of it; else other pockets are followed all the same.
 TEST(PocketTransport, SaysWhatIsTrappedInClosedOnes) {
   RadiosityProblem problem = lit(1);
   problem.exitance(patches - 1, 0) = 1;
   EXPECT_FALSE(solve(with_its_pockets(problem), problem, {.solver = Solver::gmres}).trapped.empty());
+  RadiosityProblem absorbing = problem;
+  absorbing.scattering.reflectance.bottomRows(in_closed) = 0.5;
+  const Solution found = solve(with_its_pockets(problem), absorbing, {.solver = Solver::gmres, .relative_error = 1e-6});
+  EXPECT_TRUE(found.trapped.empty());
+  EXPECT_TRUE(found.converged);
+  // 1 + rho/2 + ... of three patches that see the two others each.
+  const double rho = 0.5;
+  const double once = 1 / (1 - rho * rho / 2 / (1 - rho / 2));
+  EXPECT_NEAR(found.radiosity(patches - 1, 0), once, 1e-5);
+  EXPECT_EQ(found.error.rows(), found.radiosity.rows()) << "bounds are known";
+}
+
+// A building without its pocket.
+TEST(PocketTransport, TakesClosedOnesAlone) {
+  Rows rows = rows_of_building();
+  for (PatchIndex i = 0; i < in_room + in_pocket; ++i) rows[i] = {{(i + 7) % in_room, 1}};
+  RadiosityProblem problem = lit(1);
+  const RaysWithPockets transport(RayTransport({of(rows), of(rows)}), problem.scattering.reflectance.col(0).matrix());
+  ASSERT_NE(transport.pockets(), nullptr);
+  EXPECT_TRUE(transport.pockets()->patches.empty());
+  EXPECT_EQ(transport.pockets()->closed.size(), in_closed);
+  const Solution found = solve(transport, problem, {.solver = Solver::gmres, .relative_error = 1e-6});
+  EXPECT_TRUE(found.converged);
+  EXPECT_TRUE(found.radiosity.isFinite().all());
+  EXPECT_EQ(found.radiosity.bottomRows(in_closed).maxCoeff(), 0);
+}
+
+TEST(PocketTransport, HandsOnWhatIsNoNumber) {
+  const RadiosityProblem problem = lit(1);
+  const RaysWithPockets transport = with_its_pockets(problem);
+  const PocketTransport around(transport, *transport.pockets(), problem.scattering, true, 1e-6);
+  Field radiosity = Field::Ones(patches, 1);
+  radiosity(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(around.apply(radiosity)(in_room, 0)));
+}
+
+// What an observer gets is H of the iterate, in the pockets as elsewhere.
+TEST(PocketTransport, TellsObserversAllLight) {
+  RadiosityProblem problem = lit(1);
+  problem.exitance(in_room + 3, 0) = 0.5;
+  Field last;
+  const Observer observer = [&](const Progress& progress) {
+    if (progress.irradiance) last = progress.irradiance();
+    return true;
+  };
+  const Solution found =
+      solve(with_its_pockets(problem), problem, {.solver = Solver::gmres, .relative_error = 1e-8}, observer);
+  EXPECT_LT((last - found.irradiance).topRows(in_room + in_pocket).abs().maxCoeff(), 1e-6);
+}
+
+TEST(PocketTransport, HasTheSameBitsOnAnyNumberOfThreads) {
+  const RadiosityProblem problem = lit(3);
+  const auto radiosity_on = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return solve(with_its_pockets(problem), problem, {.solver = Solver::gmres, .every_band = true}).radiosity;
+  };
+  EXPECT_TRUE((radiosity_on(1) == radiosity_on(2)).all());
 }
 
 }  // namespace
