@@ -60,8 +60,10 @@ std::string errors(const Report& report) {
   std::string text = "error of the patches' means" + on + " about " + parts(step);
   for (const auto& [space, part] : report.spaces) {
     if (step.inside && space == "inside") continue;
-    text += "\n  " + space + ", " + std::to_string(part.patches) +
-            " patches, of the light that is reflected there: " + parts(part);
+    const bool is_dark = part.mesh == 0 && part.form_factor == 0 && part.solver == 0 && part.display == 0;
+    text += "\n  " + space + ", " + std::to_string(part.patches) + " patches, " +
+            (is_dark ? "where no light is: none of the lamps, the sun or the sky gets there"
+                     : "of the light that is reflected there: " + parts(part));
   }
   return text;
 }

@@ -94,11 +94,18 @@ std::string bars(const std::optional<double>& bar, const Simulation& simulation)
          (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
 }
 
-// How far patches are off in the worst band; nothing where the noise of the paths hides all light.
-std::string off_by(const VerifiedPart& part) {
-  const double error = part.error.maxCoeff();
-  if (!std::isfinite(error)) return {};
-  return "patches off by " + percent(error, 2) + " % in the root mean square, without the noise of the paths; ";
+// How far a patch is off, in the band in which that is most. Nothing where the paths have met next to no light.
+std::string typical_error(const VerifiedPart& part) {
+  Eigen::Index band = 0;
+  const double error = part.error.maxCoeff(&band);
+  const double noise = part.noise[band];
+  if (!std::isfinite(error) || !std::isfinite(noise)) return {};
+  // Twice what the square is off by chance.
+  const double told = 2 * noise * noise * std::sqrt(2 / static_cast<double>(part.rows.size()));
+  const bool is_hidden = error * error < told;
+  return "typical error of a patch " +
+         (is_hidden ? "hidden by the noise of the paths, " + percent(noise, 2) + " % (more --paths tell); "
+                    : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out; ");
 }
 
 // What the differences of a part come to.
@@ -112,7 +119,8 @@ std::string sums_of(const VerifiedPart& part) {
        << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
        << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string())
        << "; mean difference " << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
-       << " of its standard errors; " << off_by(part) << "bars " << percent(part.width, 2) << " % of the light\n";
+       << " of its standard errors; " << typical_error(part) << "bars " << percent(part.width, 2)
+       << " % of the light\n";
   return text.str();
 }
 

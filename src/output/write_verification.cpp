@@ -26,6 +26,7 @@ Json part_of(const VerifiedPart& part) {
           {"chi_square", list(part.chi_square)},
           {"mean_difference", list(part.mean_difference)},
           {"error", list(part.error)},
+          {"noise", list(part.noise)},
           {"offset", list(part.offset)},
           {"width", part.width}};
 }

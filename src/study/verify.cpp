@@ -94,8 +94,14 @@ Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
 
 VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
                      const FieldView& bars) {
-  VerifiedPart part{
-      .name = space.name, .rows = {}, .dark = {}, .chi_square = {}, .mean_difference = {}, .offset = {}, .error = {}};
+  VerifiedPart part{.name = space.name,
+                    .rows = {},
+                    .dark = {},
+                    .chi_square = {},
+                    .mean_difference = {},
+                    .offset = {},
+                    .error = {},
+                    .noise = {}};
   for (std::size_t k = 0; k < result.patches.size(); ++k) {
     if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
   }
@@ -113,9 +119,9 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
 
   // How far patches are off: noise of the paths adds its squares to those of the differences.
   const Eigen::ArrayXd noise = sum_over_patches(rows_at(result.paths.standard_error, part.rows).square());
-  part.error = ratio((sum_over_patches((solved - traced).square()) - noise).max(0.0),
-                     (sum_over_patches(traced.square()) - noise).max(0.0))
-                   .sqrt();
+  const Eigen::ArrayXd light = (sum_over_patches(traced.square()) - noise).max(0.0);
+  part.error = ratio((sum_over_patches((solved - traced).square()) - noise).max(0.0), light).sqrt();
+  part.noise = ratio(noise, light).sqrt();
 
   // How much that would grant.
   const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(space.holds.matrix());

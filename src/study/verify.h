@@ -53,8 +53,10 @@ struct VerifiedPart {
   Eigen::ArrayXd mean_difference;  ///< sum of what is solved over the sum of what is traced, less 1
   Eigen::ArrayXd offset;           ///< the difference of both sums over its standard error: sigma_path^2 31/29 in
                                    ///< quadrature, and the bars as if all were of one sign
-  Eigen::ArrayXd error;  ///< root of the mean square difference over that of the traced irradiance, the squares of
-                         ///< sigma_path taken out of both: how far off patches are, whatever the noise of the paths
+  Eigen::ArrayXd error;  ///< typical error of a patch: the root of the mean square difference over that of the traced
+                         ///< irradiance, the squares of sigma_path taken out of both
+  Eigen::ArrayXd noise;  ///< root mean square of sigma_path, in the same units: by chance alone the square of `error`
+                         ///< is off by that of this times sqrt(2 / patches)
   double width = 0;  ///< bars as a share of the light, worst band: ||bar|| / ||H|| of the checked patches, traced, or
                      ///< of all patches of the part by area, solved, or the noise of the sum, whichever is largest
 };

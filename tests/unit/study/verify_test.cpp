@@ -135,6 +135,21 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   EXPECT_LT((ratio - std::sqrt(31.0 / 29)).abs().maxCoeff(), 1e-3);
 }
 
+// An irradiance that is a quarter too high everywhere is off by a quarter of what paths find; besides that by the
+// solution's own error, some 1 %, and by what chance leaves of the noise.
+TEST(Verify, TellsTheTypicalErrorOfAPatch) {
+  const Scene scene = model("cornell_box.obj");
+  Simulation simulation = simulate(scene, request_for(1000, Sides::front));
+  simulation.solution.irradiance *= 1.25;
+  const Field bar = Field::Zero(simulation.solution.irradiance.rows(), simulation.solution.irradiance.cols());
+  const Verification verification = verify(scene, simulation, bar, {.paths = 8192, .checked = 64});
+  const VerifiedPart& part = verification.parts.front();
+  const Eigen::ArrayXd by_chance = 3 * part.noise.square() * std::sqrt(2.0 / 64) / 0.25;
+  EXPECT_LT(((part.error - 0.25).abs() - by_chance).maxCoeff(), 0.03);
+  EXPECT_GT(part.noise.minCoeff(), 0.001);
+  EXPECT_LT(part.noise.maxCoeff(), 0.05);
+}
+
 // Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of four times
 // their area that looks away from all light: its patches are 0 to both, and do not make the others' differences likely.
 TEST(Verify, PatchesThatAreDarkInBothGrantNothing) {
