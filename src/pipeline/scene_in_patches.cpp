@@ -3,6 +3,7 @@
 #include "pipeline/first_mesh.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
+#include "plan/planned_scene.h"
 
 #include <utility>
 

@@ -99,7 +99,7 @@ class KnownFactors {
   template <typename Matrix>
   explicit KnownFactors(const Matrix& /*matrix*/) {}
   template <typename Matrix>
-  KnownFactors& analyzePattern(const Matrix& /*matrix*/) {
+  KnownFactors& analyzePattern(const Matrix& /*matrix*/) {  // NOLINT(readability-identifier-naming): Eigen's
     return *this;
   }
   template <typename Matrix>
