@@ -15,24 +15,25 @@ namespace patchlight {
 namespace {
 
 // Light from no patch at quarters of patches, in the needed bands. What counts is how it differs within a patch: of
-// small ones that is left out, and it is 0.
+// those below a quarter of a small one that is left out, and it is 0. (Of all small ones, by daylight more would be
+// missing: frames and sills of windows are small.)
 std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
                                         const QuarterLook& look) {
   const PatchMesh& mesh = simulation.mesh;
-  const double small = small_area(mesh);
-  std::vector<std::uint8_t> is_small;
-  for (const double area : mesh.area) is_small.insert(is_small.end(), 4, area < small ? 1 : 0);
+  const double least_area = small_area(mesh) / 4;
+  std::vector<std::uint8_t> is_left_out;
+  for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
   PatchMesh all = refine(mesh);
   all.middles.clear();  // which belong to edges, of which light knows nothing
-  const PatchMesh quarters = without_patches(all, is_small);
+  const PatchMesh quarters = without_patches(all, is_left_out);
   std::array<Field, 2> direct;
   for (std::size_t half = 0; half < direct.size(); ++half) {
     const Field found =
         reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), look.rays), bands);
-    direct[half] = Field::Zero(static_cast<Eigen::Index>(is_small.size()), found.cols());
+    direct[half] = Field::Zero(static_cast<Eigen::Index>(is_left_out.size()), found.cols());
     Eigen::Index next = 0;
-    for (std::size_t q = 0; q < is_small.size(); ++q)
-      if (is_small[q] == 0) direct[half].row(static_cast<Eigen::Index>(q)) = found.row(next++);
+    for (std::size_t q = 0; q < is_left_out.size(); ++q)
+      if (is_left_out[q] == 0) direct[half].row(static_cast<Eigen::Index>(q)) = found.row(next++);
   }
   return direct;
 }
