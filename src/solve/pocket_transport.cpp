@@ -29,15 +29,15 @@ Field PocketTransport::sent_within(const FieldView& radiosity) const {
 // and twice the bounces are such a one.
 Eigen::VectorXd PocketTransport::followed_in_band(const Eigen::SparseMatrix<double, Eigen::RowMajor>& system,
                                                   const Eigen::VectorXd& irradiance) const {
-  constexpr double rounding = 1e-15;
+  constexpr int most_tries = 2;
   const double highest_bound = 2 * pockets_.bounces.maxCoeff();  // of the error, where max |r| is 1
   double tolerance = accuracy_ / highest_bound;
-  for (;;) {
+  for (int tries = 1;; ++tries) {
     Eigen::VectorXd found = solution_within(pockets_, system, irradiance, tolerance);
     const double residual = (irradiance - system * found).cwiseAbs().maxCoeff();
     // From a right side that is not finite zeros are found.
     if (!std::isfinite(residual)) return Eigen::VectorXd::Constant(irradiance.size(), residual);
-    if (residual * highest_bound <= accuracy_ * found.cwiseAbs().maxCoeff() || tolerance < rounding) return found;
+    if (residual * highest_bound <= accuracy_ * found.cwiseAbs().maxCoeff() || tries == most_tries) return found;
     tolerance /= 10;
   }
 }

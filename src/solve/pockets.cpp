@@ -140,7 +140,10 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
   constexpr double loosely = 1e-6;
   pockets->bounces = solution_within(*pockets, system, Eigen::VectorXd::Ones(system.rows()), loosely);
   // Where they are not known to a factor of two, nothing tells how far off what is followed is.
-  return bounces_hold(*pockets, reflected) ? pockets : nullptr;
+  // Where they are too many, rounding would leave too much of what is followed.
+  constexpr double most_bounces = 1e5;
+  const bool is_in_time = bounces_hold(*pockets, reflected) && pockets->bounces.maxCoeff() <= most_bounces;
+  return is_in_time ? pockets : nullptr;
 }
 
 bool bounces_hold(const Pockets& pockets, const Eigen::VectorXd& reflectance) {
@@ -156,7 +159,7 @@ Rows system_within(const Pockets& pockets, const Eigen::VectorXd& reflectance) {
 
 Eigen::VectorXd solution_within(const Pockets& pockets, const Rows& system, const Eigen::VectorXd& right,
                                 double tolerance) {
-  constexpr int most_iterations = 1000;
+  constexpr int most_iterations = 200;
   Eigen::BiCGSTAB<Rows, KnownFactors> solver;
   solver.preconditioner().set(pockets.nearly_solved);
   solver.setTolerance(tolerance);

@@ -37,8 +37,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> system_within(const Pockets& pocket
 /// (I - F R) bounces >= 1/2. It is for reflectances that are no higher than those the pockets were looked for with.
 bool bounces_hold(const Pockets& pockets, const Eigen::VectorXd& reflectance);
 
-/// x of such a system, by BiCGSTAB until ||r||_2 is below `tolerance` times ||right||_2, or a thousand iterations are
-/// done.
+/// x of such a system, by BiCGSTAB until ||r||_2 is below `tolerance` times ||right||_2, or 200 iterations are done.
 Eigen::VectorXd solution_within(const Pockets& pockets, const Eigen::SparseMatrix<double, Eigen::RowMajor>& system,
                                 const Eigen::VectorXd& right, double tolerance);
 
