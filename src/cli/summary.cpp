@@ -62,7 +62,7 @@ std::string errors(const Report& report) {
     if (step.inside && space == "inside") continue;
     const bool is_dark = part.mesh == 0 && part.form_factor == 0 && part.solver == 0 && part.display == 0;
     text += "\n  " + space + ", " + std::to_string(part.patches) + " patches, " +
-            (is_dark ? "where no light is: none of the lamps, the sun or the sky gets there"
+            (is_dark ? "which reflect no light: none gets there, or all of it is absorbed"
                      : "of the light that is reflected there: " + parts(part));
   }
   return text;

@@ -94,14 +94,8 @@ Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
 
 VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
                      const FieldView& bars) {
-  VerifiedPart part{.name = space.name,
-                    .rows = {},
-                    .dark = {},
-                    .chi_square = {},
-                    .mean_difference = {},
-                    .offset = {},
-                    .error = {},
-                    .noise = {}};
+  VerifiedPart part;
+  part.name = space.name;
   for (std::size_t k = 0; k < result.patches.size(); ++k) {
     if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
   }
