@@ -5,7 +5,8 @@
 
 #include "solve/pockets.h"
 
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 namespace patchlight {
@@ -33,18 +34,18 @@ class PocketTransport : public TransportOperator {
   Field irradiance_within(const FieldView& radiosity) const;
 
  private:
-  Field sent_within(const FieldView& radiosity) const;
-  Field followed(const Field& irradiance) const;
-  Eigen::VectorXd followed_in_band(const Eigen::SparseMatrix<double, Eigen::RowMajor>& system,
+  using Arriving = std::function<Eigen::VectorXd(const Pocket& pocket, Eigen::Index band)>;
+
+  Field followed(const Arriving& arriving, Field irradiance) const;
+  Eigen::VectorXd followed_in_band(const Pocket& pocket, const PocketSystem& system,
                                    const Eigen::VectorXd& irradiance) const;
-  Field with_pockets(Field irradiance, const Field& of_pockets) const;
 
   const TransportOperator& transport_;
   const Pockets& pockets_;
   bool closed_are_dark_;
   double accuracy_;
-  std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> systems_;  // I - F_PP R, per band
-  Eigen::SparseMatrix<double, Eigen::RowMajor> highest_;               // with the highest R of all bands
+  // Per pocket I - F_PP R of each band, and at last that of the highest R of all bands.
+  std::vector<std::vector<PocketSystem>> systems_;
 };
 
 }  // namespace patchlight

@@ -24,6 +24,8 @@ constexpr double least_loss = 1e-6;
 // Of the incomplete factors: what is dropped, relative to its row, and their size, relative to the matrix.
 constexpr double dropped_share = 0.01;
 constexpr int size_of_factors = 2;
+// A pocket of fewer patches is solved by elimination: however often light is reflected there, only rounding is left.
+constexpr Eigen::Index few_patches = 512;
 
 // Those of some patches that keep the share.
 std::vector<PatchIndex> keeping_enough(const std::vector<PatchIndex>& patches, const Eigen::VectorXd& share) {
@@ -92,6 +94,55 @@ Eigen::ArrayXd losing_light(const Rows& among, const Eigen::VectorXd& reflectanc
   return loses.array();
 }
 
+// The numbers of those of some patches that see each other, directly or by way of others, for each such group; without
+// those that lose no light.
+std::vector<std::vector<std::size_t>> groups_of(const Rows& among, const Eigen::ArrayXd& loses) {
+  std::vector<std::size_t> first(static_cast<std::size_t>(loses.size()));
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  const auto first_of = [&first](std::size_t k) {
+    while (first[k] != k) k = first[k] = first[first[k]];
+    return k;
+  };
+  const auto loses_light = [&loses](std::size_t k) { return loses[static_cast<Eigen::Index>(k)] > 0; };
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (!loses_light(k)) continue;
+    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(k)); entry; ++entry) {
+      const auto seen = static_cast<std::size_t>(entry.col());
+      if (!loses_light(seen)) continue;
+      const auto [low, high] = std::minmax({first_of(k), first_of(seen)});
+      first[high] = low;
+    }
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<std::size_t> number(first.size());
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (!loses_light(k)) continue;
+    const std::size_t at = first_of(k);
+    if (at == k) {
+      number[k] = groups.size();
+      groups.emplace_back();
+    }
+    groups[number[at]].push_back(k);
+  }
+  return groups;
+}
+
+// The rows and columns of these numbers.
+Rows part_of(const Rows& among, const std::vector<std::size_t>& numbers) {
+  constexpr int none = -1;
+  std::vector<int> number(static_cast<std::size_t>(among.rows()), none);
+  for (std::size_t k = 0; k < numbers.size(); ++k) number[numbers[k]] = static_cast<int>(k);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(numbers[k])); entry; ++entry)
+      if (const int column = number[static_cast<std::size_t>(entry.col())]; column != none)
+        entries.emplace_back(static_cast<int>(k), column, entry.value());
+  const auto size = static_cast<Eigen::Index>(numbers.size());
+  Rows part(size, size);
+  part.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
 // Eigen's place for a preconditioner, filled with factors that the pockets hold.
 class KnownFactors {
  public:
@@ -118,6 +169,30 @@ class KnownFactors {
   const Eigen::IncompleteLUT<double>* factors_ = nullptr;
 };
 
+// (I - F rho) bounces >= 1/2: light is reflected at most twice as often as the bounces say.
+bool bounces_hold(const Pocket& pocket, const PocketSystem& system) {
+  return (pocket.bounces.array() > 0).all() && ((system.matrix * pocket.bounces).array() > 0.5).all();
+}
+
+// Of patches and F among them.
+Pocket pocket_of(std::vector<PatchIndex> patches, Rows form_factors, const Eigen::VectorXd& reflectance) {
+  Pocket pocket;
+  pocket.patches = std::move(patches);
+  pocket.form_factors = std::move(form_factors);
+  const PocketSystem system = system_within(pocket, values_at(pocket.patches, reflectance));
+  if (system.matrix.rows() > few_patches) {
+    pocket.nearly_solved = std::make_unique<Eigen::IncompleteLUT<double>>();
+    pocket.nearly_solved->setDroptol(dropped_share);
+    pocket.nearly_solved->setFillfactor(size_of_factors);
+    pocket.nearly_solved->compute(system.matrix);
+  }
+  constexpr double loosely = 1e-6;
+  pocket.bounces = solution_within(pocket, system, Eigen::VectorXd::Ones(system.matrix.rows()), loosely);
+  // Where they are not known to a factor of two, nothing tells how far off what is followed is.
+  if (!bounces_hold(pocket, system)) pocket.patches.clear();
+  return pocket;
+}
+
 }  // namespace
 
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance) {
@@ -126,45 +201,36 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
   if (patches.empty() || static_cast<double>(patches.size()) > largest_part * transport.size()) return nullptr;
 
   const auto pockets = std::make_shared<Pockets>();
-  const Eigen::ArrayXd loses = losing_light(rows_among(transport, patches), values_at(patches, reflectance));
+  const Rows among = rows_among(transport, patches);
+  const Eigen::ArrayXd loses = losing_light(among, values_at(patches, reflectance));
   for (std::size_t k = 0; k < patches.size(); ++k)
-    (loses[static_cast<Eigen::Index>(k)] > 0 ? pockets->patches : pockets->closed).push_back(patches[k]);
-  pockets->form_factors = rows_among(transport, pockets->patches);
-  if (pockets->patches.empty()) return pockets;
-
-  const Eigen::VectorXd reflected = values_at(pockets->patches, reflectance);
-  const Rows system = system_within(*pockets, reflected);
-  pockets->nearly_solved.setDroptol(dropped_share);
-  pockets->nearly_solved.setFillfactor(size_of_factors);
-  pockets->nearly_solved.compute(system);
-  constexpr double loosely = 1e-6;
-  pockets->bounces = solution_within(*pockets, system, Eigen::VectorXd::Ones(system.rows()), loosely);
-  // Where they are not known to a factor of two, nothing tells how far off what is followed is.
-  // Where they are too many, rounding would leave too much of what is followed.
-  constexpr double most_bounces = 1e5;
-  const bool is_in_time = bounces_hold(*pockets, reflected) && pockets->bounces.maxCoeff() <= most_bounces;
-  return is_in_time ? pockets : nullptr;
+    if (!(loses[static_cast<Eigen::Index>(k)] > 0)) pockets->closed.push_back(patches[k]);
+  for (const std::vector<std::size_t>& numbers : groups_of(among, loses)) {
+    std::vector<PatchIndex> those;
+    for (const std::size_t k : numbers) those.push_back(patches[k]);
+    Pocket pocket = pocket_of(std::move(those), part_of(among, numbers), reflectance);
+    if (!pocket.patches.empty()) pockets->each.push_back(std::move(pocket));
+  }
+  return pockets;
 }
 
-bool bounces_hold(const Pockets& pockets, const Eigen::VectorXd& reflectance) {
-  const Eigen::ArrayXd left = pockets.bounces - pockets.form_factors * reflectance.cwiseProduct(pockets.bounces);
-  return (pockets.bounces.array() > 0).all() && (left > 0.5).all();
-}
-
-Rows system_within(const Pockets& pockets, const Eigen::VectorXd& reflectance) {
-  Rows one(pockets.form_factors.rows(), pockets.form_factors.cols());
+PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance) {
+  Rows one(pocket.form_factors.rows(), pocket.form_factors.cols());
   one.setIdentity();
-  return one - pockets.form_factors * reflectance.asDiagonal();
+  PocketSystem system{.matrix = one - pocket.form_factors * reflectance.asDiagonal(), .factors = {}};
+  if (one.rows() <= few_patches) system.factors.compute(Eigen::MatrixXd(system.matrix));
+  return system;
 }
 
-Eigen::VectorXd solution_within(const Pockets& pockets, const Rows& system, const Eigen::VectorXd& right,
+Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
                                 double tolerance) {
+  if (system.factors.rows() > 0) return system.factors.solve(right);
   constexpr int most_iterations = 200;
   Eigen::BiCGSTAB<Rows, KnownFactors> solver;
-  solver.preconditioner().set(pockets.nearly_solved);
+  solver.preconditioner().set(*pocket.nearly_solved);
   solver.setTolerance(tolerance);
   solver.setMaxIterations(most_iterations);
-  solver.compute(system);
+  solver.compute(system.matrix);
   return solver.solve(right);
 }
 

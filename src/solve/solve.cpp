@@ -122,13 +122,11 @@ Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem&
   return solution;
 }
 
-// The pockets of a transport, if they are known, and light that patches of this R reflect gets out of them in time.
+// The pockets of a transport, where they are known.
 const Pockets* pockets_in(const TransportOperator& transport, const Scattering& scattering) {
   const auto* const rays = dynamic_cast<const RaysWithPockets*>(&transport);
-  if (rays == nullptr || rays->pockets() == nullptr || !scattering.is_diagonal()) return nullptr;
-  const Pockets& pockets = *rays->pockets();
-  const Eigen::VectorXd highest = chosen_rows(scattering.reflectance, pockets.patches).rowwise().maxCoeff();
-  return bounces_hold(pockets, highest) ? &pockets : nullptr;
+  const bool may_be_known = rays != nullptr && scattering.is_diagonal();
+  return may_be_known ? rays->pockets(scattering.reflectance.rowwise().maxCoeff()) : nullptr;
 }
 
 // What the patches of pockets send to each other at first arrives at them as direct irradiance does.
