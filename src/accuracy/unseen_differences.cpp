@@ -179,10 +179,13 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
 
   // 2. Through all reflections; what is finer than the quarters is extrapolated.
   const double scale = 1 / (1 - std::pow(2.0, -mesh_order));
-  const auto through_reflections = [&](const Differences& differences, const Differences& of_other) {
-    return followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));
+  const auto through_reflections = [&](const Differences& differences, const Differences& of_other) -> Field {
+    const Field change = followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));
+    // No more light can be too much than there is.
+    return (scale * change).max(-solved.solution.irradiance);
   };
-  unseen.error = scale * root_of_mean(through_reflections(one, other) * through_reflections(other, one));
+  unseen.square = mean_around(patches.mesh, area, through_reflections(one, other) * through_reflections(other, one));
+  unseen.error = unseen.square.abs().sqrt();
 
   // 3. Where it comes from.
   const Field weights = weight_of_squares(solved, weight).colwise() * area.array().square();

@@ -78,6 +78,7 @@ void put_bars(std::optional<ErrorBars>& into, const std::optional<ErrorBars>& fr
   if (!from) return;
   if (!into) into.emplace();
   bands.put(into->mesh, from->mesh);
+  bands.put(into->mesh_noise, from->mesh_noise);
   bands.put(into->form_factor, from->form_factor);
   bands.put(into->solver, from->solver);
   bands.put(into->display, from->display);

@@ -6,11 +6,33 @@
 #include "accuracy/interest.h"
 #include "accuracy/spaces.h"
 #include "base/vectors.h"
+#include "solve/scattering.h"
 
 namespace patchlight {
+namespace {
+
+// Bars of the mesh as they add up over these patches: each band smaller by what noise adds to the squares, which
+// cancels in their sum, but for its standard error. Nine patches around share what is found at one, so that the squares
+// of its parts add up to a ninth.
+Field mesh_bars_of_many(const Simulation& simulation, const Eigen::VectorXd& weight) {
+  const ErrorBars& bars = *simulation.error_bars;
+  if (bars.mesh_noise.size() == 0) return bars.mesh;
+  constexpr double patches_around = 9;
+  const Scattering& scattering = simulation.problem.scattering;
+  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(weight);
+  const Field squares = reflected_variance(scattering, bars.mesh.square());
+  const Field known = squares - reflected_variance(scattering, bars.mesh_noise);
+  const Eigen::ArrayXd all = area_sum(squares, area);
+  const Eigen::ArrayXd standard_error = (patches_around * area_sum(known.square(), area.cwiseAbs2())).sqrt();
+  const Eigen::ArrayXd part = area_sum(known, area).max(0.0) + standard_error;
+  return scaled(bars.mesh, (part < all).select(part / all, 1.0).sqrt());
+}
+
+}  // namespace
 
 AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weight) {
-  const ErrorBars& bars = *simulation.error_bars;
+  ErrorBars bars = *simulation.error_bars;
+  bars.mesh = mesh_bars_of_many(simulation, weight);
   const auto relative = [&](const Field& bar) {
     return relative_bar(bar, simulation.problem, simulation.solution, weight);
   };

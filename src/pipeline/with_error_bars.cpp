@@ -196,7 +196,12 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
   const bool has_parents = result.mesh.parents.size() > 0;
   const BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
                         gap_errors(simulation.mesh, transport.rays(), solved)};
-  simulation.error_bars = {.mesh = (bars.of_light.square() + bars.in_gaps.square()).sqrt(),
+  // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
+  const Field of_mesh = bars.of_light.max(bars.in_gaps);
+  // Where parents or gaps say more, that is not by noise.
+  const Field by_noise = (unseen.error >= of_mesh).select(unseen.error.square() - unseen.square, 0.0);
+  simulation.error_bars = {.mesh = of_mesh,
+                           .mesh_noise = by_noise,
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
@@ -237,6 +242,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
   if (has_point_or_daylight(run.scene)) squares += simulation.direct_standard_error.square();
   simulation.error_bars = {.mesh = of_mesh.total(),
+                           .mesh_noise = {},
                            .form_factor = squares.sqrt(),
                            .solver = solver_errors(solved),
                            .display = display_errors(result.mesh, solved)};

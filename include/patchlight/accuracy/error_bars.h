@@ -8,7 +8,9 @@ namespace patchlight {
 /// and form factors are estimates of one standard deviation of the patch's mean, that of the solver is a bound.
 /// Radiosities are off by the reflectance times as much.
 struct ErrorBars {
-  Field mesh;         ///< from the size of all patches
+  Field mesh;        ///< from the size of all patches
+  Field mesh_noise;  ///< W^2/m^4: what noise adds to the squares of `mesh`, so that their sum over many patches without
+                     ///< it has no bias; empty where nothing is known of it
   Field form_factor;  ///< from the sampling of form factors
   Field solver;
   Field display;  ///< how far the irradiance at a point of a patch is from the patch's mean, root mean square

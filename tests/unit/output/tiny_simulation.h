@@ -81,7 +81,8 @@ inline SolvedSurface tiny_surface() {
 inline Simulation tiny_simulation_with_bars() {
   Simulation simulation = tiny_simulation();
   const Field& H = simulation.solution.irradiance;
-  simulation.error_bars = {.mesh = 0.03 * H, .form_factor = 0.02 * H, .solver = 0.0625 * H.sqrt(), .display = 0.5 * H};
+  simulation.error_bars = {
+      .mesh = 0.03 * H, .mesh_noise = {}, .form_factor = 0.02 * H, .solver = 0.0625 * H.sqrt(), .display = 0.5 * H};
   simulation.accuracy = {{.patches = 2, .new_patches = 2, .samples = 16, .mesh = 0.5, .total = 0.5},
                          {.patches = 3,
                           .new_patches = 1,

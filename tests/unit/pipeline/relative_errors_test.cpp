@@ -1,0 +1,60 @@
+#include "pipeline/relative_errors.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace patchlight::relative_errors_test {
+namespace {
+
+constexpr PatchIndex patches = 1800;
+
+// Half of the patches are off by .3 of the light, nothing of it by noise; the others have bars as wide of which noise
+// is all but `left`.
+Simulation with_noise(double left) {
+  Simulation simulation;
+  RadiosityProblem& problem = simulation.problem;
+  problem = {{Field::Constant(patches, 1, 0.5)}, Field::Zero(patches, 1), Eigen::VectorXd::Ones(patches)};
+  const Field H = Field::Constant(patches, 1, 2);
+  simulation.solution.irradiance = H;
+  simulation.solution.radiosity = problem.scattering.reflect(H);
+  const Field square = (0.3 * H).square();
+  Field noise = Field::Zero(patches, 1);
+  noise.topRows(patches / 2) = (1 - left) * square.topRows(patches / 2);
+  simulation.error_bars = {
+      .mesh = square.sqrt(), .mesh_noise = noise, .form_factor = 0 * H, .solver = 0 * H, .display = 0 * H};
+  return simulation;
+}
+
+double of_mesh(const Simulation& simulation, const Eigen::VectorXd& weight) {
+  const AccuracyStep errors = errors_of(simulation, weight);
+  EXPECT_DOUBLE_EQ(errors.total, errors.mesh);
+  return errors.mesh;
+}
+
+// sqrt(sum of the squares without noise, plus its standard error), where patches around share what is found: 3 /
+// sqrt(n) of the root mean square of its parts.
+TEST(RelativeErrors, AddUpWithoutTheirNoise) {
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(patches);
+  EXPECT_NEAR(of_mesh(with_noise(1), all), 0.3, 1e-12) << "nothing is noise";
+  const double n = patches;
+  EXPECT_NEAR(of_mesh(with_noise(0), all), 0.3 * std::sqrt(0.5 + 3 * std::sqrt(0.5 / n)), 1e-12);
+  EXPECT_NEAR(of_mesh(with_noise(-0.5), all), 0.3 * std::sqrt(0.25 + 3 * std::sqrt(0.5 * 1.25 / n)), 1e-12);
+}
+
+// Of a few patches the sum is hardly known: no more than the bars themselves say.
+TEST(RelativeErrors, OfFewPatchesAreTheirBars) {
+  Eigen::VectorXd few = Eigen::VectorXd::Zero(patches);
+  few.head(4).setOnes();
+  EXPECT_NEAR(of_mesh(with_noise(-1), few), 0.3, 1e-12);
+  few.head(900).setOnes();
+  EXPECT_NEAR(of_mesh(with_noise(-1), few), 0.3 * std::sqrt(3 / std::sqrt(900)), 1e-12) << "never below what is known";
+}
+
+TEST(RelativeErrors, AreThoseOfTheBarsWhereNothingIsKnownOfNoise) {
+  Simulation simulation = with_noise(0);
+  simulation.error_bars->mesh_noise = {};
+  EXPECT_NEAR(of_mesh(simulation, Eigen::VectorXd::Ones(patches)), 0.3, 1e-12);
+}
+
+}  // namespace
+}  // namespace patchlight::relative_errors_test
