@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/input/read_scene.h"
 #include "patchlight/output/provenance.h"
 
 #include "base/near_match.h"
@@ -16,10 +17,14 @@
 #include "cli/study_options.h"
 #include "cli/validate_options.h"
 #include "cli/verify_options.h"
+#include "input/read_model.h"
+#include "input/text.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 namespace patchlight::cli {
 namespace {
@@ -39,17 +44,40 @@ std::string near_option(const CLI::App& command, const std::string& unknown) {
   return nearest.empty() ? "" : ": did you mean " + nearest + "?";
 }
 
+// What stands for an option of other commands in this one, or nothing.
+std::string other_option(const std::string& command, const std::string& unknown) {
+  const bool is_picture = command == "render" && (unknown == "--picture" || unknown.starts_with("--picture="));
+  return is_picture ? "; expected -o VIEW.png, which names the picture that patchlight render takes" : "";
+}
+
 // Refuses what no option or positional argument took; an unknown option is named before its value.
 void require_nothing_left(const CLI::App& command, const std::string& name, const std::vector<std::string>& left) {
   if (left.empty()) return;
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
   const auto unknown = std::find_if(left.begin(), left.end(), is_option);
   if (unknown != left.end()) {
-    const std::string hint = near_option(command, *unknown);
+    const std::string other = other_option(name, *unknown);
+    const std::string hint = other.empty() ? near_option(command, *unknown) : other;
     throw UsageError(name + ": unknown option " + *unknown +
                      (hint.empty() ? "; patchlight " + name + (name.empty() ? "" : " ") + "--help lists them" : hint));
   }
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
+}
+
+// A word as one would type it again.
+std::string as_typed(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+  if (plain) return word;
+  std::string quoted;
+  for (const char letter : word) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return "'" + quoted + "'";
+}
+
+// The command line as one would type it again.
+std::string joined(int count, const char* const* values) {
+  std::string line = "patchlight";
+  for (int k = 1; k < count; ++k) line += ' ' + as_typed(values[k]);
+  return line;
 }
 
 std::vector<std::string> commands(const CLI::App& tool) {
@@ -59,38 +87,48 @@ std::vector<std::string> commands(const CLI::App& tool) {
   return names;
 }
 
+std::vector<std::string> commands_with_a_model(const CLI::App& tool) {
+  std::vector<std::string> names = commands(tool);
+  std::erase_if(names, [&](const std::string& name) {
+    return tool.get_subcommand(name)->get_option_no_throw("MODEL") == nullptr;
+  });
+  return names;
+}
+
+bool names_a_model(const std::filesystem::path& file) {
+  const std::vector<std::string> formats = readable_formats();
+  return file != "-" && std::find(formats.begin(), formats.end(), format_of(file)) != formats.end();
+}
+
+// Refuses a file where a command is expected, with the line that may be meant: what was given, and without options the
+// result that is named after the file.
+void refuse_file(const CLI::App& tool, const std::vector<std::string>& words) {
+  const std::filesystem::path file = words.front();
+  std::error_code error;
+  const bool is_model = names_a_model(file);
+  if (!is_model && !std::filesystem::is_regular_file(file, error)) return;
+  std::string line = "patchlight solve";
+  for (const std::string& word : words) line += ' ' + as_typed(word);
+  if (std::none_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
+    line += " -o " + as_typed(file.stem().string() + ".vtp");
+  throw UsageError("found the file '" + words.front() + "' in place of a command; a model is taken by the commands " +
+                   listed(commands_with_a_model(tool)) + (is_model ? ". Did you mean: " + line : ""));
+}
+
 void require_one_command(const CLI::App& tool) {
   if (tool.get_subcommands().size() == 1) return;
   const std::vector<std::string> names = commands(tool);
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string list = listed(names);
   const std::vector<std::string> left = tool.remaining();
   if (!left.empty() && left.front()[0] == '-') {
     throw UsageError("unknown option " + left.front() + "; expected a command: " + list);
   }
   if (!left.empty()) {
+    refuse_file(tool, left);
     throw UsageError("unknown command '" + left.front() + "'; expected one of " + list +
                      suggestion(left.front(), names));
   }
   throw UsageError("found no command; expected one of " + list + ". patchlight --help tells more");
-}
-
-// The command line as one would type it again.
-std::string joined(int count, const char* const* values) {
-  std::string line = "patchlight";
-  for (int k = 1; k < count; ++k) {
-    const std::string word = values[k];
-    const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-    line += ' ';
-    if (plain) {
-      line += word;
-      continue;
-    }
-    line += '\'';
-    for (const char letter : word) line += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-    line += '\'';
-  }
-  return line;
 }
 
 // What the tool says about itself.

@@ -123,10 +123,27 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--frobnicate", "--help"], *solve, "--frobnicate")
         self.assert_refused(USAGE, ["-x"], *solve, "-x")
         self.assert_refused(USAGE, ["--frobnicate"], "--frobnicate")
+        render = ("render", "room.obj", "--solution", "room.vtp")
+        for words in (("--picture", "a.png"), ("--picture=a.png",)):
+            self.assert_refused(USAGE, ["unknown option --picture", "expected -o VIEW.png"], *render, *words)
 
     def test_unknown_command(self):
         self.assert_refused(USAGE, ["sovle", "solve"], "sovle", "room.obj")
         self.assert_refused(USAGE, ["solve"])
+
+    def test_a_file_in_place_of_a_command(self):
+        """The line that is meant, and what else takes a model."""
+        takers = "the commands solve, check, new, plan, form-factors, render, compare, study, verify"
+        self.write("two words.OBJ", ROOM)
+        self.write("notes.txt", "")
+        for words, line in ((["room.obj"], "room.obj -o room.vtp"), (["far/missing.ifc"], "far/missing.ifc -o missing.vtp"),
+                            (["two words.OBJ"], "'two words.OBJ' -o 'two words.vtp'"),
+                            (["room.obj", "--patches", "9", "-o", "a.ply"], "room.obj --patches 9 -o a.ply")):
+            with self.subTest(line):
+                self.assert_refused(USAGE, [f"'{words[0]}'", takers + f". Did you mean: patchlight solve {line}\n"], *words)
+        # Of a file that is there and no model the line would not be right.
+        self.assert_refused(USAGE, ["the file 'notes.txt' in place of a command", takers], "notes.txt")
+        self.assertNotIn("Did you mean", self.run_tool("notes.txt").stderr)
 
     def test_second_model_missing(self):
         self.assert_refused(INPUT, ["other.obj", "does not exist"], "solve", "room.obj", "other.obj", "-o", "room.vtp")
