@@ -13,6 +13,7 @@
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -26,6 +27,19 @@ using Quantity = MaterialSetting::Quantity;
   throw InputError("read.settings", "found '" + text + "': " + message);
 }
 
+constexpr const char* settable =
+    "reflectance, specular_reflectance, transmittance or diffuse_transmittance (0 to 1, or in %), exitance (W/m^2), "
+    "radiance (W/(m^2 sr)) or index, as numbers without a unit";
+
+// How light is set that is known as a flux: what the material's faces emit goes by their area.
+std::string advice_on_flux(const std::string& quantity) {
+  constexpr std::array words{"flux", "luminous_flux", "lumens", "lumen", "lm", "watts", "watt", "W", "power"};
+  if (std::find(words.begin(), words.end(), quantity) == words.end()) return {};
+  const std::string efficacy = shortest(luminous_efficacy);
+  return ". A lamp of F lumens whose faces measure A m^2 has the exitance F / (" + efficacy +
+         " A), one of P watts P / A; luminaires of a scene file take lumens or watts";
+}
+
 Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "reflectance") return Quantity::reflectance;
   if (name == "exitance") return Quantity::exitance;
@@ -34,9 +48,15 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   if (name == "index") return Quantity::index;
   if (name == "specular_reflectance") return Quantity::specular_reflectance;
   if (name == "diffuse_transmittance") return Quantity::diffuse_transmittance;
-  refuse_setting(text, "'" + name +
-                           "' cannot be set; expected reflectance, specular_reflectance, exitance, radiance, "
-                           "transmittance, diffuse_transmittance or index");
+  refuse_setting(text, "'" + name + "' cannot be set; expected " + settable + advice_on_flux(name));
+}
+
+// What a value of a quantity is.
+const char* expected_value(Quantity quantity) {
+  if (is_share(quantity)) return "a share from 0 to 1, or in percent, as 30%";
+  if (quantity == Quantity::exitance) return "W/m^2 without the unit, as 10";
+  if (quantity == Quantity::radiance) return "W/(m^2 sr) without the unit, as 10";
+  return expected_index;
 }
 
 // A number, or a share in percent: 0.3 for 30%.
@@ -53,7 +73,7 @@ Spectrum comma_separated(const std::string& list, const std::string& text, Quant
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word(trimmed(std::string_view(list).substr(begin, end - begin)));
     const std::optional<double> value = number_or_percent(word, quantity);
-    if (!value) refuse_setting(text, "'" + word + "' is not a finite number");
+    if (!value) refuse_setting(text, "'" + word + "' is not a finite number; expected " + expected_value(quantity));
     values.push_back(*value);
     begin = end + 1;
   }
@@ -253,10 +273,7 @@ MaterialSetting parse_material_setting(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
   if (dot == std::string::npos || dot == 0) {
-    refuse_setting(
-        text,
-        "expected MATERIAL.QUANTITY=R,G,B with QUANTITY one of reflectance, specular_reflectance, exitance, radiance, "
-        "transmittance, diffuse_transmittance, index");
+    refuse_setting(text, std::string("expected MATERIAL.QUANTITY=R,G,B with QUANTITY ") + settable);
   }
   MaterialSetting setting;
   setting.material = text.substr(0, dot);

@@ -52,5 +52,38 @@ TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
   }
 }
 
+// What the message says of a setting that is refused.
+std::string refusal_of(const std::string& text) {
+  try {
+    parse_material_setting(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ParseMaterialSetting, RefusalsTellQuantitiesWithTheirUnits) {
+  const auto says = [](const std::string& text, const std::string& words) {
+    EXPECT_NE(refusal_of(text).find(words), std::string::npos) << refusal_of(text);
+  };
+  for (const char* text : {"lamp.colour=1", "lamp.flux=800lm", "lamp"}) {
+    says(text, "exitance (W/m^2), radiance (W/(m^2 sr)) or index, as numbers without a unit");
+  }
+  says("lamp.exitance=800lm", "'800lm' is not a finite number; expected W/m^2 without the unit");
+  says("lamp.radiance=10cd", "expected W/(m^2 sr) without the unit");
+  says("wall.reflectance=half", "expected a share from 0 to 1, or in percent");
+}
+
+// Phi = 179 lm/W * A * M for one exitance M in all bands.
+TEST(ParseMaterialSetting, LumensAreAnExitanceByTheArea) {
+  for (const char* text : {"lamp.flux=800lm", "lamp.lumens=800", "lamp.watts=60"}) {
+    const std::string refusal = refusal_of(text);
+    EXPECT_NE(refusal.find("A lamp of F lumens whose faces measure A m^2 has the exitance F / (179 A)"),
+              std::string::npos)
+        << refusal;
+  }
+  EXPECT_EQ(refusal_of("lamp.colour=1").find("lumens"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace patchlight::material_setting_test
