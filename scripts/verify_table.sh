@@ -29,7 +29,7 @@ bars = re.search(r"the patches, (\S+) % as a whole", said)[1]
 chi = re.search(r"chi-square (\S+) of", said)[1]
 p = re.search(r" p = ([0-9.e+-]+)", said)[1]
 patches = re.search(r"of (\d+) patches, \d+ paths", said)[1]
-verdict = re.search(r"\n(agrees|disagrees|inconclusive):", said, re.IGNORECASE)[1].lower() + f", p = {p}"
+verdict = re.match(r"(agrees|disagrees|inconclusive):", said, re.IGNORECASE)[1].lower() + f", p = {p}"
 print(f"| {model} {options} | {patches} | {paths} | {cpu} | {bars} % | {z} | {mean} % | {chi} | {verdict} |")
 PY
 }

@@ -149,7 +149,8 @@ struct VerifyArguments {
   VerifyOptions options;
   std::optional<double> bar;   ///< the relative standard error that every irradiance is granted; none: its error bars
   std::filesystem::path json;  ///< .json; empty when it is not wanted
-  std::string command_line;    ///< for the record
+  bool quiet = false;
+  std::string command_line;  ///< for the record
 };
 
 /// What `patchlight validate` is asked to do.

@@ -104,24 +104,46 @@ std::string typical_error(const VerifiedPart& part) {
   const double told = 2 * noise * noise * std::sqrt(2 / static_cast<double>(part.rows.size()));
   const bool is_hidden = error * error < told;
   return "typical error of a patch " +
-         (is_hidden ? "hidden by the noise of the paths, " + percent(noise, 2) + " % (more --paths tell); "
-                    : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out; ");
+         (is_hidden ? "hidden by the noise of the paths, " + percent(noise, 2) + " % (more --paths tell)"
+                    : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out");
 }
 
-// What the differences of a part come to.
-std::string sums_of(const VerifiedPart& part) {
-  const bool all = part.name == "all";
+// A line with a figure, and behind it what it tells where that is wanted.
+std::string figure(const std::string& what, const char* tells, bool explained) {
+  return what.empty() ? "" : "  " + what + (explained ? std::string(": ") + tells : "") + '\n';
+}
+
+// What the differences of a part come to. From what is stated to what is found.
+std::string figures_of(const VerifiedPart& part, bool explained) {
   Eigen::Index band = 0;
   part.offset.abs().maxCoeff(&band);
   const double dark = part.dark.minCoeff();
-  std::ostringstream text;
-  text << std::setprecision(3) << (all ? "" : part.name + ": ") << "chi-square " << part.chi_square.maxCoeff() << " of "
-       << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
-       << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string())
-       << "; mean difference " << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
-       << " of its standard errors; " << typical_error(part) << "bars " << percent(part.width, 2)
-       << " % of the light\n";
-  return text.str();
+  std::ostringstream mean, squares;
+  mean << std::setprecision(3) << "mean difference " << percent(part.mean_difference[band], 3) << " %, "
+       << part.offset[band] << " of its standard errors";
+  squares << std::setprecision(3) << "chi-square " << part.chi_square.maxCoeff() << " of "
+          << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
+          << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string());
+  return (part.name == "all" ? "" : part.name + ", " + std::to_string(part.rows.size()) + " patches\n") +
+         figure("bars " + percent(part.width, 2) + " % of the light",
+                "how far the irradiance of these patches is stated to be off", explained) +
+         figure(typical_error(part), "how far each by itself is off, about the bars or less where the answer is right",
+                explained) +
+         figure(mean.str(),
+                "how far all together are off, less than each where some are too bright and others too dark",
+                explained) +
+         figure(
+             squares.str(),
+             "differences over bars and noise, squared and summed, about one a patch or less where the answer is right",
+             explained);
+}
+
+std::string figures(const Verification& verification) {
+  std::string text;
+  for (const VerifiedPart& part : verification.parts) text += figures_of(part, text.empty());
+  return text + "z by the noise of the paths alone: root mean square " +
+         rounded(root_mean_square(deviations_by_noise(verification)), 3) +
+         " (1 is noise; above it the paths see errors, which the bars have to cover)\n";
 }
 
 std::string sides_left_out(const Scene& scene, const Verification& verification) {
@@ -153,12 +175,9 @@ std::string close_lamps(const Scene& scene, const Simulation& simulation, Verdic
 
 std::string verdict(const Verification& verification, const std::string& granted, const std::string& doubt) {
   std::ostringstream text;
-  text << std::setprecision(3) << "z by the noise of the paths alone: root mean square "
-       << root_mean_square(deviations_by_noise(verification)) << " (1 is noise)\n";
-  for (const VerifiedPart& part : verification.parts) text << sums_of(part);
   const bool differs = verification.verdict == Verdict::disagrees;
   const char* const words[] = {"agrees", "DISAGREES", "INCONCLUSIVE"};
-  text << words[static_cast<std::size_t>(verification.verdict)] << ": with " << granted
+  text << std::setprecision(3) << words[static_cast<std::size_t>(verification.verdict)] << ": with " << granted
        << ", p = " << verification.probability << (verification.probability < least_probability ? " < " : " >= ")
        << least_probability;
   if (differs && verification.probability >= least_probability) text << ", but a side that was left out is lit";
@@ -167,7 +186,7 @@ std::string verdict(const Verification& verification, const std::string& granted
          << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
             "what scatters";
   }
-  text << doubt << '\n';
+  text << doubt;
   return text.str();
 }
 
@@ -177,17 +196,37 @@ std::string after_first(const Verification& verification) {
          " paths each they disagreed, mostly by the noise of these: traced again with more\n";
 }
 
-// All that is said: what was checked, the patches that differ most, and the verdict at the end.
+// What p tells.
+std::string on_probability() {
+  return "p is the probability of differences this large where bars and paths are right; below " +
+         rounded(least_probability, 3) + " they disagree\n";
+}
+
+// All that is said: the verdict, what was checked, what that comes to, and the patches that differ most.
 std::string answer(const Scene& scene, const Simulation& simulation, const Verification& verification,
-                   const std::optional<double>& bar, double seconds) {
+                   const std::string& verdict, double seconds) {
   std::ostringstream text;
-  text << shown_name(scene.file) << ": " << verification.patches.size() << " of " << simulation.mesh.size()
-       << " patches, " << verification.paths.paths << " paths each, "
+  text << verdict << '\n'
+       << on_probability() << shown_name(scene.file) << ": " << verification.patches.size() << " of "
+       << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
        << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3) << " s\n"
-       << after_first(verification) << "those that differ most, each in its worst band, irradiance in W/m^2:\n"
-       << table(scene, simulation.mesh, verification) << sides_left_out(scene, verification)
-       << verdict(verification, bars(bar, simulation), close_lamps(scene, simulation, verification.verdict));
+       << after_first(verification) << figures(verification) << sides_left_out(scene, verification)
+       << "those that differ most, each in its worst band, irradiance in W/m^2:\n"
+       << table(scene, simulation.mesh, verification);
   return text.str();
+}
+
+// All of it, or with --quiet a verdict that is not good.
+void tell(const VerifyArguments& arguments, const Scene& scene, const Simulation& simulation,
+          const Verification& verification, double seconds) {
+  const std::string said =
+      verdict(verification, bars(arguments.bar, simulation), close_lamps(scene, simulation, verification.verdict));
+  if (!arguments.quiet) {
+    for (const std::string& note : notes(scene, simulation)) print_message("note", note);
+    std::cout << answer(scene, simulation, verification, said, seconds) << std::flush;
+  } else if (verification.verdict != Verdict::agrees) {
+    print_message("warning", said);
+  }
 }
 
 }  // namespace
@@ -195,8 +234,8 @@ std::string answer(const Scene& scene, const Simulation& simulation, const Verif
 ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
-  if (const auto note = note_on_accuracy(arguments.request)) print_message("note", *note);
-  ProgressLine line(progress_shown(false));
+  if (const auto note = note_on_accuracy(arguments.request); note && !arguments.quiet) print_message("note", *note);
+  ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 
   // 1. Solve
@@ -220,8 +259,7 @@ ExitCode verify(const VerifyArguments& arguments) {
   if (!arguments.json.empty()) {
     write_verification(arguments.json, scene, simulation, verification, {.command_line = arguments.command_line});
   }
-  for (const std::string& note : notes(scene, simulation)) print_message("note", note);
-  std::cout << answer(scene, simulation, verification, arguments.bar, seconds) << std::flush;
+  tell(arguments, scene, simulation, verification, seconds);
   if (verification.verdict != Verdict::agrees) return validation_failed;
   if (is_accurate(report)) return good;
   print_message("warning", explain_not_accurate(report));

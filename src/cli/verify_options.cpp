@@ -24,6 +24,7 @@ struct VerifyCommandOptions {
   VerifyOptions verify;
   std::optional<double> bar;
   std::string json;
+  bool quiet = false;
 };
 
 namespace {
@@ -71,6 +72,9 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   add_sampling_options(command, to.request);
   add_storage_options(command, to.request);
   add_machine_options(command, to.request);
+  command.option_defaults()->group("The run");
+  command.add_flag("-q,--quiet", to.quiet,
+                   "says nothing but errors, and the verdict unless it agrees;\ndefault: progress and the figures");
   return options;
 }
 
@@ -86,6 +90,7 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.options.seed = arguments.request.assembly.seed;
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
+  arguments.quiet = options.quiet;
   arguments.request.accuracy.error_bars = !options.bar;
   Storage& storage = arguments.request.assembly.storage;
   if (options.bar && storage == Storage::rays) {

@@ -14,7 +14,8 @@ class VerifyTest(ToolTest):
     def test_cornell_box_agrees_and_the_json_tells_the_same(self):
         done = self.run_tool("verify", CORNELL_BOX, "--patches", 2000, "--sides", "front", "--json", "out.json")
         self.assertEqual((done.returncode, done.stderr), (GOOD, ""), done.stdout)
-        self.assertRegex(done.stdout, r"agrees: with the error bars of the patches, \S+ % as a whole \(mesh ")
+        lines = done.stdout.splitlines()
+        self.assertRegex(lines[0], r"^agrees: with the error bars of the patches, \S+ % as a whole \(mesh ")
         facts = json.loads((self.folder / "out.json").read_text())
         self.assertTrue(facts["agrees"])
         self.assertGreater(facts["relative_error"]["total"], 0)
@@ -32,13 +33,34 @@ class VerifyTest(ToolTest):
         for band in range(3):
             self.assertAlmostEqual(part["chi_square"][band] / chi_square[band], 1, 9)
         # The worst patches come first, each with its place.
-        rows = done.stdout.splitlines()[3:13]
+        head = next(k for k, line in enumerate(lines) if line.startswith("place "))
+        rows = lines[head + 1:]
+        self.assertEqual(len(rows), 10)
         sizes = [abs(float(row.split()[-1])) for row in rows]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
         self.assertTrue(all("cornell_box.obj:" in row for row in rows))
-        self.assertRegex(done.stdout.splitlines()[2], r"^place +object +material +side +position")
+        self.assertRegex(lines[head], r"^place +object +material +side +position")
         self.assertEqual({patch["side"] for patch in facts["checked"]}, {"front"})
         self.assertTrue(all(" front " in row for row in rows))
+
+    def test_figures_say_what_they_tell(self):
+        """Between the verdict and the table: what is stated, then what is found, each once in words."""
+        done = self.run_tool("verify", "room.obj", "--patches", 300, "--paths", 512)
+        figures = [line.strip() for line in done.stdout.splitlines() if line.startswith("  ")]
+        for figure, tells in zip(figures, (r"bars \S+ % of the light: how far .* is stated to be off",
+                                           r"typical error of a patch .*: how far each by itself is off",
+                                           r"mean difference .*: how far all together are off",
+                                           r"chi-square .*: differences over bars and noise"), strict=True):
+            self.assertRegex(figure, tells)
+        self.assertRegex(done.stdout, r"\np is the probability .*; below 0.01 they disagree\n")
+
+    def test_quiet_says_nothing_where_they_agree(self):
+        for option in ("-q", "--quiet"):
+            done = self.run_tool("verify", "room.obj", "--patches", 300, "--paths", 512, option)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (GOOD, "", ""))
+        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "0%", "--paths", 16384, "-q")
+        self.assertEqual((done.returncode, done.stdout), (DIFFERS, ""))
+        self.assertRegex(done.stderr, r"^patchlight: warning: DISAGREES: [^\n]*\n$")
 
     def test_two_rooms_agree(self):
         done = self.run_tool("verify", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front")
@@ -74,7 +96,7 @@ class VerifyTest(ToolTest):
                                             "v 0.4 0.6 0.001\nusemtl lamp\nf 20 19 18 17\n"))
         done = self.run_tool("verify", "room.obj", "--patches", 60, "--paths", 256, "--bar", "1%")
         self.assertIn("wrong by a factor", done.stderr)
-        verdict = done.stdout.splitlines()[-1]
+        verdict = done.stdout.splitlines()[0]
         self.assertRegex(verdict, r"(agrees|DISAGREES|INCONCLUSIVE): .*nearer to a surface than its patches are large")
 
     def test_wide_bars_are_inconclusive(self):
