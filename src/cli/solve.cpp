@@ -304,7 +304,9 @@ std::vector<std::filesystem::path> write(const SolveArguments& arguments, const 
 // Said of a result without error bars.
 std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished) {
   if (unfinished) return "";
-  if (!arguments.form_factors.empty()) return " with stored form factors";
+  if (!arguments.form_factors.empty())
+    return " with stored form factors; patchlight solve MODEL tells the error for as many --patches, and form "
+           "factors of more --patches err less";
   const auto part = part_without_error_bars(arguments.request);
   return part ? " with " + with_option_names(*part) : "; --error-bars tells them, in about twice the time";
 }

@@ -47,8 +47,9 @@ std::string parts(const AccuracyStep& step) {
   const bool solver_known = std::isfinite(step.solver);
   return percent(known_error(step), 2) + " %: mesh " + percent(step.mesh, 2) + ", form factors " +
          percent(step.form_factor, 2) + ", solver " +
-         (solver_known ? percent(step.solver, 1) : "not known and not in it") + "; drawn with one value a patch " +
-         percent(step.display, 2) + " %";
+         (solver_known ? percent(step.solver, 1) : "not known and not in it") +
+         "; points within a patch differ from its mean by " + percent(step.display, 2) +
+         " %, which shows where each patch is drawn in one even color";
 }
 
 // How far off the patches' means may be, and what is drawn with them.
@@ -93,6 +94,16 @@ std::string steps_table(const std::vector<AccuracyStep>& steps) {
   return text_table(rows);
 }
 
+// Rows of rays carry flux from patch to patch by chance: of R rays that carry equal parts of it 1 / sqrt(R) is off.
+std::string why_imbalanced(const Report& report) {
+  if (report.plan.assembly.storage != Storage::rays) return {};
+  const double usual =
+      1 / std::sqrt(static_cast<double>(report.plan.assembly.rays) * static_cast<double>(report.patches));
+  if (report.balance.imbalance < usual / 10) return {};
+  return ", by the noise of the rays: up to a few times " + rounded(usual, 1) +
+         " is usual, one over the root of their number";
+}
+
 std::string energy(const Report& report) {
   const EnergyBalance& balance = report.balance;
   const bool row_sums_known = report.form_factors.row_sum.has_value();
@@ -108,7 +119,7 @@ std::string energy(const Report& report) {
        << in_words(balance.lost_at_backs)
        << (row_sums_known ? "; form factor defect " + in_words(balance.defect) + "; imbalance "
                           : "; imbalance with the form factor defect ")
-       << rounded(balance.imbalance, 2) << " of the flux";
+       << rounded(balance.imbalance, 2) << " of the flux" << why_imbalanced(report);
   return text.str();
 }
 
@@ -232,7 +243,8 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n' << advice_on_errors(report);
   if (report.accuracy.empty() && report.form_factors.ray_error)
     text << "error of the rays: " << percent(*report.form_factors.ray_error, 2)
-         << " % of the reflected light; what the size of the patches errs is not known\n";
+         << " % of the reflected light, which more rays make smaller; what the size of the patches errs is not known"
+         << how_to_know_errors << '\n';
   else if (report.accuracy.empty())
     text << "errors from the size of the patches and from form factors: not known" << how_to_know_errors << '\n';
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);

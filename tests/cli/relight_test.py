@@ -161,6 +161,17 @@ class RelightTest(ToolTest):
             bodies.add((self.folder / "a.ply").read_bytes().split(b"end_header\n", 1)[1])
         self.assertEqual(len(bodies), 1)
 
+    def test_errors_that_are_not_known_have_a_remedy(self):
+        remedy = (" with stored form factors; patchlight solve MODEL tells the error for as many --patches, and form "
+                  "factors of more --patches err less\n")
+        self.find()
+        done = self.good("relight", "room.ff", "-o", "a.vtp")
+        self.assertIn("errors from the size of the patches and from form factors: not known" + remedy, done.stdout)
+        self.find("--storage", "rays", folder="rays.ff")
+        done = self.good("relight", "rays.ff", "-o", "a.vtp")
+        self.assertRegex(done.stdout, r"error of the rays: \S+ % of the reflected light, which more rays make smaller; ")
+        self.assertIn("what the size of the patches errs is not known" + remedy, done.stdout)
+
     def test_not_converged_is_said(self):
         self.find()
         done = self.run_tool("relight", "room.ff", "-o", "a.vtp", "--max-iterations", "1")

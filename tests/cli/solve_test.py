@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import pathlib
 import pty
 import re
 import signal
@@ -94,6 +95,24 @@ class SolveTest(ToolTest):
             values.append([float(value) for row in rows for value in row[6:9]])
         for single, double in zip(*values):
             self.assertAlmostEqual(double / single, 2, delta=1e-5)  # the digits written
+
+    def test_noise_of_rays_in_the_flux_is_said(self):
+        """Of R rays that carry equal parts of the flux 1 / sqrt(R) is off, 64 a patch; and what is far less needs no
+        reason, as in the closed room."""
+        box = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell_box.obj"
+        for model, is_said in ((box, True), ("room.obj", False)):
+            done = self.run_tool("solve", model, "--storage", "rays", "--patches", 900, "--report", "a.json")
+            report = json.loads(self.read("a.json"))
+            imbalance = report["energy_balance"]["imbalance"]
+            usual = (64 * report["mesh"]["patches"]) ** -0.5
+            found = re.search(r"imbalance (\S+) of the flux(, by the noise of the rays: up to a few times (\S+) is usual)?",
+                              done.stdout)
+            self.assertAlmostEqual(float(found[1]) / imbalance, 1, delta=0.1)
+            self.assertEqual((found[2] is not None, imbalance > usual / 10), (is_said, is_said), done.stdout)
+            if is_said:
+                self.assertAlmostEqual(float(found[3]) / usual, 1, delta=0.5)
+        pairs = self.run_tool("solve", box, "--storage", "tiles", "--patches", 900, "--report", "b.json")
+        self.assertRegex(pairs.stdout, r"imbalance \S+ of the flux\n")
 
     def test_same_bytes_for_any_number_of_threads(self):
         for threads in (1, 2):
