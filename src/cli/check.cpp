@@ -246,9 +246,11 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   const bool has_more = read.metres_per_unit != 1 || read.up || !read.settings.empty() || !read.only.empty() ||
                         !read.leave_out.empty() || read.detail > 0 || read.keep_faces || !read.format.empty();
   const std::string result = arguments.models.front().stem().string();
-  const std::string command = needs_sensors
+  const std::string setting = report.first_light ? report.first_light->setting : "";
+  const std::string command = needs_sensors || (report.first_light && setting.empty())
                                   ? "new" + models + " -o " + quoted(result + ".toml")
-                                  : "solve" + models + (report.usable ? "" : " --sky overcast:10000lx") + " -o " +
+                                  : "solve" + models +
+                                        (setting.empty() ? "" : " " + shown_name(with_option_names(setting))) + " -o " +
                                         quoted(result + ".vtp") + " --picture " + quoted(result + ".png");
   return "next: patchlight " + command + (has_more ? " and the options given here" : "") + '\n';
 }
@@ -288,7 +290,7 @@ ExitCode check(const CheckArguments& arguments) {
               << daylight_lines(scene) << problem_lines(scene, report, arguments.all) << std::flush;
   }
   if (report.usable) return good;
-  print_message("error", scene.file + ": found no lamp: " + advice_without_lamp(scene));
+  print_message("error", scene.file + ": found no lamp: " + report.first_light->advice);
   return input_error;
 }
 

@@ -4,6 +4,7 @@
 #include "base/shortest.h"
 #include "input/materials.h"
 #include "input/toml_value.h"
+#include "scene/sealed_room.h"
 #include "scene/sensor_grid.h"
 
 #include <algorithm>
@@ -70,13 +71,14 @@ std::vector<NamedFloor> rooms_of(const Scene& scene) {
   return largest_first(std::move(places));
 }
 
-// Groups whose floor has something of the scene high over it.
+// Groups with a name, whose floor has something of the scene high over it.
 std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
   std::vector<std::vector<PolygonIndex>> of_group(scene.groups.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) of_group[scene.polygons[p].group].push_back(p);
   const double top = top_of(scene);
   std::vector<NamedFloor> places;
   for (std::uint32_t group = 0; group < of_group.size(); ++group) {
+    if (group_name(scene, group).empty()) continue;
     Floor floor = floor_of(outlines_of(scene, of_group[group]), scene.up);
     if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor)});
   }
@@ -168,15 +170,50 @@ std::string material_tables(const Scene& scene) {
          "# transmittance = 0.8\n# reflectance = 0\n\n";
 }
 
-std::string sky_tables(const Scene& scene) {
-  const bool is_dark = !has_lamp(scene);
-  const std::string mark = is_dark ? "" : "# ";
-  return (is_dark ? std::string("# Nothing in the model shines: a sky, over a ground that reflects a fifth of it.\n")
-                  : std::string("# The model has lamps. With daylight as well:\n")) +
-         mark + "[sky]\n" + mark + "kind = \"overcast\"   # or \"uniform\", or \"clear\" with a sun\n" + mark +
+// In each named room over the middle of its floor, as high as is free at least, else under the room's ceiling.
+std::vector<Point> places_of_lamps(const Scene& scene, const Solid& room, const std::vector<NamedFloor>& places) {
+  std::vector<Point> lamps;
+  for (const NamedFloor& place : places) {
+    if (scene.rooms.empty() || lamps.size() == most_named) break;
+    const SensorGroup grid = floor_grid(place.floor, lowest_room, std::sqrt(area_of(place.floor)) / 10, 0);
+    Point middle = Point::Zero();
+    for (const Sensor& sensor : grid.sensors) middle += sensor.point / static_cast<double>(grid.sensors.size());
+    const auto nearest = std::min_element(grid.sensors.begin(), grid.sensors.end(), [&](const auto& a, const auto& b) {
+      return (a.point - middle).squaredNorm() < (b.point - middle).squaredNorm();
+    });
+    if (nearest != grid.sensors.end()) lamps.push_back(nearest->point);
+  }
+  return lamps.empty() ? std::vector<Point>{place_under_ceiling(scene, room)} : lamps;
+}
+
+std::string luminaire_table(const Scene& scene, const Solid& room, const std::vector<NamedFloor>& places) {
+  std::string positions;
+  for (const Point& lamp : places_of_lamps(scene, room, places))
+    positions += (positions.empty() ? "" : ", ") + place_text(lamp);
+  return "# Nothing in the model shines, and no daylight gets in: a lamp that shines all around.\n[[luminaire]]\n"
+         "name = \"lamp\"\nkind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\npositions = [" +
+         positions + "]\nlumens = 3000\n\n";
+}
+
+// A sky as the only light is not commented out.
+std::string sky_tables(const Scene& scene, bool is_only_light) {
+  const std::string mark = is_only_light ? "" : "# ";
+  const std::string why = is_only_light
+                              ? "# Nothing in the model shines: a sky, over a ground that reflects a fifth of it.\n"
+                          : has_lamp(scene) ? "# The model has lamps. With daylight as well:\n"
+                                            : "# Daylight, where a material above lets it in:\n";
+  return why + mark + "[sky]\n" + mark + "kind = \"overcast\"   # or \"uniform\", or \"clear\" with a sun\n" + mark +
          "illuminance = 10000  # lx on the open ground\n\n" + mark + "[ground]\n" + mark + "reflectance = 0.2\n\n" +
          "# [sun]\n# time = 2024-06-21T12:00:00Z\n# illuminance = 80000  # lx across its rays\n# [site]\n"
          "# latitude = 52.5\n# longitude = 13.4\n\n";
+}
+
+// What nothing in the model gives: a luminaire in a room that no daylight gets into, else a sky.
+std::string light_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
+  if (has_lamp(scene)) return sky_tables(scene, false);
+  const std::optional<Solid> hull = sealed_hull(scene);
+  if (!hull || !is_room(scene, *hull)) return sky_tables(scene, true);
+  return luminaire_table(scene, *hull, places) + sky_tables(scene, false);
 }
 
 std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
@@ -241,7 +278,7 @@ std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
        << " -o result.vtp --report result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
-  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << sky_tables(scene)
+  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, places)
        << sensor_tables(scene, places);
   text << camera_tables(scene, places);
   return text.str();

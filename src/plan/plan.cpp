@@ -7,6 +7,7 @@
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
 #include "plan/fine_outlines.h"
+#include "plan/first_light.h"
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
 #include "plan/memory.h"
@@ -26,7 +27,7 @@ namespace patchlight {
 namespace {
 
 void require_lamp(const Scene& scene) {
-  if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + advice_without_lamp(scene));
+  if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + first_light(scene).advice);
 }
 
 // A run without any light is not meant.

@@ -1,9 +1,9 @@
 #include "plan/survey.h"
 
-#include "base/lower_case.h"
 #include "base/rounded.h"
 #include "base/shortest.h"
 #include "light/photometry.h"
+#include "plan/first_few.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
@@ -12,8 +12,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <sstream>
 
 namespace patchlight {
 namespace {
@@ -26,9 +24,6 @@ constexpr double largest_plausible = 150;
 // of four. Metres.
 constexpr double usual_size = 6;
 constexpr double rarity = 4;
-
-// A radiance to begin with where the model names none: 1,800 cd/m^2, a lit panel. W/(m^2 sr).
-constexpr double usual_radiance = 10;
 
 struct Unit {
   const char* name;
@@ -64,13 +59,6 @@ std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<Un
        1,
        "the model is " + rounded(size) + " m long with " + rounded(scene.metres_per_unit) + " m per unit; " + advice,
        {}}};
-}
-
-std::string first_few(const std::vector<std::string>& names) {
-  constexpr std::size_t few = 8;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
-  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
 }
 
 std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
@@ -143,52 +131,7 @@ std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
   return all;
 }
 
-// The reader's hints, else the materials with a name like a lamp's.
-std::vector<LampHint> possible_lamps(const Scene& scene) {
-  if (!scene.lamp_hints.empty()) return scene.lamp_hints;
-  std::vector<LampHint> hints;
-  for (const Material& material : scene.materials) {
-    const std::string name = in_lower_case(material.name);
-    for (const char* part : {"light", "lamp", "lumin", "emit", "emissi", "glow", "bulb", "neon", "leucht"}) {
-      if (name.find(part) == std::string::npos) continue;
-      hints.push_back({material.name, Spectrum::Constant(1, usual_radiance), "its name"});
-      break;
-    }
-  }
-  return hints;
-}
-
-// As one types it in a shell.
-std::string setting_for(const LampHint& hint) {
-  std::ostringstream text;
-  const bool plain = hint.material.find_first_of(" \t'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-  text << "read.settings " << (plain ? "" : "'") << hint.material
-       << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ",")) << (plain ? "" : "'");
-  return text.str();
-}
-
 }  // namespace
-
-std::string advice_without_lamp(const Scene& scene) {
-  const std::string daylight =
-      "for daylight add read.daylight.sky=overcast:10000lx, or let patchlight new MODEL -o SCENE.toml write a scene "
-      "file "
-      "to change (luminaires stand there, too: docs/lights.md)";
-  const std::vector<LampHint> hints = possible_lamps(scene);
-  if (hints.empty()) {
-    std::vector<std::string> names;
-    for (const Material& material : scene.materials) names.push_back(material.name);
-    return "no material emits, and none looks like a lamp; " + daylight +
-           "; or choose a lamp with read.settings MATERIAL.radiance=R,G,B from " + first_few(names);
-  }
-  std::string advice = "no material emits";
-  for (const LampHint& hint : hints) {
-    advice +=
-        "; '" + hint.material + "' looks like a lamp (" + hint.reason + "): " + setting_for(hint) + " switches it on";
-    if (&hint - hints.data() == 2) break;
-  }
-  return advice + "; " + daylight;
-}
 
 const char* name_of(SkyKind kind) {
   switch (kind) {
@@ -249,7 +192,10 @@ SceneReport survey(const Scene& scene) {
   add(problems_of_size(scene, report.unit_guess, size));
   add(problems_with_reflectance(report.materials));
   add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
-  if (!report.usable) add({{ProblemKind::no_lamp, 1, advice_without_lamp(scene), {}}});
+  if (!report.usable) {
+    report.first_light = first_light(scene);
+    add({{ProblemKind::no_lamp, 1, report.first_light->advice, {}}});
+  }
   report.problems = worst_first(std::move(report.problems));
   return report;
 }

@@ -3,6 +3,8 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "plan/first_light.h"
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -59,8 +61,9 @@ struct SceneReport {
   double open_edge_length = 0;    ///< metres
   std::vector<Problem> problems;  ///< those of reading and repair and those found here, worst first
   std::optional<UnitGuess> unit_guess;
-  std::optional<SideCounts> sides = {};  ///< when they are counted: count_sides()
-  bool usable = true;                    ///< false when nothing emits: it cannot be solved
+  std::optional<SideCounts> sides = {};        ///< when they are counted: count_sides()
+  bool usable = true;                          ///< false when nothing emits: it cannot be solved
+  std::optional<FirstLight> first_light = {};  ///< then what would light it
 };
 
 /// Looks at a scene that repair() and check() have passed. Pure. O(n log n) for n corners.
@@ -75,9 +78,5 @@ const char* name_of(SkyKind kind);
 
 /// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
 SideCounts count_sides(const Scene& scene, Sides sides);
-
-/// One sentence on a scene in which nothing emits: which material looks like a lamp, and the setting that switches it
-/// on; and where daylight and luminaires are described.
-std::string advice_without_lamp(const Scene& scene);
 
 }  // namespace patchlight

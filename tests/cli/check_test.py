@@ -68,6 +68,40 @@ class CheckTest(ToolTest):
         self.assertEqual(solved.returncode, INPUT)
         self.assertIn(setting, solved.stderr)
 
+    def next_of(self, done):
+        line = next(line for line in done.stdout.splitlines() if line.startswith("next: patchlight "))
+        return line.removeprefix("next: patchlight ").split()
+
+    def test_a_closed_room_without_a_lamp_is_not_offered_a_sky(self):
+        """What it proposes lights the room: the command that comes next, and the one that this leads to."""
+        dark = MATERIALS.replace("Ke 10 9 8\n", "")
+        self.write("room.mtl", dark)
+        done = self.check("room.obj", code=INPUT)
+        self.assertNotIn("--sky", done.stdout + done.stderr)
+        self.assertIn("no daylight gets into the room (room.obj:19), as no face of it lets light through", done.stderr)
+        words = self.next_of(done)
+        self.assertEqual(words, "solve room.obj --set lamp.radiance=10 -o room.vtp --picture room.png".split())
+
+        self.write("room.mtl", dark.replace("lamp", "panel"))
+        self.write("room.obj", ROOM.replace("usemtl lamp", "usemtl panel"))
+        words = self.next_of(self.check("room.obj", code=INPUT))
+        self.assertEqual(words, "new room.obj -o room.toml".split())
+        self.assertEqual(self.run_tool(*words).returncode, GOOD)
+        text = (self.folder / "room.toml").read_text()
+        self.assertIn("[[luminaire]]\n", text)
+        self.assertIn("\n# [sky]\n", text)
+        solved = self.run_tool("solve", "room.toml", "--patches", 100, "-q", "--report", "a.json")
+        self.assertEqual(solved.returncode, GOOD, solved.stderr)
+        walls = json.loads((self.folder / "a.json").read_text())["materials"]
+        self.assertGreater(next(m for m in walls if m["name"] == "white")["irradiance_mean_W_m2"][0], 0)
+
+    def test_an_open_room_without_a_lamp_is_offered_a_sky(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8\n", ""))
+        self.write("room.obj", ROOM.replace("f 4 8 5 1\n", ""))
+        done = self.check("room.obj", code=INPUT)
+        self.assertIn("--sky overcast:10000lx", done.stderr)
+        self.assertIn("--sky", self.next_of(done))
+
     def test_reflectance_one_warns_and_an_open_room_is_solved(self):
         self.write("room.mtl", MATERIALS.replace("Kd 0.7 0.6 0.5", "Kd 1 1 1"))
         self.assertEqual([p["kind"] for p in self.report("room.obj")["problems"]], ["full_reflectance"])

@@ -2,6 +2,7 @@
 
 #include "input/new_scene_file.h"
 #include "model_files.h"
+#include "support/scenes.h"
 
 #include <numbers>
 
@@ -106,6 +107,22 @@ TEST_F(Rooms, AreInANewSceneFile) {
   const Point& eye = again.cameras[0].eye;
   EXPECT_TRUE(eye.x() >= 0.5 && eye.x() <= 3.5 && eye.y() >= 0.5 && eye.y() <= 2.5);
   EXPECT_NEAR(eye.z(), 1.6, 1e-9);
+}
+
+// In a box around both, which is closed, a lamp over the middle of each floor, within half a cell of sqrt(12) / 10 m.
+TEST_F(Rooms, ThatNoDaylightGetsIntoHaveALampEachInANewSceneFile) {
+  const Scene house = read_scene(folder_ / "house.ifc");
+  Scene box = test::with_box(test::empty_scene({test::grey(0.5)}), Point(0, 0, 0), Point(9, 3, 2.5), false);
+  box.up = Vector::UnitZ();
+  box.rooms = house.rooms;
+  const Scene again =
+      read_scene(write("new.toml", new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")));
+  EXPECT_FALSE(again.sky.has_value());
+  ASSERT_EQ(again.luminaires.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Point middle(k == 0 ? 2 : 7, 1.5, 1.8);
+    EXPECT_LT((again.luminaires[k].position - middle).norm(), 0.25) << again.luminaires[k].position.transpose();
+  }
 }
 
 // What it writes for a model in another unit is read again.

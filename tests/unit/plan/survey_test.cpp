@@ -86,14 +86,38 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
       << report.problems[0].what;
 
   scene.lamp_hints = {{"wall", rgb(20, 10, 5), "its Ka is 20, 10, 5"}};
-  const std::string advice = advice_without_lamp(scene);
+  const std::string advice = first_light(scene).advice;
   EXPECT_NE(advice.find("its Ka is 20, 10, 5"), std::string::npos) << advice;
   EXPECT_NE(advice.find("read.settings wall.radiance=20,10,5 "), std::string::npos) << advice;
 
   scene.lamp_hints.clear();
   scene.materials[1].name = "panel";
-  EXPECT_NE(advice_without_lamp(scene).find("wall, panel"), std::string::npos);
+  EXPECT_NE(first_light(scene).advice.find("wall, panel"), std::string::npos);
   EXPECT_THROW(make_plan(scene, {}), InputError);
+}
+
+TEST(Survey, ProposesASkyOnlyWhereItGetsIn) {
+  Scene closed = furnished_room(0.5, 0);
+  closed.materials[0].name = "wall";
+  closed.materials[1].name = "panel";
+  const FirstLight luminaire = survey_of(closed).first_light.value();
+  EXPECT_EQ(luminaire.setting, "") << "it takes a scene file";
+  EXPECT_EQ(luminaire.advice.find("read.daylight.sky"), std::string::npos) << luminaire.advice;
+  EXPECT_NE(luminaire.advice.find("no daylight gets into the room ("), std::string::npos) << luminaire.advice;
+  EXPECT_NE(luminaire.advice.find("a scene file with a luminaire in it"), std::string::npos) << luminaire.advice;
+
+  closed.materials[1].name = "lamp";
+  EXPECT_EQ(first_light(closed).setting, "read.settings lamp.radiance=10");
+
+  Scene open = closed;
+  open.polygons.erase(open.polygons.begin());
+  EXPECT_EQ(first_light(open).setting, "read.daylight.sky=overcast:10000lx");
+  const Scene body = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 1, 1), false);
+  EXPECT_EQ(first_light(body).setting, "read.daylight.sky=overcast:10000lx");
+  EXPECT_NE(first_light(body).advice.find("for daylight from outside, as no face of the model lets light through"),
+            std::string::npos)
+      << first_light(body).advice;
+  EXPECT_FALSE(survey_of(furnished_room(0.5)).first_light) << "it has a lamp";
 }
 
 }  // namespace

@@ -1,0 +1,85 @@
+#include "plan/first_light.h"
+
+#include "base/lower_case.h"
+#include "plan/first_few.h"
+#include "scene/sealed_room.h"
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// A radiance to begin with where the model names none: 1,800 cd/m^2, a lit panel. W/(m^2 sr).
+constexpr double usual_radiance = 10;
+
+constexpr std::size_t most_hints = 3;
+
+constexpr const char* usual_sky = "read.daylight.sky=overcast:10000lx";
+
+// The reader's hints, else the materials with a name like a lamp's.
+std::vector<LampHint> possible_lamps(const Scene& scene) {
+  if (!scene.lamp_hints.empty()) return scene.lamp_hints;
+  std::vector<LampHint> hints;
+  for (const Material& material : scene.materials) {
+    const std::string name = in_lower_case(material.name);
+    for (const char* part : {"light", "lamp", "lumin", "emit", "emissi", "glow", "bulb", "neon", "leucht"}) {
+      if (name.find(part) == std::string::npos) continue;
+      hints.push_back({material.name, Spectrum::Constant(1, usual_radiance), "its name"});
+      break;
+    }
+  }
+  return hints;
+}
+
+// As one types it in a shell.
+std::string setting_for(const LampHint& hint) {
+  std::ostringstream text;
+  const bool plain = hint.material.find_first_of(" \t'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+  text << "read.settings " << (plain ? "" : "'") << hint.material
+       << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ",")) << (plain ? "" : "'");
+  return text.str();
+}
+
+std::string advice_on_lamps(const std::vector<LampHint>& hints) {
+  if (hints.empty()) return "no material emits, and none looks like a lamp";
+  std::string advice = "no material emits";
+  for (std::size_t k = 0; k < std::min(most_hints, hints.size()); ++k) {
+    advice += "; '" + hints[k].material + "' looks like a lamp (" + hints[k].reason + "): " + setting_for(hints[k]) +
+              " switches it on";
+  }
+  return advice;
+}
+
+std::string advice_on_other_light(const Scene& scene, const std::optional<Solid>& hull) {
+  if (hull && is_room(scene, *hull)) {
+    return "; no daylight gets into the room (" + place_of(scene, scene.polygons[hull->polygons.front()]) +
+           "), as no face of it lets light through: let patchlight new MODEL -o SCENE.toml write a scene file with a "
+           "luminaire in it (docs/lights.md)";
+  }
+  return std::string("; for daylight ") + (hull ? "from outside, as no face of the model lets light through, " : "") +
+         "add " + usual_sky +
+         ", or let patchlight new MODEL -o SCENE.toml write a scene file to change (luminaires stand there, too: "
+         "docs/lights.md)";
+}
+
+}  // namespace
+
+FirstLight first_light(const Scene& scene) {
+  const std::optional<Solid> hull = sealed_hull(scene);
+  const std::vector<LampHint> hints = possible_lamps(scene);
+  FirstLight light;
+  light.advice = advice_on_lamps(hints) + advice_on_other_light(scene, hull);
+  const bool is_sealed = hull && is_room(scene, *hull);
+  if (!is_sealed) light.setting = usual_sky;
+  if (is_sealed && !hints.empty()) light.setting = setting_for(hints.front());
+  if (!hints.empty()) return light;
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) names.push_back(material.name);
+  light.advice += "; or choose a lamp with read.settings MATERIAL.radiance=R,G,B from " + first_few(names);
+  return light;
+}
+
+}  // namespace patchlight
