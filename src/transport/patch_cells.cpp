@@ -1,83 +1,98 @@
 #include "transport/patch_cells.h"
 
 #include "base/parallel.h"
-#include "base/sampling.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <tuple>
 
 namespace patchlight {
 namespace {
 
-// Patches, or slots, that one task puts in order.
+// Bits of a place along one axis: those of three axes fit into one number.
+constexpr int bits = 20;
+
+// Patches whose cells one task finds.
 constexpr std::size_t found_at_once = 4096;
 
-// So many patches to a slot in the mean: about as many as lie in a cell.
-constexpr std::size_t patches_per_slot = 8;
+using Places = std::array<std::uint64_t, 3>;  // along x, y and z
+
+// The lower bits of a number, each followed by two bits that are 0.
+std::uint64_t spread(std::uint64_t number) {
+  number = (number | number << 32) & 0x001f00000000ffff;
+  number = (number | number << 16) & 0x001f0000ff0000ff;
+  number = (number | number << 8) & 0x100f00f00f00f00f;
+  number = (number | number << 4) & 0x10c30c30c30c30c3;
+  return (number | number << 2) & 0x1249249249249249;
+}
+
+// And back.
+std::uint64_t gathered(std::uint64_t number) {
+  number &= 0x1249249249249249;
+  number = (number | number >> 2) & 0x10c30c30c30c30c3;
+  number = (number | number >> 4) & 0x100f00f00f00f00f;
+  number = (number | number >> 8) & 0x001f0000ff0000ff;
+  number = (number | number >> 16) & 0x001f00000000ffff;
+  return (number | number >> 32) & 0x1fffff;
+}
+
+std::uint64_t code_of(const Places& places) {
+  return spread(places[0]) << 2 | spread(places[1]) << 1 | spread(places[2]);
+}
+
+Places places_of(std::uint64_t code) { return {gathered(code >> 2), gathered(code >> 1), gathered(code)}; }
+
+Box box_around(const std::vector<Point>& points) {
+  Box box;
+  for (const Point& point : points) box.extend(point);
+  return box;
+}
 
 }  // namespace
 
-Cell PatchCells::cell_of(const Point& point) const {
-  const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(point[axis] / edge_)); };
-  return {at(0), at(1), at(2)};
-}
-
-std::uint32_t PatchCells::slot_of(const Cell& cell) const {
-  std::uint32_t state = 0;
-  for (const std::int64_t c : {cell.x, cell.y, cell.z})
-    state = hash(state ^ (static_cast<std::uint32_t>(c) * 0x9e3779b9U));
-  return state & mask_;
-}
-
-PatchCells::PatchCells(const PatchMesh& mesh, double edge) : edge_(edge) {
-  std::uint32_t slots = 1;
-  while (slots * patches_per_slot < mesh.size()) slots *= 2;
-  mask_ = slots - 1;
-
-  // 1. By slots: sort by counting.
-  std::vector<std::uint32_t> slot(mesh.size());
+PatchCells::PatchCells(const PatchMesh& mesh, double length) : centroids_(mesh.centroid), places_(mesh.size()) {
+  if (places_.empty()) return;
+  const Box box = box_around(mesh.centroid);
+  // A little wider, so that no rounding of places makes neighbours of cells that are not.
+  constexpr double wider = 1 + 0x1p-30;
+  const int halvings = bits - 2 - std::ilogb(std::max(1.0, box.sizes().maxCoeff() / length));
+  edge_ = std::ldexp(wider * length, -halvings);
   parallel_for((mesh.size() + found_at_once - 1) / found_at_once, [&](std::size_t task) {
     const std::size_t end = std::min<std::size_t>(mesh.size(), (task + 1) * found_at_once);
-    for (std::size_t i = task * found_at_once; i < end; ++i) slot[i] = slot_of(cell_of(mesh.centroid[i]));
+    for (std::size_t i = task * found_at_once; i < end; ++i) {
+      const Vector edges = (mesh.centroid[i] - box.min()) / edge_;
+      const auto along = [&](int axis) { return static_cast<std::uint64_t>(edges[axis]); };
+      places_[i] = {code_of({along(0), along(1), along(2)}), static_cast<PatchIndex>(i)};
+    }
   });
-  first_.assign(std::size_t{slots} + 1, 0);
-  for (const std::uint32_t s : slot) ++first_[std::size_t{s} + 1];
-  for (std::size_t s = 0; s < slots; ++s) first_[s + 1] += first_[s];
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  patches_.resize(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) patches_[next[slot[i]]++] = i;
+  std::sort(places_.begin(), places_.end());
+}
 
-  // 2. By cells within each slot.
-  const auto key = [&](PatchIndex patch) {
-    const Cell cell = cell_of(mesh.centroid[patch]);
-    return std::tuple(cell.x, cell.y, cell.z, patch);
-  };
-  parallel_for((slots + found_at_once - 1) / found_at_once, [&](std::size_t task) {
-    const std::size_t end = std::min<std::size_t>(slots, (task + 1) * found_at_once);
-    for (std::size_t s = task * found_at_once; s < end; ++s)
-      std::sort(patches_.begin() + first_[s], patches_.begin() + first_[s + 1],
-                [&](PatchIndex a, PatchIndex b) { return key(a) < key(b); });
-  });
-  cells_.reserve(mesh.size());
-  centroids_.reserve(mesh.size());
-  for (const PatchIndex i : patches_) {
-    cells_.push_back(cell_of(mesh.centroid[i]));
-    centroids_.push_back(mesh.centroid[i]);
+int PatchCells::level_of(double length) const {
+  // length = share 2^exponent edges, with a share of 1/2 up to, but not, 1.
+  int exponent = 0;
+  const double share = std::frexp(length / edge_, &exponent);
+  return std::clamp(share > 0.5 ? exponent : exponent - 1, 0, bits);
+}
+
+void PatchCells::add_patches_in(const Cell& cell, NearPatches& near) const {
+  const int shift = 3 * cell.level;
+  auto place = std::lower_bound(places_.begin(), places_.end(), Place{cell.code << shift, 0});
+  for (; place != places_.end() && place->code >> shift == cell.code; ++place) {
+    near.patches.push_back(place->patch);
+    for (int axis = 0; axis < 3; ++axis)
+      near.centroids[static_cast<std::size_t>(axis)].push_back(centroids_[place->patch][axis]);
   }
 }
 
 NearPatches PatchCells::around(const Cell& home) const {
   NearPatches near;
-  for (int k = 0; k < 27; ++k) {
-    const Cell cell{home.x + k / 9 - 1, home.y + k / 3 % 3 - 1, home.z + k % 3 - 1};
-    const std::uint32_t s = slot_of(cell);
-    for (std::uint32_t p = first_[s]; p < first_[s + 1]; ++p) {
-      if (cells_[p] != cell) continue;
-      near.patches.push_back(patches_[p]);
-      near.centroids.push_back(centroids_[p]);
-    }
+  const auto [x, y, z] = places_of(home.code);
+  const std::uint64_t end = std::uint64_t{1} << (bits - home.level);  // along each axis
+  for (std::uint64_t k = 0; k < 27; ++k) {
+    // Below the first cell the number is past the last one.
+    const Places places{x + k / 9 - 1, y + k / 3 % 3 - 1, z + k % 3 - 1};
+    if (std::all_of(places.begin(), places.end(), [end](std::uint64_t place) { return place < end; }))
+      add_patches_in({home.level, code_of(places)}, near);
   }
   return near;
 }

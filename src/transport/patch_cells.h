@@ -3,53 +3,57 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/mesh/patch_mesh.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace patchlight {
 
-/// A cube of a grid over all of space.
+/// A cube of one of the grids over a scene, each with edges twice as long as those of the level below.
 struct Cell {
-  std::int64_t x = 0, y = 0, z = 0;
+  int level = 0;
+  std::uint64_t code = 0;  ///< the bits of its place along x, y and z in turns
   bool operator==(const Cell&) const = default;
 };
 
-/// Patches that may be near, with their centroids.
+/// Patches that may be near, with the coordinates of their centroids.
 struct NearPatches {
   std::vector<PatchIndex> patches;
-  std::vector<Point> centroids;
+  std::array<std::vector<double>, 3> centroids;
 };
 
-/// The centroids of all patches in cubic cells, in a table with a slot for each hash of a cell. O(n log n) to build.
-/// The same order for any number of threads.
+/// The centroids of all patches along a curve through the scene (Morton 1966) on which those of every cell of every
+/// level follow each other. O(n log n) to build.
 class PatchCells {
  public:
-  /// Cells with edges of `edge` metres.
-  PatchCells(const PatchMesh& mesh, double edge);
+  /// Cells of one of the levels have edges of `length` metres, but for rounding.
+  PatchCells(const PatchMesh& mesh, double length);
 
-  std::uint32_t slots() const { return mask_ + 1; }
-  /// The patches of a slot stand at these places of the table, first and one after the last. Cells may share a slot;
-  /// their patches follow each other.
-  std::pair<std::uint32_t, std::uint32_t> places_in(std::uint32_t slot) const {
-    return {first_[slot], first_[slot + 1]};
-  }
-  PatchIndex patch(std::uint32_t place) const { return patches_[place]; }
-  const Cell& cell(std::uint32_t place) const { return cells_[place]; }
+  std::size_t size() const { return places_.size(); }
+  /// The patch at a place of the curve, and its cell of a level.
+  PatchIndex patch(std::size_t place) const { return places_[place].patch; }
+  Cell cell(std::size_t place, int level) const { return {level, places_[place].code >> (3 * level)}; }
+  /// The lowest level whose cells have edges of at least `length`, metres; the highest where none has.
+  int level_of(double length) const;
 
   /// All patches in a cell and in those around: none else is nearer than a cell's edge to what lies in it.
   NearPatches around(const Cell& home) const;
 
  private:
-  Cell cell_of(const Point& point) const;
-  std::uint32_t slot_of(const Cell& cell) const;
+  struct Place {
+    std::uint64_t code = 0;  // of the cell of level 0
+    PatchIndex patch = 0;
+    bool operator<(const Place& other) const {
+      return code < other.code || (code == other.code && patch < other.patch);
+    }
+  };
 
-  double edge_;
-  std::uint32_t mask_ = 0;
-  std::vector<std::uint32_t> first_;  // per slot; one more at the end
-  std::vector<PatchIndex> patches_;
-  std::vector<Cell> cells_;       // of patches_
-  std::vector<Point> centroids_;  // of patches_
+  void add_patches_in(const Cell& cell, NearPatches& near) const;
+
+  const std::vector<Point>& centroids_;
+  double edge_ = 1;  // of level 0, metres
+  std::vector<Place> places_;
 };
 
 }  // namespace patchlight

@@ -6,10 +6,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <optional>
-#include <set>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -31,8 +33,9 @@ constexpr double off_plane = 0.2;
 // one side.
 constexpr double ridge = 0.05;
 
-// Slots of cells that one task looks through.
-constexpr std::uint32_t slots_at_once = 64;
+// Patches that one task smooths, and candidates whose distances are found together.
+constexpr std::size_t smoothed_at_once = 1024;
+constexpr std::size_t measured_at_once = 64;
 
 struct Neighbour {
   PatchIndex patch = 0;
@@ -40,57 +43,105 @@ struct Neighbour {
   double u = 0, v = 0;  // place in the plane, in radii
 };
 
+// How far patches look for neighbours where nothing is near them.
+double widest_radius(double area) { return std::sqrt(most_neighbours / std::numbers::pi * area); }
+
 struct Smoother {
   const PatchMesh& mesh;
   std::span<const float> distance;
 
   double radius(PatchIndex i) const {
-    return std::min(reach * static_cast<double>(distance[i]),
-                    std::sqrt(most_neighbours / std::numbers::pi * mesh.area[i]));
+    return std::min(reach * static_cast<double>(distance[i]), widest_radius(mesh.area[i]));
   }
   std::vector<Neighbour> neighbours(PatchIndex i, const NearPatches& candidates) const;
 };
 
+// A patch that looks around, and where it does.
+struct LookingPatch {
+  const Smoother& smoother;
+  PatchIndex patch;
+  double radius = smoother.radius(patch);
+  double share = 1 / radius;
+  Point centroid = smoother.mesh.centroid[patch];
+  Vector normal = smoother.mesh.normal[patch];
+  Vector along = normal.unitOrthogonal();
+  Vector across = normal.cross(along);
+
+  // Is a patch within the radius, at `to` from here, a neighbour?
+  bool is_neighbour(PatchIndex j, const Vector& to, double cosine) const {
+    const double reach_of_other = reach * static_cast<double>(smoother.distance[j]);
+    return cosine >= least_cosine && to.squaredNorm() <= reach_of_other * reach_of_other &&
+           std::abs(to.dot(normal)) <= off_plane * radius;
+  }
+  Neighbour neighbour(PatchIndex j, const Vector& to, double cosine) const {
+    constexpr double per_cosine = 1 / (1 - least_cosine);
+    const Vector place = share * to;
+    const double near = 1 - 0.75 * place.squaredNorm();
+    const double alike = per_cosine * (cosine - least_cosine);
+    return {j, smoother.mesh.area[j] * near * alike, place.dot(along), place.dot(across)};
+  }
+};
+
+// Some places among candidates, as many as are measured together.
+struct Within {
+  std::array<std::uint32_t, measured_at_once> places;
+  std::size_t count = 0;
+};
+
+// Which candidates from `first` on lie within a radius. Where they do follows no pattern, so that nothing branches on
+// it.
+Within within_radius(const NearPatches& candidates, std::size_t first, const Point& centre, double radius) {
+  const std::size_t end = std::min(candidates.patches.size(), first + measured_at_once);
+  const auto& [x, y, z] = candidates.centroids;
+  Within within;
+  for (std::size_t k = first; k < end; ++k) {
+    const double to_x = x[k] - centre.x();
+    const double to_y = y[k] - centre.y();
+    const double to_z = z[k] - centre.z();
+    within.places[within.count] = static_cast<std::uint32_t>(k);
+    within.count += to_x * to_x + to_y * to_y + to_z * to_z <= radius * radius ? 1 : 0;
+  }
+  return within;
+}
+
 // With itself.
 std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const NearPatches& candidates) const {
-  const double r = radius(i);
-  const Point& centroid = mesh.centroid[i];
-  const Vector& normal = mesh.normal[i];
-  const Vector along = normal.unitOrthogonal();
-  const Vector across = normal.cross(along);
+  const LookingPatch from{*this, i};
+  const auto& [x, y, z] = candidates.centroids;
   std::vector<Neighbour> found;
   found.reserve(2 * static_cast<std::size_t>(most_neighbours));
-  for (std::size_t k = 0; k < candidates.patches.size(); ++k) {
-    const Vector to = candidates.centroids[k] - centroid;
-    const double squared = to.squaredNorm();
-    if (squared > r * r) continue;
-    const PatchIndex j = candidates.patches[k];
-    const double cosine = normal.dot(mesh.normal[j]);
-    if (cosine < least_cosine) continue;
-    const double reach_of_other = reach * static_cast<double>(distance[j]);
-    if (squared > reach_of_other * reach_of_other || std::abs(to.dot(normal)) > off_plane * r) continue;
-    const double near = 1 - 0.75 * squared / (r * r);
-    const double alike = (cosine - least_cosine) / (1 - least_cosine);
-    found.push_back({j, mesh.area[j] * near * alike, to.dot(along) / r, to.dot(across) / r});
+  for (std::size_t first = 0; first < candidates.patches.size(); first += measured_at_once) {
+    const Within within = within_radius(candidates, first, from.centroid, from.radius);
+    for (const std::uint32_t k : std::span(within.places).first(within.count)) {
+      const PatchIndex j = candidates.patches[k];
+      const Vector to(x[k] - from.centroid.x(), y[k] - from.centroid.y(), z[k] - from.centroid.z());
+      const double cosine = from.normal.dot(mesh.normal[j]);
+      if (from.is_neighbour(j, to, cosine)) found.push_back(from.neighbour(j, to, cosine));
+    }
   }
   return found;
 }
 
 // What each neighbour's value counts in the regression's value at the centroid; they sum up to 1.
 std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  double sum = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
   for (const Neighbour& n : neighbours) {
-    const Vector basis(1, n.u, n.v);
-    moments += n.weight * basis * basis.transpose();
+    const double wu = n.weight * n.u, wv = n.weight * n.v;
+    sum += n.weight;
+    u += wu;
+    v += wv;
+    uu += wu * n.u;
+    uv += wu * n.v;
+    vv += wv * n.v;
   }
-  moments(1, 1) += ridge * moments(0, 0);
-  moments(2, 2) += ridge * moments(0, 0);
+  Eigen::Matrix3d moments;
+  moments << sum, u, v, u, uu + ridge * sum, uv, v, uv, vv + ridge * sum;
   const Vector dual = moments.inverse().col(0);
   std::vector<double> of_each;
   of_each.reserve(neighbours.size());
-  double sum = 0;
-  for (const Neighbour& n : neighbours) sum += of_each.emplace_back(n.weight * dual.dot(Vector(1, n.u, n.v)));
-  for (double& c : of_each) c /= sum;
+  double all = 0;
+  for (const Neighbour& n : neighbours) all += of_each.emplace_back(n.weight * dual.dot(Vector(1, n.u, n.v)));
+  for (double& c : of_each) c /= all;
   return of_each;
 }
 
@@ -178,32 +229,27 @@ void smooth_patch(PatchIndex i, const std::vector<Neighbour>& neighbours, const 
   variance.row(i) *= squares / weights;
 }
 
-// The lowest power of two that a cell's edge may be.
-constexpr int lowest_level = -32;
-
-// The power of two next above each patch's radius, from the lowest on; -1 where nothing is smoothed.
-std::vector<int> levels_of(const Smoother& smoother) {
-  std::vector<int> levels(smoother.mesh.size(), -1);
-  for (PatchIndex i = 0; i < smoother.mesh.size(); ++i) {
-    const double r = smoother.radius(i);
-    if (r > 0) levels[i] = std::max(0, static_cast<int>(std::ceil(std::log2(r))) - lowest_level);
+// Places along the curve of cells by the level of the patches there: that of cells as wide as they may look.
+std::map<int, std::vector<std::size_t>> places_by_level(const Smoother& smoother, const PatchCells& cells) {
+  std::map<int, std::vector<std::size_t>> places;
+  for (std::size_t place = 0; place < cells.size(); ++place) {
+    const PatchIndex i = cells.patch(place);
+    if (smoother.radius(i) > 0) places[cells.level_of(widest_radius(smoother.mesh.area[i]))].push_back(place);
   }
-  return levels;
+  return places;
 }
 
-// The patches of a slot that are of this level; those of one cell follow each other, and share candidates.
-void smooth_slot(const Smoother& smoother, const PatchCells& cells, std::uint32_t slot,
-                 const std::vector<int>& level_of, int level, const Smoothing& fields) {
+// Patches of one level; those of one cell follow each other, and share candidates.
+void smooth_places(const Smoother& smoother, const PatchCells& cells, std::span<const std::size_t> places, int level,
+                   const Smoothing& fields) {
   std::optional<Cell> cell;
   NearPatches candidates;
-  const auto [first, last] = cells.places_in(slot);
-  for (std::uint32_t place = first; place < last; ++place) {
-    const PatchIndex i = cells.patch(place);
-    if (level_of[i] != level) continue;
-    if (cells.cell(place) != cell) {
-      cell = cells.cell(place);
+  for (const std::size_t place : places) {
+    if (cells.cell(place, level) != cell) {
+      cell = cells.cell(place, level);
       candidates = cells.around(*cell);
     }
+    const PatchIndex i = cells.patch(place);
     const std::vector<Neighbour> neighbours = smoother.neighbours(i, candidates);
     if (neighbours.size() > 1) smooth_patch(i, neighbours, fields);
   }
@@ -214,17 +260,14 @@ void smooth_slot(const Smoother& smoother, const PatchCells& cells, std::uint32_
 SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, const std::array<Field, 2>& halves) {
   SmoothedHalves into{halves, (0.5 * (halves[0] - halves[1])).square()};
   const Smoother smoother{mesh, distance};
-  // Patches by their radius, so that cells are as wide as they look.
-  const std::vector<int> level_of = levels_of(smoother);
-  const std::set<int> levels(level_of.begin(), level_of.end());
-  for (const int level : levels) {
-    if (level < 0) continue;
-    const PatchCells cells(mesh, std::ldexp(1.0, level + lowest_level));
-    parallel_for((cells.slots() + slots_at_once - 1) / slots_at_once, [&](std::size_t task) {
-      const auto begin = static_cast<std::uint32_t>(task * slots_at_once);
-      const std::uint32_t end = std::min(cells.slots(), begin + slots_at_once);
-      for (std::uint32_t slot = begin; slot < end; ++slot)
-        smooth_slot(smoother, cells, slot, level_of, level, {halves, into});
+  const PatchCells cells(mesh,
+                         widest_radius(mesh.area.empty() ? 1 : *std::max_element(mesh.area.begin(), mesh.area.end())));
+  for (const auto& [level, places] : places_by_level(smoother, cells)) {
+    const std::span<const std::size_t> of_level(places);
+    parallel_for((places.size() + smoothed_at_once - 1) / smoothed_at_once, [&, level = level](std::size_t task) {
+      const std::size_t first = task * smoothed_at_once;
+      const std::size_t count = std::min(smoothed_at_once, of_level.size() - first);
+      smooth_places(smoother, cells, of_level.subspan(first, count), level, {halves, into});
     });
   }
   return into;
