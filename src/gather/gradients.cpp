@@ -14,7 +14,7 @@ constexpr double damping = 1e-6;
 }  // namespace
 
 Field gradients(const PatchMesh& mesh, const FieldView& values) {
-  const auto at_vertex = patches_at_vertices(mesh);
+  const PatchesAtVertices at_vertex(mesh);
   Field found = Field::Zero(values.rows(), 3 * values.cols());
   parallel_for(mesh.size(), [&](std::size_t row) {
     // (sum d d^T) g = sum d (B_i - B_j), d the way from one centroid to the other

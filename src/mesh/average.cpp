@@ -144,7 +144,7 @@ Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedFi
 }
 
 SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
-  const auto at_vertex = patches_at_vertices(mesh);
+  const PatchesAtVertices at_vertex(mesh);
   SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
   parallel_for(mesh.size(), [&](std::size_t row) {
     const auto i = static_cast<PatchIndex>(row);

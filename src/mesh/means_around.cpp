@@ -13,11 +13,11 @@ constexpr double same_facing = 0.9;
 }  // namespace
 
 Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
-  const auto at_vertex = patches_at_vertices(mesh);
-  Field means(values.rows(), values.cols());
+  const PatchesAtVertices at_vertex(mesh);
+  Field means = Field::Zero(values.rows(), values.cols());
   parallel_for(mesh.size(), [&](std::size_t at) {
     const auto i = static_cast<PatchIndex>(at);
-    Field sum = Field::Zero(1, values.cols());
+    auto sum = means.row(i);
     double areas = 0;
     for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
@@ -26,7 +26,7 @@ Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fiel
         areas += area[j];
       }
     }
-    means.row(i) = sum / areas;
+    sum /= areas;
   });
   return means;
 }

@@ -36,11 +36,14 @@ PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, co
   open.escaped = open.at_backs = open.covered = open.dark = open.overlaid = Eigen::VectorXd::Zero(1);
   std::vector<PatchIndex> place(mesh.size(), 0);
   bool any = false;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const auto& lines = plan.contacts.on[mesh.polygon[i]];
-    const bool touches = std::any_of(lines.begin(), lines.end(), [](const ContactLine& line) { return line.gap == 0; });
-    if (touches) place[i] = no_patch;
-    any = any || touches;
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    const auto& lines = plan.contacts.on[polygon];
+    if (std::none_of(lines.begin(), lines.end(), [](const ContactLine& line) { return line.gap == 0; })) continue;
+    for (const Side side : {Side::front, Side::back}) {
+      const auto [begin, end] = mesh.patches_on(polygon, side);
+      std::fill(place.begin() + begin, place.begin() + end, no_patch);
+      any = any || begin < end;
+    }
   }
   if (!any) return mesh;
   const LostShare lost = measure_lost_share(mesh, occluder, KnownShares{open, place}, plan.assembly.seed);
