@@ -123,7 +123,8 @@ std::size_t npy_count(const std::filesystem::path& file) {
 }
 
 template <class Number>
-LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size_t count) {
+void read_npy_pieces(const std::filesystem::path& file, std::size_t count,
+                     const std::function<void(std::span<const Number> piece)>& take) {
   std::ifstream stream;
   const std::string text = open_npy(file, stream);
   const std::uintmax_t bytes = std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream.tellg());
@@ -133,10 +134,19 @@ LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size
   if (!good)
     throw InputError(file.string(), "found another array than one of " + std::to_string(count) + " numbers of type '" +
                                         type_of<Number>() + "'; make the form factors anew");
-  LargeArray<Number> values(count);
-  stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(Number)));
-  if (!stream) throw InputError(file.string(), "cannot be read to its end");
-  return values;
+  constexpr std::size_t bytes_of_piece = std::size_t{1} << 18;
+  std::vector<Number> piece(std::min(count, bytes_of_piece / sizeof(Number)));
+  for (std::size_t first = 0; first < count; first += piece.size()) {
+    const std::span<Number> part = std::span(piece).first(std::min(piece.size(), count - first));
+    stream.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size_bytes()));
+    if (!stream) throw InputError(file.string(), "cannot be read to its end");
+    take(part);
+  }
+}
+
+template <class Number>
+LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size_t count) {
+  return read_npy_as<LargeArray<Number>, Number>(file, count);
 }
 
 template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int32_t>);
@@ -144,9 +154,17 @@ template void write_npy_numbers(const std::filesystem::path&, std::span<const st
 template void write_npy_numbers(const std::filesystem::path&, std::span<const float>);
 template void write_npy_numbers(const std::filesystem::path&, std::span<const double>);
 template LargeArray<std::int32_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template void read_npy_pieces(const std::filesystem::path&, std::size_t,
+                              const std::function<void(std::span<const std::int32_t>)>&);
 template LargeArray<std::int64_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template void read_npy_pieces(const std::filesystem::path&, std::size_t,
+                              const std::function<void(std::span<const std::int64_t>)>&);
 template LargeArray<float> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template void read_npy_pieces(const std::filesystem::path&, std::size_t,
+                              const std::function<void(std::span<const float>)>&);
 template LargeArray<double> read_npy_numbers(const std::filesystem::path&, std::size_t);
+template void read_npy_pieces(const std::filesystem::path&, std::size_t,
+                              const std::function<void(std::span<const double>)>&);
 
 void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns,
                const std::function<void(std::size_t row, std::span<float> values)>& fill) {

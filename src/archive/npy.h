@@ -33,6 +33,29 @@ void write_npy_numbers(const std::filesystem::path& file, std::span<const Number
 template <class Number>
 LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size_t count);
 
+/// The same piece by piece, each small enough for a cache: what becomes another array takes no copy of the whole.
+/// \throws InputError, and what `take` throws.
+template <class Number>
+void read_npy_pieces(const std::filesystem::path& file, std::size_t count,
+                     const std::function<void(std::span<const Number> piece)>& take);
+
+/// Such an array, of Stored numbers, as another array has them; `check` throws at a piece with a number that cannot be.
+/// \throws InputError, and what `check` throws.
+template <class Array, class Stored, class Check>
+Array read_npy_as(const std::filesystem::path& file, std::size_t count, const Check& check) {
+  Array values;
+  read_npy_pieces<Stored>(file, count, [&](std::span<const Stored> piece) {
+    check(piece);
+    if (values.empty()) values.reserve(count);
+    values.insert(values.end(), piece.begin(), piece.end());
+  });
+  return values;
+}
+template <class Array, class Stored>
+Array read_npy_as(const std::filesystem::path& file, std::size_t count) {
+  return read_npy_as<Array, Stored>(file, count, [](std::span<const Stored>) {});
+}
+
 /// How many numbers an array of one dimension has. \throws InputError.
 std::size_t npy_count(const std::filesystem::path& file);
 

@@ -15,6 +15,7 @@
 #include "plan/planned_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -138,21 +139,23 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   throw InputError(file.string(), "found " + found + "; expected " + expected + ". Make the form factors anew");
 }
 
-// Where rows begin among all their entries.
+// Where rows begin among all their entries. What is below 0 in the file is a very large number here.
 std::vector<std::uint64_t> read_begins(const std::filesystem::path& file, std::size_t rows) {
-  const LargeArray<std::int64_t> stored = read_npy_numbers<std::int64_t>(file, rows + 1);
-  const bool rises = stored.front() == 0 && std::is_sorted(stored.begin(), stored.end());
-  if (!rises) refuse(file, "rows that begin before those above them", "0 first, then no number below the one before");
-  return {stored.begin(), stored.end()};
+  auto begins = read_npy_as<std::vector<std::uint64_t>, std::int64_t>(file, rows + 1);
+  const bool rises = begins.front() == 0 && std::is_sorted(begins.begin(), begins.end());
+  if (!rises || std::bit_cast<std::int64_t>(begins.back()) < 0)
+    refuse(file, "rows that begin before those above them", "0 first, then no number below the one before");
+  return begins;
 }
 
 LargeArray<PatchIndex> read_columns(const std::filesystem::path& file, std::size_t count, std::size_t patches) {
-  const LargeArray<std::int32_t> stored = read_npy_numbers<std::int32_t>(file, count);
-  const auto is_patch = [&](std::int32_t j) { return j >= 0 && static_cast<std::size_t>(j) < patches; };
-  const auto other = std::find_if_not(stored.begin(), stored.end(), is_patch);
-  if (other != stored.end())
-    refuse(file, "column " + std::to_string(*other), "one of " + std::to_string(patches) + " patches, from 0");
-  return {stored.begin(), stored.end()};
+  // What is below 0 in the file is a very large number here.
+  const auto is_patch = [&](std::int32_t j) { return static_cast<std::uint32_t>(j) < patches; };
+  return read_npy_as<LargeArray<PatchIndex>, std::int32_t>(file, count, [&](std::span<const std::int32_t> piece) {
+    const auto other = std::find_if_not(piece.begin(), piece.end(), is_patch);
+    if (other != piece.end())
+      refuse(file, "column " + std::to_string(*other), "one of " + std::to_string(patches) + " patches, from 0");
+  });
 }
 
 RayRows read_half(const std::filesystem::path& folder, std::size_t half, std::size_t patches) {
@@ -160,16 +163,16 @@ RayRows read_half(const std::filesystem::path& folder, std::size_t half, std::si
   RayRows rows;
   rows.first_hit = read_begins(file(0), patches);
   rows.hits = read_columns(file(1), rows.first_hit.back(), patches);
-  const LargeArray<double> weights = read_npy_numbers<double>(file(2), patches);
-  rows.hit_weight.assign(weights.begin(), weights.end());
+  rows.hit_weight = read_npy_as<std::vector<double>, double>(file(2), patches);
   rows.first_entry = read_begins(file(3), patches);
   const LargeArray<PatchIndex> columns = read_columns(file(4), rows.first_entry.back(), patches);
-  const LargeArray<float> entries = read_npy_numbers<float>(file(5), rows.first_entry.back());
-  rows.entries.reserve(entries.size());
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (!(entries[k] >= 0)) refuse(file(5), "a form factor of " + std::to_string(entries[k]), "numbers from 0 on");
-    rows.entries.push_back({columns[k], entries[k]});
-  }
+  rows.entries.reserve(columns.size());
+  read_npy_pieces<float>(file(5), columns.size(), [&](std::span<const float> piece) {
+    for (const float entry : piece) {
+      if (!(entry >= 0)) refuse(file(5), "a form factor of " + std::to_string(entry), "numbers from 0 on");
+      rows.entries.push_back({columns[rows.entries.size()], entry});
+    }
+  });
   return rows;
 }
 
@@ -280,8 +283,7 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
       require_sums(file_of_half(folder, 2, half), of_half, wanted);
     }
   }
-  const LargeArray<float> distance = read_npy_numbers<float>(folder / file_name::hit_distance, patches);
-  rows.distance.assign(distance.begin(), distance.end());
+  rows.distance = read_npy_as<std::vector<float>, float>(folder / file_name::hit_distance, patches);
   const auto is_length = [](float metres) { return std::isfinite(metres) && metres >= 0; };
   if (!std::all_of(rows.distance.begin(), rows.distance.end(), is_length))
     refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "metres from 0 on");
