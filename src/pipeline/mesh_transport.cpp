@@ -61,7 +61,7 @@ MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts
       .of_parents = {},
       .rays = std::make_unique<RaysWithPockets>(RayTransport(std::move(found.rows.halves)), highest),
       .light = std::move(found.light)};
-  transport.facts.row_sum = transport.rays->apply(Field::Ones(transport.area.size(), 1)).matrix();
+  transport.facts.row_sum = transport.rays->rays().row_sums();
   return transport;
 }
 

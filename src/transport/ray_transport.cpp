@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <span>
 
 namespace patchlight {
 namespace {
@@ -20,18 +22,25 @@ struct Columns {
   Eigen::Index stride;
 };
 
+// Hits ahead of which the field is fetched: more than the machine looks ahead by itself.
+constexpr std::ptrdiff_t hits_ahead = 128;
+
 // (F B)_i of one half for patches [begin, end), times `factor`, added to the sums. Each hit is one read from anywhere
 // in the field: the rows are read by plain pointers, so that nothing else is loaded between these.
 template <std::size_t width>
 void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchRange patches) {
   using Sum = std::array<double, width>;
   const PatchIndex* const hits = rows.hits.data();
+  const PatchIndex* const last = hits + rows.hits.size() - 1;
   const double* const field = columns.values;
   for (PatchIndex i = patches.begin; i < patches.end; ++i) {
     Sum of_hits{};
     Sum of_entries{};
     const PatchIndex* const end = hits + rows.first_hit[i + 1];
     for (const PatchIndex* hit = hits + rows.first_hit[i]; hit != end; ++hit) {
+      const double* const soon = field + std::size_t{hit[std::min(hits_ahead, last - hit)]} * width;
+      __builtin_prefetch(soon);
+      if constexpr (width > 1) __builtin_prefetch(soon + width - 1);
       const double* const values = field + std::size_t{*hit} * width;
       for (std::size_t band = 0; band < width; ++band) of_hits[band] += values[band];
     }
@@ -46,37 +55,66 @@ void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchR
   }
 }
 
+double row_sum(const RayRows& rows, PatchIndex i) {
+  double of_entries = 0;
+  for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
+    of_entries += static_cast<double>(rows.entries[k].form_factor);
+  return rows.hit_weight[i] * static_cast<double>(rows.first_hit[i + 1] - rows.first_hit[i]) + of_entries;
+}
+
 using AddRows = void (*)(const RayRows& rows, const Columns& columns, double factor, PatchRange patches);
 constexpr std::array<AddRows, 4> add_rows_of_width{add_rows<1>, add_rows<2>, add_rows<3>, add_rows<4>};
 
-void add_half(const RayRows& rows, const FieldView& radiosity, double factor, Field& irradiance) {
-  const auto size = static_cast<PatchIndex>(rows.hit_weight.size());
+// Some columns of a field, row by row without a gap, in memory of which a pass over it misses few addresses.
+LargeArray<double> packed(const FieldView& field, Eigen::Index first, Eigen::Index width) {
+  LargeArray<double> values;
+  values.reserve(static_cast<std::size_t>(field.rows() * width));
+  if (field.outerStride() == width) {
+    values.insert(values.end(), field.data(), field.data() + field.rows() * width);
+    return values;
+  }
+  for (Eigen::Index i = 0; i < field.rows(); ++i)
+    for (Eigen::Index band = first; band < first + width; ++band) values.push_back(field(i, band));
+  return values;
+}
+
+// The sum over some halves of their F B, each times `factor`.
+Field irradiance_by(std::span<const RayRows> halves, const FieldView& radiosity, double factor) {
+  Field irradiance = Field::Zero(radiosity.rows(), radiosity.cols());
+  const auto size = static_cast<PatchIndex>(radiosity.rows());
   const auto most = static_cast<Eigen::Index>(add_rows_of_width.size());
   for (Eigen::Index first = 0; first < radiosity.cols(); first += most) {
     const Eigen::Index width = std::min(most, radiosity.cols() - first);
-    LargeArray<double> packed(static_cast<std::size_t>(radiosity.rows() * width));
-    Eigen::Map<Field>(packed.data(), radiosity.rows(), width) = radiosity.middleCols(first, width);
+    const LargeArray<double> values = packed(radiosity, first, width);
     const AddRows add = add_rows_of_width[static_cast<std::size_t>(width - 1)];
-    const Columns columns{packed.data(), irradiance.data() + first, irradiance.cols()};
-    parallel_for((size + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {
-      const auto begin = static_cast<PatchIndex>(task * rows_of_task);
-      add(rows, columns, factor, {begin, std::min(size, begin + rows_of_task)});
-    });
+    const Columns columns{values.data(), irradiance.data() + first, irradiance.cols()};
+    for (const RayRows& rows : halves) {
+      parallel_for((size + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {
+        const auto begin = static_cast<PatchIndex>(task * rows_of_task);
+        add(rows, columns, factor, {begin, std::min(size, begin + rows_of_task)});
+      });
+    }
   }
+  return irradiance;
 }
 
 }  // namespace
 
-Field RayTransport::apply(const FieldView& radiosity) const {
-  Field irradiance = Field::Zero(radiosity.rows(), radiosity.cols());
-  for (const RayRows& rows : halves_) add_half(rows, radiosity, 0.5, irradiance);
-  return irradiance;
-}
+Field RayTransport::apply(const FieldView& radiosity) const { return irradiance_by(halves_, radiosity, 0.5); }
 
 Field RayTransport::apply_half(std::size_t half, const FieldView& radiosity) const {
-  Field irradiance = Field::Zero(radiosity.rows(), radiosity.cols());
-  add_half(halves_[half], radiosity, 1, irradiance);
-  return irradiance;
+  return irradiance_by(std::span(halves_).subspan(half, 1), radiosity, 1);
+}
+
+Eigen::VectorXd RayTransport::row_sums() const {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(size());
+  for (const RayRows& rows : halves_) {
+    parallel_for((size() + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {
+      const auto begin = static_cast<PatchIndex>(task * rows_of_task);
+      for (PatchIndex i = begin; i < std::min(size(), begin + rows_of_task); ++i) sums[i] += 0.5 * row_sum(rows, i);
+    });
+  }
+  return sums;
 }
 
 }  // namespace patchlight

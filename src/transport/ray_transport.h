@@ -22,6 +22,9 @@ class RayTransport : public TransportOperator {
   /// The same by one half of the rays alone, 0 or 1.
   Field apply_half(std::size_t half, const FieldView& radiosity) const;
 
+  /// F 1, the same bits as apply() has, without looking at what is met.
+  Eigen::VectorXd row_sums() const;
+
   const RayRows& rows(std::size_t half) const { return halves_[half]; }
 
  private:

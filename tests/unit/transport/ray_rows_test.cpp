@@ -97,6 +97,7 @@ TEST(RayRows, OfAClosedRoomLoseNothing) {
   const Scene scene = with_box(cube_room(0.5, 0), Point(0.3, 0.3, 0.3), Point(0.6, 0.7, 0.5), false);
   const TracedRows rows = Place(scene, 0.1, Sides::front).rows();
   const Field sums = RayTransport(rows.halves).apply(Field::Ones(rows.area.size(), 1));
+  EXPECT_TRUE((RayTransport(rows.halves).row_sums().array() == sums.col(0)).all()) << "to the bit";
   EXPECT_LT((sums - 1).abs().maxCoeff(), 1e-9);
   EXPECT_TRUE(rows.lost.closed());
 }
