@@ -8,6 +8,7 @@
 #include "mesh/means_around.h"
 #include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
+#include "pipeline/needed_light.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
 #include "transport/smoothing.h"
@@ -90,18 +91,17 @@ struct SingleVariances {
 // The variance of the flux that all patches reflect of light from other patches, relative to its square, per band. What
 // a patch sends is reflected by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is
 // more than its own error; but for rows only how far it is from the mean counts, as no flux gets lost.
-Eigen::ArrayXd variance_of_level(const RaysWithPockets& transport, const SolvedProblem& solved,
-                                 const ConservedFlux& flux, const SingleVariances& variances) {
-  const RadiosityProblem& problem = solved.problem;
+Eigen::ArrayXd variance_of_level(const RaysWithPockets& transport, const RadiosityProblem& problem,
+                                 const Field& from_patches, const ConservedFlux& flux,
+                                 const SingleVariances& variances) {
   const Eigen::VectorXd& area = problem.area;
   // Where no light gets to nothing errs; in there psi might grow without end.
-  const Eigen::VectorXd lit = (solved.solution.irradiance > 0).rowwise().any().cast<double>().matrix();
+  const Eigen::VectorXd lit = (from_patches + problem.direct_irradiance > 0).rowwise().any().cast<double>().matrix();
   const Eigen::VectorXd psi = importance(transport, problem, lit);
   const Field again = (psi - lit).array().replicate(1, problem.exitance.cols());
   const Field gain = problem.scattering.reflect(again);
   const Field beyond_mean = gain.rowwise() - area_sum(flux.shape * gain, area).transpose();
   const Field variance = beyond_mean.square() * variances.of_rows + gain.square() * variances.of_lights;
-  const Field from_patches = solved.solution.irradiance - problem.direct_irradiance;
   const Eigen::ArrayXd reflected = area_sum(problem.scattering.reflect(from_patches), area);
   return quotient(area_sum(variance.colwise() * area.array(), area), reflected.square());
 }
@@ -165,50 +165,88 @@ Observer without_iterates(const Observer& observer) {
 
 }  // namespace
 
+namespace {
+
+// The irradiance from other patches in the bands that need it, and its variance with that of all lights.
+struct GatheredLight {
+  Field irradiance;
+  Field variance;
+};
+
+// What is gathered, and by what.
+struct Gather {
+  const PatchMesh& mesh;
+  const RaysWithPockets& transport;
+  const RayLight& light;
+  const NeededLight& needed;
+  const TransportFacts& facts;
+};
+
+// A solution in the needed bands; flux is null where no light is reflected twice.
+struct SolvedInBands {
+  const Solution& solution;
+  const ConservedFlux* flux;
+};
+
+// The last gather, by each half, smoothed, and how far that may be off.
+GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std::array<Field, 2> gathered) {
+  const RadiosityProblem& problem = by.needed.problem;
+  const Eigen::VectorXd& row_sum = by.facts.row_sum;
+
+  // 1. The halves, smoothed.
+  const Field& sources = solved.flux ? solved.solution.radiosity : problem.exitance;
+  if (solved.flux)
+    for (Field& half : gathered) half = solved.flux->completed(std::move(half), sources, problem.area);
+  const std::array<Field, 2> raw = with_errors_of_row_sums(
+      std::move(gathered), by.mesh, variance_of_row_sums(by.transport, by.mesh, row_sum, by.facts.lost));
+  SmoothedHalves smooth = smoothed(by.mesh, by.light.distance, raw);
+
+  // 2. What that scatters, and how far it is off where irradiance is not linear.
+  const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
+  GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0),
+                      scaled(smooth.variance, 1 + bias) + by.needed.of_lamps};
+  // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
+  found.variance = found.variance.max(mean_around(by.mesh, problem.area, found.variance)).eval();
+  if (!by.light.is_missed.empty())
+    found.variance.rowwise() += variance_of_missed(by.light, sources, row_sum).transpose();
+  SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), by.needed.of_lamps};
+  if (by.needed.of_others.size() > 0) {
+    found.variance += by.needed.of_others;
+    single.of_lights += by.needed.of_others;
+  }
+  if (!solved.flux || !solved.solution.trapped.empty()) return found;
+
+  // 3. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
+  const Eigen::ArrayXd level = variance_of_level(by.transport, problem, found.irradiance, *solved.flux, single);
+  found.variance += scaled(found.irradiance.square(), level);
+  return found;
+}
+
+}  // namespace
+
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
                             const RayLight& light, const TransportFacts& facts, const SolverOptions& options) {
-  const Eigen::VectorXd& row_sum = facts.row_sum;
-  const RadiosityProblem& all = light.lit.problem;
-  const RadiosityProblem problem{all.scattering, emitted_in_rows(light), all.area, direct_of(light)};
-
-  // 1. Solve for what the rows carry, without losing any of it.
+  // 1. Solve for what the rows carry, without losing any of it, in the bands that need it.
+  const NeededLight needed = needed_light(light, options);
+  const RadiosityProblem& problem = needed.problem;
   const bool reflects_twice = simulates(run.plan, Effect::interreflection);
-  auto [solution, flux, gathered] =
-      reflects_twice ? conserving_flux(transport, problem, solve(transport, problem, options, run.observer), row_sum,
+  const Observer observer = telling_all_bands(run.observer, needed.bands);
+  auto [solution, flux, halves] =
+      reflects_twice ? conserving_flux(transport, problem, solve(transport, problem, options, observer), facts.row_sum,
                                        without_iterates(run.observer))
                      : reflected_once(transport, problem);
 
-  // 2. The last gather, by each half, smoothed.
-  const Field& sources = reflects_twice ? solution.radiosity : problem.exitance;
-  if (reflects_twice)
-    for (Field& half : gathered) half = flux.completed(std::move(half), sources, all.area);
-  const std::array<Field, 2> raw =
-      with_errors_of_row_sums(std::move(gathered), mesh, variance_of_row_sums(transport, mesh, row_sum, facts.lost));
-  SmoothedHalves smooth = smoothed(mesh, light.distance, raw);
+  // 2. Gather once more.
+  const GatheredLight gathered = gathered_light({mesh, transport, light, needed, facts},
+                                                {solution, reflects_twice ? &flux : nullptr}, std::move(halves));
 
-  // 3. What that scatters, and how far it is off where irradiance is not linear.
-  const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
-  Field variance = scaled(smooth.variance, 1 + bias) + light.lamp_standard_error.square();
-  // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
-  variance = variance.max(mean_around(mesh, all.area, variance)).eval();
-  if (!light.is_missed.empty()) variance.rowwise() += variance_of_missed(light, sources, row_sum).transpose();
-  SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), light.lamp_standard_error.square()};
-  for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
-    if (error->size() == 0) continue;
-    variance += error->square();
-    single.of_lights += error->square();
-  }
-
-  // 4. B = E + rho o H with all that is emitted.
-  solution.irradiance = (0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0) + problem.direct_irradiance;
+  // 3. B = E + R H in all bands, with all that is emitted.
+  const RadiosityProblem& all = light.lit.problem;
+  for (Field* field : {&solution.direct_irradiance, &solution.ambient, &solution.error})
+    *field = expanded(*field, needed.bands);
+  solution.irradiance = expanded(gathered.irradiance + problem.direct_irradiance, needed.bands);
   solution.radiosity = radiosity_from(all, solution.irradiance);
-
-  // 5. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
-  if (reflects_twice && solution.trapped.empty()) {
-    const Eigen::ArrayXd level = variance_of_level(transport, {problem, solution}, flux, single);
-    variance += scaled((solution.irradiance - problem.direct_irradiance).square(), level);
-  }
-  return {std::move(solution), variance.sqrt()};
+  return {std::move(solution), expanded(gathered.variance.sqrt(), needed.bands)};
 }
 
 }  // namespace patchlight

@@ -87,6 +87,7 @@ void require_diagonal(const Scattering& scattering, Solver solver) {
 
 // F E, where there are rows from those of the lamps alone.
 Field from_lamps(const TransportOperator& transport, const RowTransport* rows, const Field& exitance) {
+  if ((exitance == 0).all()) return Field::Zero(exitance.rows(), exitance.cols());
   if (rows == nullptr) return transport.apply(exitance);
   Field irradiance = Field::Zero(exitance.rows(), exitance.cols());
   for (Eigen::Index i = 0; i < exitance.rows(); ++i) {

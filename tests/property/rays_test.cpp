@@ -168,6 +168,23 @@ TEST(Rays, AreLinearInTheLight) {
             1e-3 * one.solution.radiosity.maxCoeff());
 }
 
+// Where bands differ by a factor in their lamps alone, one of them is solved, and all are as if each was.
+TEST(Rays, TellBandsThatFollowFromOthers) {
+  Scene scene = test_room(0.7);
+  for (Material& material : scene.materials)
+    for (Eigen::Index band = 1; band < material.exitance.size(); ++band)
+      material.exitance[band] = material.exitance[0] / (1 + static_cast<double>(band));
+  Request request = by_rays(1000);
+  const Simulation few = simulate(scene, request);
+  request.solver.every_band = true;
+  const Simulation each = simulate(scene, request);
+  const auto differ = [](const Field& a, const Field& b) { return ((a - b).abs() / b.maxCoeff()).maxCoeff(); };
+  EXPECT_LT(differ(few.solution.radiosity, each.solution.radiosity), 1e-12);
+  EXPECT_LT(differ(few.solution.direct_irradiance, each.solution.direct_irradiance), 1e-12);
+  EXPECT_LT(differ(few.solution.error, each.solution.error), 1e-9);
+  EXPECT_LT(differ(few.ray_standard_error, each.ray_standard_error), 1e-9);
+}
+
 // The solvers that take no more than H = F B agree to their tolerance.
 TEST(Rays, AreSolvedByWhatTakesTheOperatorAlone) {
   Request request = by_rays(1000);

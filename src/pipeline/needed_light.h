@@ -1,0 +1,25 @@
+#pragma once
+
+#include "patchlight/solve/solve.h"
+
+#include "pipeline/exchange_and_light.h"
+#include "solve/solved_bands.h"
+
+namespace patchlight {
+
+/// What is solved with rows of rays, in the bands that need it: the light of the others, and its errors, are as much in
+/// proportion as a factor tells.
+struct NeededLight {
+  SolvedBands bands;
+  RadiosityProblem problem;  ///< of what the rows carry: exitance without lamps apart, whose light is direct
+  Field of_lamps;            ///< variance of the irradiance by lamps apart, (W/m^2)^2
+  Field of_others;           ///< of that by luminaires, sun, sky and mirrors; empty where there is none
+};
+
+/// All bands where each is to be solved, SolverOptions::every_band or with a reference.
+NeededLight needed_light(const RayLight& light, const SolverOptions& options);
+
+/// An observer of the needed bands that tells the one of all bands; refers to both arguments.
+Observer telling_all_bands(const Observer& observer, const SolvedBands& bands);
+
+}  // namespace patchlight
