@@ -178,6 +178,8 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 void Search::keep(const Simulation& simulation) {
   if (!run_.with.keeps_unfinished || (kept_ && !simulation.error_bars)) return;
   if (!may_keep_solution(simulation.mesh.size(), simulation.plan)) return;
+  // With rows that are known nothing follows that could be stopped.
+  if (run_.with.ray_exchange) return run_.with.keeps_unfinished();
   kept_ = simulation;
   kept_->unfinished = true;
   run_.with.keeps_unfinished();

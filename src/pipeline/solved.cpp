@@ -21,7 +21,7 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   RaySolution found;
   const Solve once = [&](const SolverOptions& by) {
     found = solve_with_rays(run, simulation.mesh, *transport.rays, *transport.light, facts, by);
-    return found.solution;
+    return std::move(found.solution);
   };
   SolvedWith best = solve_for_interest(run, simulation, options, once);
   simulation.plan.solver.relative_error = best.relative_error;
