@@ -67,14 +67,35 @@ Field chosen_rows(const FieldView& field, std::span<const PatchIndex> patches) {
   return rows;
 }
 
-Field scaled(const FieldView& field, const Eigen::ArrayXd& factors) { return field.rowwise() * factors.transpose(); }
+namespace {
+
+// The values of a field of one band from a row on, which as a column are taken several at a time.
+Eigen::Map<const Eigen::ArrayXd> single_band(const FieldView& field, Eigen::Index first, Eigen::Index rows) {
+  return {field.data() + first, rows};
+}
+
+bool has_single_band(const FieldView& field) { return field.cols() == 1 && field.outerStride() == 1; }
+
+}  // namespace
+
+Field scaled(const FieldView& field, const Eigen::ArrayXd& factors) {
+  if (has_single_band(field)) return factors[0] * single_band(field, 0, field.rows());
+  return field.rowwise() * factors.transpose();
+}
 
 Field plus_combination(Field field, std::span<const Field> others, const Eigen::ArrayXXd& factors) {
   assert(factors.rows() == static_cast<Eigen::Index>(others.size()) && factors.cols() == field.cols());
+  const bool is_single = has_single_band(field);
   for_blocks(field.rows(), [&](std::size_t, Eigen::Index first, Eigen::Index rows) {
     auto block = field.middleRows(first, rows);
-    for (Eigen::Index k = 0; k < factors.rows(); ++k)
-      block += others[static_cast<std::size_t>(k)].middleRows(first, rows).rowwise() * factors.row(k);
+    for (Eigen::Index k = 0; k < factors.rows(); ++k) {
+      const Field& other = others[static_cast<std::size_t>(k)];
+      if (is_single) {
+        Eigen::Map<Eigen::ArrayXd>(field.data() + first, rows) += factors(k, 0) * single_band(other, first, rows);
+      } else {
+        block += other.middleRows(first, rows).rowwise() * factors.row(k);
+      }
+    }
   });
   return field;
 }
