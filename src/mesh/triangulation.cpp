@@ -308,8 +308,8 @@ void put_in_order(std::vector<Corners>& patches) {
   std::sort(patches.begin(), patches.end());
 }
 
-// The largest cosine of an angle at a corner, either way: 0 for a rectangle.
-double skewness(const std::array<Workbench::Point, 4>& corners) {
+// The largest cosine of an angle at a corner, either way: 0 for a rectangle; 1 where it is above `most`.
+double skewness(const std::array<Workbench::Point, 4>& corners, double most) {
   double largest = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& at = corners[k];
@@ -318,6 +318,7 @@ double skewness(const std::array<Workbench::Point, 4>& corners) {
     if (turn(before, at, after) <= 0) return 1;
     largest = std::max(largest,
                        std::abs(dot(at, before, after)) / std::sqrt(dot(at, before, before) * dot(at, after, after)));
+    if (largest > most) return 1;
   }
   return largest;
 }
@@ -336,7 +337,8 @@ std::vector<EdgeHandle> Triangulation::edges_in_quadrilaterals() const {
     const VertexHandle to = mesh_.to_vertex_handle(h);
     const HalfedgeHandle back = mesh_.opposite_halfedge_handle(h);
     const double skew = skewness(
-        {mesh_.point(from), mesh_.point(mesh_.opposite_vh(back)), mesh_.point(to), mesh_.point(mesh_.opposite_vh(h))});
+        {mesh_.point(from), mesh_.point(mesh_.opposite_vh(back)), mesh_.point(to), mesh_.point(mesh_.opposite_vh(h))},
+        most_skew);
     if (skew <= most_skew)
       candidates.push_back(
           {std::llround(rounding * skew), {std::min(from.idx(), to.idx()), std::max(from.idx(), to.idx())}, edge});

@@ -37,8 +37,9 @@ void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchR
     Sum of_hits{};
     Sum of_entries{};
     const PatchIndex* const end = hits + rows.first_hit[i + 1];
+    const std::ptrdiff_t ahead = std::min(hits_ahead, last - end + 1);
     for (const PatchIndex* hit = hits + rows.first_hit[i]; hit != end; ++hit) {
-      const double* const soon = field + std::size_t{hit[std::min(hits_ahead, last - hit)]} * width;
+      const double* const soon = field + std::size_t{hit[ahead]} * width;
       __builtin_prefetch(soon);
       if constexpr (width > 1) __builtin_prefetch(soon + width - 1);
       const double* const values = field + std::size_t{*hit} * width;
