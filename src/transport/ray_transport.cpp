@@ -22,8 +22,10 @@ struct Columns {
   Eigen::Index stride;
 };
 
-// Hits ahead of which the field is fetched: more than the machine looks ahead by itself.
-constexpr std::ptrdiff_t hits_ahead = 128;
+// Hits ahead of which the field is fetched, more than the machine looks ahead by itself, and how near: into the second
+// cache, as more can be on their way to that than to the first.
+constexpr std::ptrdiff_t hits_ahead = 256;
+constexpr int to_second_cache = 2;
 
 // (F B)_i of one half for patches [begin, end), times `factor`, added to the sums. Each hit is one read from anywhere
 // in the field: the rows are read by plain pointers, so that nothing else is loaded between these.
@@ -40,8 +42,8 @@ void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchR
     const std::ptrdiff_t ahead = std::min(hits_ahead, last - end + 1);
     for (const PatchIndex* hit = hits + rows.first_hit[i]; hit != end; ++hit) {
       const double* const soon = field + std::size_t{hit[ahead]} * width;
-      __builtin_prefetch(soon);
-      if constexpr (width > 1) __builtin_prefetch(soon + width - 1);
+      __builtin_prefetch(soon, 0, to_second_cache);
+      if constexpr (width > 1) __builtin_prefetch(soon + width - 1, 0, to_second_cache);
       const double* const values = field + std::size_t{*hit} * width;
       for (std::size_t band = 0; band < width; ++band) of_hits[band] += values[band];
     }

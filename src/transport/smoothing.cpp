@@ -56,6 +56,14 @@ struct Smoother {
   std::vector<Neighbour> neighbours(PatchIndex i, const NearPatches& candidates) const;
 };
 
+// From one point to another, as plain numbers: of a vector that is read at once when its parts were just written
+// machines wait for all of them.
+struct Way {
+  double x, y, z;
+  double along(const Vector& direction) const { return x * direction.x() + y * direction.y() + z * direction.z(); }
+  double squared_length() const { return x * x + y * y + z * z; }
+};
+
 // A patch that looks around, and where it does.
 struct LookingPatch {
   const Smoother& smoother;
@@ -68,17 +76,16 @@ struct LookingPatch {
   Vector across = normal.cross(along);
 
   // Is a patch within the radius, at `to` from here, a neighbour?
-  bool is_neighbour(PatchIndex j, const Vector& to, double cosine) const {
+  bool is_neighbour(PatchIndex j, const Way& to, double cosine) const {
     const double reach_of_other = reach * static_cast<double>(smoother.distance[j]);
-    return cosine >= least_cosine && to.squaredNorm() <= reach_of_other * reach_of_other &&
-           std::abs(to.dot(normal)) <= off_plane * radius;
+    return cosine >= least_cosine && to.squared_length() <= reach_of_other * reach_of_other &&
+           std::abs(to.along(normal)) <= off_plane * radius;
   }
-  Neighbour neighbour(PatchIndex j, const Vector& to, double cosine) const {
+  Neighbour neighbour(PatchIndex j, const Way& to, double cosine) const {
     constexpr double per_cosine = 1 / (1 - least_cosine);
-    const Vector place = share * to;
-    const double near = 1 - 0.75 * place.squaredNorm();
+    const double near = 1 - 0.75 * share * share * to.squared_length();
     const double alike = per_cosine * (cosine - least_cosine);
-    return {j, smoother.mesh.area[j] * near * alike, place.dot(along), place.dot(across)};
+    return {j, smoother.mesh.area[j] * near * alike, share * to.along(along), share * to.along(across)};
   }
 };
 
@@ -114,8 +121,9 @@ std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const NearPatches& can
     const Within within = within_radius(candidates, first, from.centroid, from.radius);
     for (const std::uint32_t k : std::span(within.places).first(within.count)) {
       const PatchIndex j = candidates.patches[k];
-      const Vector to(x[k] - from.centroid.x(), y[k] - from.centroid.y(), z[k] - from.centroid.z());
-      const double cosine = from.normal.dot(mesh.normal[j]);
+      const Way to{x[k] - from.centroid.x(), y[k] - from.centroid.y(), z[k] - from.centroid.z()};
+      const Vector& normal = mesh.normal[j];
+      const double cosine = Way{normal.x(), normal.y(), normal.z()}.along(from.normal);
       if (from.is_neighbour(j, to, cosine)) found.push_back(from.neighbour(j, to, cosine));
     }
   }
@@ -137,10 +145,12 @@ std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
   Eigen::Matrix3d moments;
   moments << sum, u, v, u, uu + ridge * sum, uv, v, uv, vv + ridge * sum;
   const Vector dual = moments.inverse().col(0);
+  const double at_centre = dual.x(), along = dual.y(), across = dual.z();
   std::vector<double> of_each;
   of_each.reserve(neighbours.size());
   double all = 0;
-  for (const Neighbour& n : neighbours) all += of_each.emplace_back(n.weight * dual.dot(Vector(1, n.u, n.v)));
+  for (const Neighbour& n : neighbours)
+    all += of_each.emplace_back(n.weight * (at_centre + along * n.u + across * n.v));
   for (double& c : of_each) c /= all;
   return of_each;
 }
