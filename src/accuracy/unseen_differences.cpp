@@ -184,8 +184,10 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
     // No more light can be too much than there is.
     return (scale * change).max(-solved.solution.irradiance);
   };
-  unseen.square = mean_around(patches.mesh, area, through_reflections(one, other) * through_reflections(other, one));
-  unseen.error = unseen.square.abs().sqrt();
+  const Field square =
+      mean_around(patches.mesh, area, through_reflections(one, other) * through_reflections(other, one));
+  unseen.error = square.abs().sqrt();
+  unseen.noise = (square.abs() - square).sqrt();
 
   // 3. Where it comes from.
   const Field weights = weight_of_squares(solved, weight).colwise() * area.array().square();

@@ -23,10 +23,10 @@ struct QuarterLook {
 /// What is behind the means of patches: light that differs inside a patch gets to others from the part that they see.
 /// Under a board close over a floor it is dark, however bright the mean of a patch that reaches under it.
 struct UnseenDifferences {
-  Field error;    ///< of the mean irradiance of each patch, W/m^2
-  Field square;   ///< of it, W^2/m^4, without the bias that noise gives it: negative where nothing but noise is
-                  ///< known
-  Field display;  ///< how far the irradiance at a point of a patch is from its mean, root mean square, W/m^2
+  Field error;  ///< of the mean irradiance of each patch, W/m^2
+  Field noise;  ///< of which the square is what noise adds to that of the error, as far as sums over many patches tell,
+                ///< W/m^2: more than the error where nothing but noise is known
+  Field display;            ///< how far the irradiance at a point of a patch is from its mean, root mean square, W/m^2
   Eigen::VectorXd effects;  ///< per patch: the part of its differences in the weighted squares of what all change, to
                             ///< a factor; noise may make it negative
 };

@@ -52,14 +52,8 @@ NeededLight needed_light(const RayLight& light, const SolverOptions& options) {
   const RadiosityProblem& all = light.lit.problem;
   NeededLight needed{.bands = needed_bands(light, options), .problem = {}, .of_lamps = {}, .of_others = {}};
   const SolvedBands& bands = needed.bands;
-  needed.problem = {of_bands(all.scattering, bands.solved), reduced(all.exitance, bands), all.area, {}};
-  Field& exitance = needed.problem.exitance;
-  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
-    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
-  Field& direct = needed.problem.direct_irradiance;
-  direct = 0.5 * (reduced(light.by_lamps[0], bands) + reduced(light.by_lamps[1], bands));
-  for (const Field* more : {&all.direct_irradiance, &light.in_mirrors.irradiance})
-    if (more->size() > 0) direct += reduced(*more, bands);
+  needed.problem = {of_bands(all.scattering, bands.solved), reduced(emitted_in_rows(light), bands), all.area,
+                    reduced(direct_of(light), bands)};
   needed.of_lamps = squares_in(bands, light.lamp_standard_error);
   for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
     if (error->size() == 0) continue;
@@ -74,7 +68,9 @@ Observer telling_all_bands(const Observer& observer, const SolvedBands& bands) {
   return [&observer, &bands](const Progress& progress) {
     if (!progress.irradiance) return observer(progress);
     Progress all = progress;
+    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
     all.irradiance = [&] { return expanded(progress.irradiance(), bands); };
+    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
     return observer(all);
   };
 }

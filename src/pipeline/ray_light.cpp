@@ -163,10 +163,6 @@ Observer without_iterates(const Observer& observer) {
   };
 }
 
-}  // namespace
-
-namespace {
-
 // The irradiance from other patches in the bands that need it, and its variance with that of all lights.
 struct GatheredLight {
   Field irradiance;

@@ -12,16 +12,17 @@ namespace patchlight {
 namespace {
 
 // Bars of the mesh as they add up over these patches: each band smaller by what noise adds to the squares, which
-// cancels in their sum, but for its standard error. Nine patches around share what is found at one, so that the squares
-// of its parts add up to a ninth.
+// cancels in their sum, but for its standard error. mean_around() shares what is found at a patch with those around it,
+// so that the squares of its parts add up to one in 7.1 where these are quadrilaterals and one in 10.8 where they are
+// triangles.
 Field mesh_bars_of_many(const Simulation& simulation, const Eigen::VectorXd& weight) {
   const ErrorBars& bars = *simulation.error_bars;
   if (bars.mesh_noise.size() == 0) return bars.mesh;
-  constexpr double patches_around = 9;
+  constexpr double patches_around = 11;
   const Scattering& scattering = simulation.problem.scattering;
   const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(weight);
   const Field squares = reflected_variance(scattering, bars.mesh.square());
-  const Field known = squares - reflected_variance(scattering, bars.mesh_noise);
+  const Field known = squares - reflected_variance(scattering, bars.mesh_noise.square());
   const Eigen::ArrayXd all = area_sum(squares, area);
   const Eigen::ArrayXd standard_error = (patches_around * area_sum(known.square(), area.cwiseAbs2())).sqrt();
   const Eigen::ArrayXd part = area_sum(known, area).max(0.0) + standard_error;

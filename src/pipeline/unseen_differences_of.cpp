@@ -49,7 +49,7 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
   UnseenDifferences unseen = unseen_differences({simulation.mesh, occluder, simulation.transport.lost, solved},
                                                 transport, weight, look, run.observer);
   unseen.error = expanded(unseen.error, needed.bands);
-  unseen.square = expanded(unseen.square, needed.bands);
+  unseen.noise = expanded(unseen.noise, needed.bands);
   unseen.display = expanded(unseen.display, needed.bands);
   return unseen;
 }

@@ -165,9 +165,12 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   const auto relative = [&](const Field& bar) {
     return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
   };
-  result.effects = scaled_to(squares_of_parents(result.mesh, solved, bars.of_light, weight),
+  const auto is_of_gap = bars.in_gaps > bars.of_light;
+  const Field of_light = is_of_gap.select(0.0, bars.of_light);
+  const Field of_gaps = is_of_gap.select(bars.in_gaps, 0.0);
+  result.effects = scaled_to(squares_of_parents(result.mesh, solved, of_light, weight),
                              summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0)) +
-                   squares_of_parents(result.mesh, solved, bars.in_gaps, weight);
+                   squares_of_parents(result.mesh, solved, of_gaps, weight);
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   result.noise_bar = relative(simulation.ray_standard_error);
   if (simulation.direct_standard_error.size() == 0) return result;
@@ -199,7 +202,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
   // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
   // Where parents or gaps say more, that is not by noise.
-  const Field by_noise = (unseen.error >= of_mesh).select(unseen.error.square() - unseen.square, 0.0);
+  const Field by_noise = (unseen.error >= of_mesh).select(unseen.noise, 0.0);
   simulation.error_bars = {.mesh = of_mesh,
                            .mesh_noise = by_noise,
                            .form_factor = simulation.ray_standard_error,

@@ -12,8 +12,8 @@ namespace patchlight {
 namespace {
 
 // F_PP B_P of one band.
-Eigen::VectorXd sent_within(const Pocket& pocket, const FieldView& radiosity) {
-  return pocket.form_factors * radiosity(pocket.patches, 0).matrix();
+Eigen::VectorXd sent_within(const Pocket& pocket, const FieldView& radiosity, Eigen::Index band) {
+  return pocket.form_factors * radiosity(pocket.patches, band).matrix();
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ PocketTransport::PocketTransport(const TransportOperator& transport, const Pocke
     std::vector<PocketSystem>& systems = systems_.emplace_back();
     for (Eigen::Index band = 0; band < reflectance.cols(); ++band)
       systems.push_back(system_within(pocket, reflectance.col(band).matrix()));
-    systems.push_back(system_within(pocket, reflectance.rowwise().maxCoeff().matrix()));
+    if (reflectance.cols() > 1) systems.push_back(system_within(pocket, reflectance.rowwise().maxCoeff().matrix()));
   }
 }
 
@@ -43,7 +43,8 @@ Eigen::VectorXd PocketTransport::followed_in_band(const Pocket& pocket, const Po
     const double residual = (irradiance - system.matrix * found).cwiseAbs().maxCoeff();
     // From a right side that is not finite zeros are found.
     if (!std::isfinite(residual)) return Eigen::VectorXd::Constant(irradiance.size(), residual);
-    if (residual * highest_bound <= accuracy_ * found.cwiseAbs().maxCoeff() || tries == most_tries) return found;
+    const bool is_good = residual * highest_bound <= accuracy_ * found.cwiseAbs().maxCoeff();
+    if (is_good || system.is_eliminated() || tries == most_tries) return found;
     tolerance /= 10;
   }
 }
@@ -54,7 +55,7 @@ Field PocketTransport::followed(const Arriving& arriving, Field irradiance) cons
   parallel_for(pockets_.each.size() * bands, [&](std::size_t index) {
     const Pocket& pocket = pockets_.each[index / bands];
     const std::vector<PocketSystem>& systems = systems_[index / bands];
-    assert(bands == 1 || bands + 1 == systems.size());
+    assert(bands == 1 || bands + 1 == systems.size());  // one column of several bands: that of the highest R
     const PocketSystem& system = bands == 1 ? systems.back() : systems[index % bands];
     const auto band = static_cast<Eigen::Index>(index % bands);
     irradiance(pocket.patches, band) = followed_in_band(pocket, system, arriving(pocket, band)).array();
@@ -65,7 +66,7 @@ Field PocketTransport::followed(const Arriving& arriving, Field irradiance) cons
 Field PocketTransport::apply(const FieldView& radiosity) const {
   const Field irradiance = transport_.apply(radiosity);
   const auto from_others = [&](const Pocket& pocket, Eigen::Index band) -> Eigen::VectorXd {
-    return irradiance(pocket.patches, band).matrix() - sent_within(pocket, radiosity.col(band));
+    return irradiance(pocket.patches, band).matrix() - sent_within(pocket, radiosity, band);
   };
   Field found = followed(from_others, irradiance);
   if (closed_are_dark_)
@@ -74,9 +75,7 @@ Field PocketTransport::apply(const FieldView& radiosity) const {
 }
 
 Field PocketTransport::irradiance_within(const FieldView& radiosity) const {
-  const auto from_own = [&](const Pocket& pocket, Eigen::Index band) {
-    return sent_within(pocket, radiosity.col(band));
-  };
+  const auto from_own = [&](const Pocket& pocket, Eigen::Index band) { return sent_within(pocket, radiosity, band); };
   return followed(from_own, Field::Zero(radiosity.rows(), radiosity.cols()));
 }
 

@@ -44,7 +44,7 @@ class PocketTransport : public TransportOperator {
   const Pockets& pockets_;
   bool closed_are_dark_;
   double accuracy_;
-  // Per pocket I - F_PP R of each band, and at last that of the highest R of all bands.
+  // Per pocket I - F_PP R of each band; where these are several, at last that of the highest R of all.
   std::vector<std::vector<PocketSystem>> systems_;
 };
 

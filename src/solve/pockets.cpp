@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -24,8 +26,11 @@ constexpr double least_loss = 1e-6;
 // Of the incomplete factors: what is dropped, relative to its row, and their size, relative to the matrix.
 constexpr double dropped_share = 0.01;
 constexpr int size_of_factors = 2;
-// A pocket of fewer patches is solved by elimination: however often light is reflected there, only rounding is left.
+// A pocket of at most so many patches is solved by elimination: however often light is reflected there, only rounding
+// is left, which the bounces multiply. Of so many 1e-8 of the light. Iterations take the longer the more there are.
 constexpr Eigen::Index few_patches = 512;
+constexpr double most_bounces = 1e8;
+constexpr double most_bounces_by_iterations = 1e5;
 
 // Those of some patches that keep the share.
 std::vector<PatchIndex> keeping_enough(const std::vector<PatchIndex>& patches, const Eigen::VectorXd& share) {
@@ -94,53 +99,66 @@ Eigen::ArrayXd losing_light(const Rows& among, const Eigen::VectorXd& reflectanc
   return loses.array();
 }
 
-// The numbers of those of some patches that see each other, directly or by way of others, for each such group; without
-// those that lose no light.
-std::vector<std::vector<std::size_t>> groups_of(const Rows& among, const Eigen::ArrayXd& loses) {
-  std::vector<std::size_t> first(static_cast<std::size_t>(loses.size()));
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto first_of = [&first](std::size_t k) {
-    while (first[k] != k) k = first[k] = first[first[k]];
+// Groups of patches that see each other, directly or by way of others of them.
+struct Groups {
+  std::vector<std::vector<std::size_t>> members;  // of each, by their numbers, in rising order
+  std::vector<std::size_t> group;                 // per patch
+  std::vector<int> place;                         // per patch: among the members of its group
+};
+
+// Union and find by the lowest number of each group; those that lose no light are groups of their own.
+std::vector<std::size_t> lowest_of_groups(const Rows& among, const Eigen::ArrayXd& loses) {
+  std::vector<std::size_t> lower(static_cast<std::size_t>(loses.size()));
+  std::iota(lower.begin(), lower.end(), std::size_t{0});
+  const auto lowest = [&lower](std::size_t k) {
+    while (lower[k] != k) k = lower[k] = lower[lower[k]];
     return k;
   };
-  const auto loses_light = [&loses](std::size_t k) { return loses[static_cast<Eigen::Index>(k)] > 0; };
-  for (std::size_t k = 0; k < first.size(); ++k) {
-    if (!loses_light(k)) continue;
-    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(k)); entry; ++entry) {
-      const auto seen = static_cast<std::size_t>(entry.col());
-      if (!loses_light(seen)) continue;
-      const auto [low, high] = std::minmax({first_of(k), first_of(seen)});
-      first[high] = low;
+  for (Eigen::Index row = 0; row < among.rows(); ++row) {
+    if (loses[row] == 0) continue;
+    for (Rows::InnerIterator entry(among, row); entry; ++entry) {
+      if (loses[entry.col()] == 0) continue;
+      const auto [low, high] =
+          std::minmax({lowest(static_cast<std::size_t>(row)), lowest(static_cast<std::size_t>(entry.col()))});
+      lower[high] = low;
     }
   }
-  std::vector<std::vector<std::size_t>> groups;
-  std::vector<std::size_t> number(first.size());
-  for (std::size_t k = 0; k < first.size(); ++k) {
-    if (!loses_light(k)) continue;
-    const std::size_t at = first_of(k);
-    if (at == k) {
-      number[k] = groups.size();
-      groups.emplace_back();
+  for (std::size_t k = 0; k < lower.size(); ++k) lower[k] = lowest(k);
+  return lower;
+}
+
+// Without patches that lose no light: these are of no group.
+Groups groups_of(const Rows& among, const Eigen::ArrayXd& loses) {
+  const std::vector<std::size_t> lowest = lowest_of_groups(among, loses);
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  Groups groups{{}, std::vector<std::size_t>(lowest.size(), none), std::vector<int>(lowest.size(), 0)};
+  for (std::size_t k = 0; k < lowest.size(); ++k) {
+    if (loses[static_cast<Eigen::Index>(k)] == 0) continue;
+    if (lowest[k] == k) {
+      groups.group[k] = groups.members.size();
+      groups.members.emplace_back();
     }
-    groups[number[at]].push_back(k);
+    groups.group[k] = groups.group[lowest[k]];
+    groups.place[k] = static_cast<int>(groups.members[groups.group[k]].size());
+    groups.members[groups.group[k]].push_back(k);
   }
   return groups;
 }
 
-// The rows and columns of these numbers.
-Rows part_of(const Rows& among, const std::vector<std::size_t>& numbers) {
-  constexpr int none = -1;
-  std::vector<int> number(static_cast<std::size_t>(among.rows()), none);
-  for (std::size_t k = 0; k < numbers.size(); ++k) number[numbers[k]] = static_cast<int>(k);
+// F among the patches of one group.
+Rows rows_of(const Groups& groups, std::size_t group, const Rows& among) {
+  const std::vector<std::size_t>& members = groups.members[group];
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(numbers[k])); entry; ++entry)
-      if (const int column = number[static_cast<std::size_t>(entry.col())]; column != none)
-        entries.emplace_back(static_cast<int>(k), column, entry.value());
-  const auto size = static_cast<Eigen::Index>(numbers.size());
-  Rows part(size, size);
-  part.setFromTriplets(entries.begin(), entries.end());
-  return part;
+  for (const std::size_t k : members) {
+    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(k)); entry; ++entry) {
+      const auto seen = static_cast<std::size_t>(entry.col());
+      if (groups.group[seen] == group) entries.emplace_back(groups.place[k], groups.place[seen], entry.value());
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(members.size());
+  Rows rows(size, size);
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
 }
 
 // Eigen's place for a preconditioner, filled with factors that the pockets hold.
@@ -174,13 +192,15 @@ bool bounces_hold(const Pocket& pocket, const PocketSystem& system) {
   return (pocket.bounces.array() > 0).all() && ((system.matrix * pocket.bounces).array() > 0.5).all();
 }
 
-// Of patches and F among them.
-Pocket pocket_of(std::vector<PatchIndex> patches, Rows form_factors, const Eigen::VectorXd& reflectance) {
+// Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
+// what is followed is.
+std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, Rows form_factors,
+                                const Eigen::VectorXd& reflectance) {
   Pocket pocket;
   pocket.patches = std::move(patches);
   pocket.form_factors = std::move(form_factors);
   const PocketSystem system = system_within(pocket, values_at(pocket.patches, reflectance));
-  if (system.matrix.rows() > few_patches) {
+  if (!system.is_eliminated()) {
     pocket.nearly_solved = std::make_unique<Eigen::IncompleteLUT<double>>();
     pocket.nearly_solved->setDroptol(dropped_share);
     pocket.nearly_solved->setFillfactor(size_of_factors);
@@ -188,8 +208,8 @@ Pocket pocket_of(std::vector<PatchIndex> patches, Rows form_factors, const Eigen
   }
   constexpr double loosely = 1e-6;
   pocket.bounces = solution_within(pocket, system, Eigen::VectorXd::Ones(system.matrix.rows()), loosely);
-  // Where they are not known to a factor of two, nothing tells how far off what is followed is.
-  if (!bounces_hold(pocket, system)) pocket.patches.clear();
+  const double most = system.is_eliminated() ? most_bounces : most_bounces_by_iterations;
+  if (!bounces_hold(pocket, system) || pocket.bounces.maxCoeff() > most) return std::nullopt;
   return pocket;
 }
 
@@ -204,14 +224,15 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
   const Rows among = rows_among(transport, patches);
   const Eigen::ArrayXd loses = losing_light(among, values_at(patches, reflectance));
   for (std::size_t k = 0; k < patches.size(); ++k)
-    if (!(loses[static_cast<Eigen::Index>(k)] > 0)) pockets->closed.push_back(patches[k]);
-  for (const std::vector<std::size_t>& numbers : groups_of(among, loses)) {
+    if (loses[static_cast<Eigen::Index>(k)] == 0) pockets->closed.push_back(patches[k]);
+  const Groups groups = groups_of(among, loses);
+  for (std::size_t group = 0; group < groups.members.size(); ++group) {
     std::vector<PatchIndex> those;
-    for (const std::size_t k : numbers) those.push_back(patches[k]);
-    Pocket pocket = pocket_of(std::move(those), part_of(among, numbers), reflectance);
-    if (!pocket.patches.empty()) pockets->each.push_back(std::move(pocket));
+    for (const std::size_t k : groups.members[group]) those.push_back(patches[k]);
+    std::optional<Pocket> pocket = pocket_of(std::move(those), rows_of(groups, group, among), reflectance);
+    if (pocket) pockets->each.push_back(std::move(*pocket));
   }
-  return pockets;
+  return pockets->each.empty() && pockets->closed.empty() ? nullptr : pockets;
 }
 
 PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance) {
@@ -224,7 +245,7 @@ PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflecta
 
 Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
                                 double tolerance) {
-  if (system.factors.rows() > 0) return system.factors.solve(right);
+  if (system.is_eliminated()) return system.factors.solve(right);
   constexpr int most_iterations = 200;
   Eigen::BiCGSTAB<Rows, KnownFactors> solver;
   solver.preconditioner().set(*pocket.nearly_solved);

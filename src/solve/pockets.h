@@ -33,14 +33,17 @@ struct Pockets {
 
 /// Half of the light of each of the patches is still among all patches after 4 bounces, and half of what starts on them
 /// is among those that this is true of after 8; `reflectance` is the highest of each patch in any band. Left out are
-/// pockets whose bounces are not found to a factor of two, as when rounding of F hides what gets out. Null where there
-/// are none. Costs some five applications of one band; nothing where no reflectance is above .917.
+/// pockets whose bounces are not found to a factor of two, as when rounding of F hides what gets out, or are more than
+/// 1e8, 1e5 of more than 512 patches. Null where nothing is left. Costs some five applications of
+/// one band; nothing where no reflectance is above .917.
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance);
 
 /// I - F R among the patches of a pocket.
 struct PocketSystem {
   Eigen::SparseMatrix<double, Eigen::RowMajor> matrix;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors;  ///< of few patches; else of size 0
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors;  ///< of up to 512 patches, up to 4 kB each; else of size 0
+
+  bool is_eliminated() const { return factors.rows() > 0; }
 };
 
 /// From the reflectances of its patches.

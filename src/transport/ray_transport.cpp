@@ -24,7 +24,7 @@ struct Columns {
 
 // Hits ahead of which the field is fetched, more than the machine looks ahead by itself, and how near: into the second
 // cache, as more can be on their way to that than to the first.
-constexpr std::ptrdiff_t hits_ahead = 256;
+constexpr std::uint64_t hits_ahead = 256;
 constexpr int to_second_cache = 2;
 
 // (F B)_i of one half for patches [begin, end), times `factor`, added to the sums. Each hit is one read from anywhere
@@ -33,13 +33,12 @@ template <std::size_t width>
 void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchRange patches) {
   using Sum = std::array<double, width>;
   const PatchIndex* const hits = rows.hits.data();
-  const PatchIndex* const last = hits + rows.hits.size() - 1;
   const double* const field = columns.values;
   for (PatchIndex i = patches.begin; i < patches.end; ++i) {
     Sum of_hits{};
     Sum of_entries{};
     const PatchIndex* const end = hits + rows.first_hit[i + 1];
-    const std::ptrdiff_t ahead = std::min(hits_ahead, last - end + 1);
+    const std::uint64_t ahead = std::min(hits_ahead, rows.hits.size() - rows.first_hit[i + 1]);
     for (const PatchIndex* hit = hits + rows.first_hit[i]; hit != end; ++hit) {
       const double* const soon = field + std::size_t{hit[ahead]} * width;
       __builtin_prefetch(soon, 0, to_second_cache);
@@ -68,7 +67,7 @@ double row_sum(const RayRows& rows, PatchIndex i) {
 using AddRows = void (*)(const RayRows& rows, const Columns& columns, double factor, PatchRange patches);
 constexpr std::array<AddRows, 4> add_rows_of_width{add_rows<1>, add_rows<2>, add_rows<3>, add_rows<4>};
 
-// Some columns of a field, row by row without a gap, in memory of which a pass over it misses few addresses.
+// Some columns of a field, row by row without a gap, in large pages.
 LargeArray<double> packed(const FieldView& field, Eigen::Index first, Eigen::Index width) {
   LargeArray<double> values;
   values.reserve(static_cast<std::size_t>(field.rows() * width));

@@ -9,8 +9,8 @@ namespace patchlight {
 /// Radiosities are off by the reflectance times as much.
 struct ErrorBars {
   Field mesh;        ///< from the size of all patches
-  Field mesh_noise;  ///< W^2/m^4: what noise adds to the squares of `mesh`, so that their sum over many patches without
-                     ///< it has no bias; empty where nothing is known of it
+  Field mesh_noise;  ///< its square is what noise adds to that of `mesh`: the sum of both squares' difference over many
+                     ///< patches has hardly any bias; empty where nothing is known of it
   Field form_factor;  ///< from the sampling of form factors
   Field solver;
   Field display;  ///< how far the irradiance at a point of a patch is from the patch's mean, root mean square

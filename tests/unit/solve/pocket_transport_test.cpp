@@ -243,7 +243,10 @@ TEST(PocketTransport, SolvesLargePocketsByIterations) {
   EXPECT_TRUE(found.converged);
   const Field residual =
       problem.exitance + problem.scattering.reflect(transport.apply(found.radiosity)) - found.radiosity;
-  EXPECT_LE(residual.bottomRows(ring).abs().maxCoeff() / leak, 2e-5 * found.radiosity.maxCoeff());
+  // What is followed is so to a hundredth of the tolerance, and times the bounces (1 / leak) the rest is an error, too.
+  ASSERT_EQ(found.error.rows(), found.radiosity.rows());
+  const double followed = 0.01 * 1e-5 * found.irradiance.maxCoeff();
+  EXPECT_LE(residual.bottomRows(ring).abs().maxCoeff() / leak, 2 * found.error.maxCoeff() + followed);
 }
 
 // Where patches reflect more than was known when the pockets were looked for, these say nothing.
