@@ -21,6 +21,13 @@ void for_blocks(Eigen::Index rows, const auto& body) {
   });
 }
 
+// The values of a field of one band from a row on, which as a column are taken several at a time.
+Eigen::Map<const Eigen::ArrayXd> single_band(const FieldView& field, Eigen::Index first, Eigen::Index rows) {
+  return {field.data() + first, rows};
+}
+
+bool has_single_band(const FieldView& field) { return field.cols() == 1 && field.outerStride() == 1; }
+
 }  // namespace
 
 Eigen::ArrayXd sum_over_patches(const FieldView& x) { return x.colwise().sum().transpose(); }
@@ -66,17 +73,6 @@ Field chosen_rows(const FieldView& field, std::span<const PatchIndex> patches) {
   for (std::size_t k = 0; k < patches.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = field.row(patches[k]);
   return rows;
 }
-
-namespace {
-
-// The values of a field of one band from a row on, which as a column are taken several at a time.
-Eigen::Map<const Eigen::ArrayXd> single_band(const FieldView& field, Eigen::Index first, Eigen::Index rows) {
-  return {field.data() + first, rows};
-}
-
-bool has_single_band(const FieldView& field) { return field.cols() == 1 && field.outerStride() == 1; }
-
-}  // namespace
 
 Field scaled(const FieldView& field, const Eigen::ArrayXd& factors) {
   if (has_single_band(field)) return factors[0] * single_band(field, 0, field.rows());
