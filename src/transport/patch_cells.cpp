@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace patchlight {
@@ -50,9 +51,11 @@ Box box_around(const std::vector<Point>& points) {
 }  // namespace
 
 PatchCells::PatchCells(const PatchMesh& mesh, double length) : centroids_(mesh.centroid), places_(mesh.size()) {
+  assert(length > 0);
   if (places_.empty()) return;
   const Box box = box_around(mesh.centroid);
-  // A little wider, so that no rounding of places makes neighbours of cells that are not.
+  // A little wider: patches as near as `length` lie in one cell or in neighbouring ones although their places are
+  // rounded.
   constexpr double wider = 1 + 0x1p-30;
   const int halvings = bits - 2 - std::ilogb(std::max(1.0, box.sizes().maxCoeff() / length));
   edge_ = std::ldexp(wider * length, -halvings);

@@ -27,7 +27,8 @@ struct NearPatches {
 /// level follow each other. O(n log n) to build.
 class PatchCells {
  public:
-  /// Cells of one of the levels have edges of `length` metres, but for rounding.
+  /// Cells of one of the levels have edges of `length` metres, more than 0, but for rounding. Refers to the mesh, which
+  /// has to outlive it.
   PatchCells(const PatchMesh& mesh, double length);
 
   std::size_t size() const { return places_.size(); }
