@@ -7,8 +7,8 @@
 
 namespace patchlight {
 
-/// What is solved with rows of rays, in the bands that need it: the light of the others, and its errors, are as much in
-/// proportion as a factor tells.
+/// What is solved with rows of rays, in the bands that need it: the light of each other band, and its errors, are those
+/// of one of these times a factor.
 struct NeededLight {
   SolvedBands bands;
   RadiosityProblem problem;  ///< of what the rows carry: exitance without lamps apart, whose light is direct

@@ -63,7 +63,7 @@ struct SceneReport {
   std::optional<UnitGuess> unit_guess;
   std::optional<SideCounts> sides = {};        ///< when they are counted: count_sides()
   bool usable = true;                          ///< false when nothing emits: it cannot be solved
-  std::optional<FirstLight> first_light = {};  ///< then what would light it
+  std::optional<FirstLight> first_light = {};  ///< what would light a scene in which nothing emits
 };
 
 /// Looks at a scene that repair() and check() have passed. Pure. O(n log n) for n corners.

@@ -56,8 +56,8 @@ struct Smoother {
   std::vector<Neighbour> neighbours(PatchIndex i, const NearPatches& candidates) const;
 };
 
-// From one point to another, as plain numbers: of a vector that is read at once when its parts were just written
-// machines wait for all of them.
+// From one point to another, as plain numbers. A processor has to wait where it loads a whole vector at once just after
+// its parts were stored one by one.
 struct Way {
   double x, y, z;
   double along(const Vector& direction) const { return x * direction.x() + y * direction.y() + z * direction.z(); }

@@ -168,7 +168,7 @@ TEST(Rays, AreLinearInTheLight) {
             1e-3 * one.solution.radiosity.maxCoeff());
 }
 
-// Where bands differ by a factor in their lamps alone, one of them is solved, and all are as if each was.
+// Where bands differ by a factor in their lamps alone, they are as if each was solved.
 TEST(Rays, TellBandsThatFollowFromOthers) {
   Scene scene = test_room(0.7);
   for (Material& material : scene.materials)
