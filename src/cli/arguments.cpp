@@ -5,6 +5,7 @@
 #include "patchlight/output/provenance.h"
 
 #include "base/near_match.h"
+#include "base/shell_word.h"
 #include "cli/check_options.h"
 #include "cli/compare_options.h"
 #include "cli/form_factor_options.h"
@@ -64,19 +65,10 @@ void require_nothing_left(const CLI::App& command, const std::string& name, cons
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
-// A word as one would type it again.
-std::string as_typed(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-  if (plain) return word;
-  std::string quoted;
-  for (const char letter : word) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return "'" + quoted + "'";
-}
-
 // The command line as one would type it again.
 std::string joined(int count, const char* const* values) {
   std::string line = "patchlight";
-  for (int k = 1; k < count; ++k) line += ' ' + as_typed(values[k]);
+  for (int k = 1; k < count; ++k) line += ' ' + shell_word(values[k]);
   return line;
 }
 
@@ -108,9 +100,9 @@ void refuse_file(const CLI::App& tool, const std::vector<std::string>& words) {
   const bool is_model = names_a_model(file);
   if (!is_model && !std::filesystem::is_regular_file(file, error)) return;
   std::string line = "patchlight solve";
-  for (const std::string& word : words) line += ' ' + as_typed(word);
+  for (const std::string& word : words) line += ' ' + shell_word(word);
   if (std::none_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
-    line += " -o " + as_typed(file.stem().string() + ".vtp");
+    line += " -o " + shell_word(file.stem().string() + ".vtp");
   throw UsageError("found the file '" + words.front() + "' in place of a command; a model is taken by the commands " +
                    listed(commands_with_a_model(tool)) + (is_model ? ". Did you mean: " + line : ""));
 }

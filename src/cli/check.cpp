@@ -1,6 +1,7 @@
 #include "cli/check.h"
 
 #include "base/rounded.h"
+#include "base/shell_word.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
@@ -14,8 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cstring>
 #include <iomanip>
 #include <iostream>
 #include <set>
@@ -226,32 +225,21 @@ const char* verdict(const SceneReport& report) {
   return has_errors ? "can be solved, but something of it is lost: see its errors" : "can be solved";
 }
 
-// In quotes where a shell would take it apart.
-std::string quoted(const std::string& word) {
-  const auto is_plain = [](char letter) {
-    return std::isalnum(static_cast<unsigned char>(letter)) || std::strchr("_./,:=-+", letter);
-  };
-  if (std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string escaped;
-  for (const char letter : word) escaped += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return "'" + escaped + "'";
-}
-
 // The command that comes next.
 std::string next_line(const CheckArguments& arguments, const SceneReport& report, bool needs_sensors) {
   if (arguments.models.front() == "-") return {};
   std::string models;
-  for (const std::filesystem::path& file : arguments.models) models += " " + quoted(shown_name(file.string()));
+  for (const std::filesystem::path& file : arguments.models) models += " " + shell_word(shown_name(file.string()));
   const ReadOptions& read = arguments.read;
   const bool has_more = read.metres_per_unit != 1 || read.up || !read.settings.empty() || !read.only.empty() ||
                         !read.leave_out.empty() || read.detail > 0 || read.keep_faces || !read.format.empty();
   const std::string result = arguments.models.front().stem().string();
   const std::string setting = report.first_light ? report.first_light->setting : "";
   const std::string command = needs_sensors || (report.first_light && setting.empty())
-                                  ? "new" + models + " -o " + quoted(result + ".toml")
+                                  ? "new" + models + " -o " + shell_word(result + ".toml")
                                   : "solve" + models +
                                         (setting.empty() ? "" : " " + shown_name(with_option_names(setting))) + " -o " +
-                                        quoted(result + ".vtp") + " --picture " + quoted(result + ".png");
+                                        shell_word(result + ".vtp") + " --picture " + shell_word(result + ".png");
   return "next: patchlight " + command + (has_more ? " and the options given here" : "") + '\n';
 }
 

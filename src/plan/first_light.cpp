@@ -1,6 +1,7 @@
 #include "plan/first_light.h"
 
 #include "base/lower_case.h"
+#include "base/shell_word.h"
 #include "plan/first_few.h"
 #include "scene/sealed_room.h"
 
@@ -37,10 +38,8 @@ std::vector<LampHint> possible_lamps(const Scene& scene) {
 // As one types it in a shell.
 std::string setting_for(const LampHint& hint) {
   std::ostringstream text;
-  const bool plain = hint.material.find_first_of(" \t'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-  text << "read.settings " << (plain ? "" : "'") << hint.material
-       << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ",")) << (plain ? "" : "'");
-  return text.str();
+  text << hint.material << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ","));
+  return "read.settings " + shell_word(text.str());
 }
 
 std::string advice_on_lamps(const std::vector<LampHint>& hints) {

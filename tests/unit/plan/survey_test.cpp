@@ -85,6 +85,10 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
   EXPECT_NE(report.problems[0].what.find("read.settings 'Ceiling Lamp.radiance=10'"), std::string::npos)
       << report.problems[0].what;
 
+  scene.materials[1].name = "Ann's lamp";
+  EXPECT_NE(first_light(scene).advice.find("read.settings 'Ann'\\''s lamp.radiance=10'"), std::string::npos)
+      << "the line can be typed as it stands";
+
   scene.lamp_hints = {{"wall", rgb(20, 10, 5), "its Ka is 20, 10, 5"}};
   const std::string advice = first_light(scene).advice;
   EXPECT_NE(advice.find("its Ka is 20, 10, 5"), std::string::npos) << advice;
