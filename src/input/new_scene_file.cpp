@@ -170,29 +170,62 @@ std::string material_tables(const Scene& scene) {
          "# transmittance = 0.8\n# reflectance = 0\n\n";
 }
 
-// In each named room over the middle of its floor, as high as is free at least, else under the room's ceiling.
-std::vector<Point> places_of_lamps(const Scene& scene, const Solid& room, const std::vector<NamedFloor>& places) {
-  std::vector<Point> lamps;
-  for (const NamedFloor& place : places) {
-    if (scene.rooms.empty() || lamps.size() == most_named) break;
-    const SensorGroup grid = floor_grid(place.floor, lowest_room, std::sqrt(area_of(place.floor)) / 10, 0);
-    Point middle = Point::Zero();
-    for (const Sensor& sensor : grid.sensors) middle += sensor.point / static_cast<double>(grid.sensors.size());
-    const auto nearest = std::min_element(grid.sensors.begin(), grid.sensors.end(), [&](const auto& a, const auto& b) {
-      return (a.point - middle).squaredNorm() < (b.point - middle).squaredNorm();
-    });
-    if (nearest != grid.sensors.end()) lamps.push_back(nearest->point);
-  }
-  return lamps.empty() ? std::vector<Point>{place_under_ceiling(scene, room)} : lamps;
+// Over the middle of a floor, as high as is free at least.
+std::optional<Point> place_over(const Floor& floor) {
+  const SensorGroup grid = floor_grid(floor, lowest_room, std::sqrt(area_of(floor)) / 10, 0);
+  Point middle = Point::Zero();
+  for (const Sensor& sensor : grid.sensors) middle += sensor.point / static_cast<double>(grid.sensors.size());
+  const auto nearest = std::min_element(grid.sensors.begin(), grid.sensors.end(), [&](const auto& a, const auto& b) {
+    return (a.point - middle).squaredNorm() < (b.point - middle).squaredNorm();
+  });
+  return nearest == grid.sensors.end() ? std::nullopt : std::optional(nearest->point);
 }
 
-std::string luminaire_table(const Scene& scene, const Solid& room, const std::vector<NamedFloor>& places) {
+struct LampPlaces {
+  std::vector<Point> points;
+  std::vector<std::string> rooms_without;  // names, in the scene's order; empty where no room has a lamp of its own
+};
+
+// In each of the largest named rooms, else under the ceiling, where that has room below.
+LampPlaces places_of_lamps(const Scene& scene, const Solid& hull, const std::vector<NamedFloor>& places) {
+  LampPlaces lamps;
+  if (!scene.rooms.empty()) {
+    for (const NamedRoom& room : scene.rooms) lamps.rooms_without.push_back(room.name);
+    for (const NamedFloor& place : places) {
+      if (lamps.points.size() == most_named) break;
+      const std::optional<Point> lamp = place_over(place.floor);
+      if (!lamp) continue;
+      lamps.points.push_back(*lamp);
+      lamps.rooms_without.erase(std::find(lamps.rooms_without.begin(), lamps.rooms_without.end(), place.name));
+    }
+  }
+  if (!lamps.points.empty()) return lamps;
+  const std::optional<Point> lamp = place_under_ceiling(scene, hull);
+  return {lamp ? std::vector<Point>{*lamp} : std::vector<Point>{}, {}};
+}
+
+// "# No lamp stands in: "store", "attic" and 3 more.", or nothing.
+std::string unlit_line(const std::vector<std::string>& rooms) {
+  if (rooms.empty()) return {};
+  std::string list;
+  for (std::size_t k = 0; k < std::min(rooms.size(), most_named); ++k)
+    list += (list.empty() ? "" : ", ") + toml_text(rooms[k]);
+  if (rooms.size() > most_named) list += " and " + std::to_string(rooms.size() - most_named) + " more";
+  return "# No lamp stands in: " + list + ".\n";
+}
+
+// Commented out where no place for a lamp is known.
+std::string luminaire_table(const Scene& scene, const Solid& hull, const std::vector<NamedFloor>& places) {
+  const LampPlaces lamps = places_of_lamps(scene, hull, places);
   std::string positions;
-  for (const Point& lamp : places_of_lamps(scene, room, places))
-    positions += (positions.empty() ? "" : ", ") + place_text(lamp);
-  return "# Nothing in the model shines, and no daylight gets in: a lamp that shines all around.\n[[luminaire]]\n"
-         "name = \"lamp\"\nkind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\npositions = [" +
-         positions + "]\nlumens = 3000\n\n";
+  for (const Point& lamp : lamps.points) positions += (positions.empty() ? "" : ", ") + place_text(lamp);
+  const bool is_known = !positions.empty();
+  const std::string mark = is_known ? "" : "# ";
+  return std::string("# Nothing in the model shines, and no daylight gets in: a lamp that shines all around") +
+         (is_known ? ".\n" : ",\n# for which no place was found.\n") + unlit_line(lamps.rooms_without) + mark +
+         "[[luminaire]]\n" + mark + "name = \"lamp\"\n" + mark +
+         "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
+         (is_known ? positions : "[X, Y, Z]") + "]\n" + mark + "lumens = 3000\n\n";
 }
 
 // A sky as the only light is not commented out.

@@ -125,6 +125,22 @@ TEST_F(Rooms, ThatNoDaylightGetsIntoHaveALampEachInANewSceneFile) {
   }
 }
 
+// Twelve rooms at most have one; which have none is said, and a room too small for one is among them.
+TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
+  const NamedRoom living = read_scene(folder_ / "house.ifc").rooms[0];
+  Scene box = test::with_box(test::empty_scene({test::grey(0.5)}), Point(0, 0, 0), Point(9, 3, 2.5), false);
+  box.up = Vector::UnitZ();
+  for (int k = 0; k < 15; ++k) box.rooms.push_back({"room " + std::to_string(k), "", living.faces});
+  for (std::vector<Point>& face : box.rooms[1].faces)
+    for (Point& corner : face) corner.head<2>() *= 0.1;
+  const std::string text = new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml");
+  EXPECT_NE(text.find("\n# No lamp stands in: \"room 1\", \"room 13\", \"room 14\".\n"), std::string::npos) << text;
+  EXPECT_EQ(read_scene(write("new.toml", text)).luminaires.size(), 12U);
+  box.rooms.resize(1);
+  EXPECT_EQ(new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml").find("No lamp stands"),
+            std::string::npos);
+}
+
 // What it writes for a model in another unit is read again.
 TEST_F(Rooms, OfAModelInFeetAreInANewSceneFile) {
   const std::filesystem::path model =
