@@ -141,6 +141,19 @@ TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
             std::string::npos);
 }
 
+// In a spire over a corner, without a ceiling and over the middle of its box, no place is found.
+TEST_F(Rooms, HaveNoLampWhereNoPlaceIsFound) {
+  Scene spire = test::empty_scene({test::grey(0.5)});
+  spire.up = Vector::UnitZ();
+  const Point a(0, 0, 0), b(0, 4, 0), c(4, 0, 0), top(0, 0, 3);
+  for (const std::vector<Point>& face : {std::vector{a, c, b}, {a, b, top}, {a, top, c}, {b, c, top}})
+    spire = test::with_polygon(std::move(spire), face);
+  const std::string text = new_scene_file(spire, {folder_ / "house.ifc"}, 1, folder_ / "new.toml");
+  for (const std::string line : {"# for which no place was found.\n# [[luminaire]]\n",
+                                 "\n# name = \"lamp\"\n# kind = ", "\n# positions = [[X, Y, Z]]\n# lumens = 3000\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+}
+
 // What it writes for a model in another unit is read again.
 TEST_F(Rooms, OfAModelInFeetAreInANewSceneFile) {
   const std::filesystem::path model =

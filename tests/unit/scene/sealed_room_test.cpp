@@ -14,6 +14,25 @@ Scene box_of(const Material& material, bool inward) {
   return with_box(empty_scene({material}), Point(0, 0, 0), Point(4, 3, 2.5), inward);
 }
 
+// Over an L of two arms 1 m wide and 4 m long, closed, 3 m high; in its nook x and y are more than 1.
+Scene bent_house() {
+  const std::vector<Point> outline = {Point(0, 0, 0), Point(4, 0, 0), Point(4, 1, 0),
+                                      Point(1, 1, 0), Point(1, 4, 0), Point(0, 4, 0)};
+  const Vector up(0, 0, 3);
+  Scene scene = empty_scene({grey(0.5)});
+  scene.up = Vector::UnitZ();
+  scene = with_polygon(std::move(scene), outline);
+  std::vector<Point> ceiling;
+  for (auto corner = outline.rbegin(); corner != outline.rend(); ++corner) ceiling.emplace_back(*corner + up);
+  scene = with_polygon(std::move(scene), ceiling);
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point& a = outline[k];
+    const Point& b = outline[(k + 1) % outline.size()];
+    scene = with_polygon(std::move(scene), {b, a, a + up, b + up});
+  }
+  return scene;
+}
+
 bool is_sealed_room(const Scene& scene) {
   const std::optional<Solid> hull = sealed_hull(scene);
   return hull && is_room(scene, *hull);
@@ -36,6 +55,24 @@ TEST(SealedRoom, IsNoBodyInTheOpen) {
   EXPECT_FALSE(sealed_hull(with_box(box_of(grey(0.5), true), Point(5, 0, 0), Point(6, 1, 1), false)));
 }
 
+// What stands in its nook is in the open; a picture on one of its walls, or what lies 100 km away, is not.
+TEST(SealedRoom, HoldsAllButWhatIsFar) {
+  EXPECT_TRUE(is_sealed_room(with_box(bent_house(), Point(0.2, 0.2, 1), Point(0.8, 3.8, 2), false)));
+  EXPECT_FALSE(sealed_hull(with_box(bent_house(), Point(2, 2, 0), Point(3, 3, 2), false)));
+  const Quad picture = {Point(0, 2, 1), Point(0, 2, 2), Point(0, 3, 2), Point(0, 3, 1)};
+  EXPECT_TRUE(is_sealed_room(with_quad(bent_house(), picture)));
+  EXPECT_TRUE(sealed_hull(with_box(bent_house(), Point(1e5, 2, 0), Point(1e5 + 1, 3, 2), false)));
+}
+
+// However many things stand inside, and however few outside.
+TEST(SealedRoom, HoldsAllOfMany) {
+  Scene scene = bent_house();
+  for (int k = 0; k < 300; ++k)
+    scene = with_box(std::move(scene), Point(0.1, 1 + 0.009 * k, 1), Point(0.9, 1.005 + 0.009 * k, 2), false);
+  EXPECT_TRUE(sealed_hull(scene));
+  EXPECT_FALSE(sealed_hull(with_box(std::move(scene), Point(2, 2, 0), Point(3, 3, 2), false)));
+}
+
 TEST(SealedRoom, LetsNoLightIn) {
   Scene without_a_wall = box_of(grey(0.5), true);
   without_a_wall.polygons.pop_back();
@@ -51,31 +88,31 @@ TEST(SealedRoom, LetsNoLightIn) {
 TEST(SealedRoom, HasALampUnderItsCeiling) {
   for (const bool inward : {true, false}) {
     const Scene room = with_box(box_of(grey(0.5), inward), Point(1, 1, 0.5), Point(2, 2, 1), false);
-    EXPECT_TRUE(place_under_ceiling(room, *sealed_hull(room)).isApprox(Point(2, 1.5, 2.25), 1e-12));
+    EXPECT_TRUE(place_under_ceiling(room, *sealed_hull(room)).value().isApprox(Point(2, 1.5, 2.25), 1e-12));
   }
 }
 
-// The middle of its box, (2, 2), lies outside of the L of two arms 1 m wide.
+// The middle of its box, (2, 2), lies outside of the L.
 TEST(SealedRoom, OfAnyShapeHoldsItsLamp) {
-  const std::vector<Point> outline = {Point(0, 0, 0), Point(4, 0, 0), Point(4, 1, 0),
-                                      Point(1, 1, 0), Point(1, 4, 0), Point(0, 4, 0)};
-  const Vector up(0, 0, 3);
-  Scene scene = empty_scene({grey(0.5)});
-  scene.up = Vector::UnitZ();
-  scene = with_polygon(std::move(scene), outline);
-  std::vector<Point> ceiling;
-  for (auto corner = outline.rbegin(); corner != outline.rend(); ++corner) ceiling.emplace_back(*corner + up);
-  scene = with_polygon(std::move(scene), ceiling);
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Point& a = outline[k];
-    const Point& b = outline[(k + 1) % outline.size()];
-    scene = with_polygon(std::move(scene), {b, a, a + up, b + up});
-  }
+  const Scene scene = bent_house();
   const std::optional<Solid> room = sealed_hull(scene);
   ASSERT_TRUE(room);
-  const Point lamp = place_under_ceiling(scene, *room);
-  EXPECT_TRUE(holds(*room, lamp)) << lamp.transpose();
-  EXPECT_NEAR(lamp.z(), 2.7, 1e-4);
+  const std::optional<Point> lamp = place_under_ceiling(scene, *room);
+  ASSERT_TRUE(lamp);
+  EXPECT_TRUE(holds(*room, *lamp)) << lamp->transpose();
+  EXPECT_NEAR(lamp->z(), 2.7, 1e-12);
+}
+
+// The faces of a spire over a corner are too steep for a ceiling, and over the middle of its box is no room.
+TEST(SealedRoom, HasNoLampWhereNoneFits) {
+  Scene scene = empty_scene({grey(0.5)});
+  scene.up = Vector::UnitZ();
+  const Point a(0, 0, 0), b(4, 0, 0), c(0, 4, 0), top(0, 0, 3);
+  for (const std::vector<Point>& face : {std::vector{a, c, b}, {a, b, top}, {a, top, c}, {b, c, top}})
+    scene = with_polygon(std::move(scene), face);
+  const std::optional<Solid> room = sealed_hull(scene);
+  ASSERT_TRUE(room);
+  EXPECT_FALSE(place_under_ceiling(scene, *room));
 }
 
 }  // namespace
