@@ -94,14 +94,18 @@ std::string steps_table(const std::vector<AccuracyStep>& steps) {
   return text_table(rows);
 }
 
+// So many times what is usual may be by chance where few of the rays carry most of the flux.
+constexpr double most_by_noise = 10;
+
 // Rows of rays carry flux from patch to patch by chance: of R rays that carry equal parts of it 1 / sqrt(R) is off.
 std::string why_imbalanced(const Report& report) {
   if (report.plan.assembly.storage != Storage::rays) return {};
   const double usual =
       1 / std::sqrt(static_cast<double>(report.plan.assembly.rays) * static_cast<double>(report.patches));
   if (report.balance.imbalance < usual / 10) return {};
-  return ", by the noise of the rays: up to a few times " + rounded(usual, 1) +
-         " is usual, one over the root of their number";
+  const bool is_noise = report.balance.imbalance <= most_by_noise * usual;
+  return std::string(is_noise ? ", by the noise of the rays" : ", more than the noise of the rays explains") +
+         ": up to a few times " + rounded(usual, 1) + " is usual, one over the root of their number";
 }
 
 std::string energy(const Report& report) {

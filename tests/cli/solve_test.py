@@ -145,6 +145,12 @@ class SolveTest(ToolTest):
         self.assertIn("NOT converged", done.stderr)
         self.assertIn("0.99999", done.stderr)
 
+    def test_what_noise_of_rays_does_not_explain_is_not_put_down_to_it(self):
+        """After two bounces some 15 % of the flux are still under way, and one over the root of all rays is 0.4 %."""
+        done = self.solve("--patches", 900, "--storage", "rays", "--solver", "jacobi", "--max-iterations", 2,
+                          "--report", "a.json", code=NOT_CONVERGED)
+        self.assertRegex(done.stdout, r"imbalance \S+ of the flux, more than the noise of the rays explains: up to a few")
+
     def test_interrupt_leaves_no_file(self):
         for sent in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(sent.name):
