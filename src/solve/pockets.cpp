@@ -194,11 +194,11 @@ bool bounces_hold(const Pocket& pocket, const PocketSystem& system) {
 
 // Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
 // what is followed is.
-std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, Rows form_factors,
+std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const Rows& form_factors,
                                 const Eigen::VectorXd& reflectance) {
   Pocket pocket;
   pocket.patches = std::move(patches);
-  pocket.form_factors = std::move(form_factors);
+  pocket.form_factors = form_factors;
   const PocketSystem system = system_within(pocket, values_at(pocket.patches, reflectance));
   if (!system.is_eliminated()) {
     pocket.nearly_solved = std::make_unique<Eigen::IncompleteLUT<double>>();
