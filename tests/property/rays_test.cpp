@@ -183,6 +183,16 @@ TEST(Rays, TellBandsThatFollowFromOthers) {
   EXPECT_LT(differ(few.solution.direct_irradiance, each.solution.direct_irradiance), 1e-12);
   EXPECT_LT(differ(few.solution.error, each.solution.error), 1e-9);
   EXPECT_LT(differ(few.ray_standard_error, each.ray_standard_error), 1e-9);
+  // Errors of the mesh, and what of them is noise, go with the light.
+  ASSERT_TRUE(few.error_bars);
+  const auto of_first = [](const Field& field) -> Field {
+    Field bands = field.col(0).replicate(1, field.cols());
+    for (Eigen::Index band = 1; band < bands.cols(); ++band) bands.col(band) /= 1 + static_cast<double>(band);
+    return bands;
+  };
+  EXPECT_GT(few.error_bars->mesh_noise.maxCoeff(), 0);
+  EXPECT_LT(differ(few.error_bars->mesh_noise, of_first(few.error_bars->mesh_noise)), 1e-9);
+  EXPECT_LT(differ(few.error_bars->mesh, of_first(few.error_bars->mesh)), 1e-9);
 }
 
 // The solvers that take no more than H = F B agree to their tolerance.
