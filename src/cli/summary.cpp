@@ -49,7 +49,7 @@ std::string parts(const AccuracyStep& step) {
          percent(step.form_factor, 2) + ", solver " +
          (solver_known ? percent(step.solver, 1) : "not known and not in it") +
          "; points within a patch differ from its mean by " + percent(step.display, 2) +
-         " %, which shows where each patch is drawn in one even color";
+         " %, which shows where each patch is drawn in one even colour";
 }
 
 // How far off the patches' means may be, and what is drawn with them.

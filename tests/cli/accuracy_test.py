@@ -182,7 +182,7 @@ class AccuracyTest(ToolTest):
         self.assertEqual(report["accuracy"][0]["patches"], report["mesh"]["patches"])
         self.assertRegex(done.stdout, r"error of the patches' means about \S+ %: mesh \S+, form factors \S+, solver \S+; "
                                       r"points within a patch differ from its mean by \S+ %, which shows where each "
-                                      r"patch is drawn in one even color\n")
+                                      r"patch is drawn in one even colour\n")
         self.assertIn("error_bars", [cost["stage"].replace(" ", "_") for cost in report["costs"]])
         written = (self.folder / "a.vtp").read_bytes()
         for array in ARRAYS + ("error_solver",):
