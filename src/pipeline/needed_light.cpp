@@ -63,16 +63,4 @@ NeededLight needed_light(const RayLight& light, const SolverOptions& options) {
   return needed;
 }
 
-Observer telling_all_bands(const Observer& observer, const SolvedBands& bands) {
-  if (!observer) return {};
-  return [&observer, &bands](const Progress& progress) {
-    if (!progress.irradiance) return observer(progress);
-    Progress all = progress;
-    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
-    all.irradiance = [&] { return expanded(progress.irradiance(), bands); };
-    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
-    return observer(all);
-  };
-}
-
 }  // namespace patchlight

@@ -19,7 +19,4 @@ struct NeededLight {
 /// All bands where each is to be solved, SolverOptions::every_band or with a reference.
 NeededLight needed_light(const RayLight& light, const SolverOptions& options);
 
-/// An observer of the needed bands that tells the one of all bands; refers to both arguments.
-Observer telling_all_bands(const Observer& observer, const SolvedBands& bands);
-
 }  // namespace patchlight

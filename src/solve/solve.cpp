@@ -98,19 +98,6 @@ Field from_lamps(const TransportOperator& transport, const RowTransport* rows, c
   return irradiance;
 }
 
-// An observer of the solved bands that tells the one of all bands.
-Observer for_all_bands(const Observer& observer, const SolvedBands& bands, const RadiosityProblem& problem) {
-  if (!observer) return {};
-  return [&observer, &bands, &problem](const Progress& progress) {
-    if (!progress.irradiance) return observer(progress);
-    Progress all = progress;
-    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
-    all.irradiance = [&] { return with_direct(expanded(progress.irradiance(), bands), problem); };
-    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
-    return observer(all);
-  };
-}
-
 // The light of the lamps, and nothing more: for a system without a solution.
 Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem& problem, std::string why) {
   Solution solution;
@@ -259,7 +246,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
                                 problem.area, reduced(problem.direct_irradiance, bands)};
   SolverOptions used = options;
   if (options.reference) used.reference = reduced(*options.reference, bands);
-  const Observer of_needed = for_all_bands(observer, bands, problem);
+  const Observer of_needed = telling_all_bands(observer, bands, &problem.direct_irradiance);
 
   // 2. The solution of these.
   Solution solution = solution_of(transport, needed, used, of_needed);

@@ -68,4 +68,20 @@ Field expanded(const FieldView& field, const SolvedBands& bands) {
   return all;
 }
 
+Observer telling_all_bands(const Observer& observer, const SolvedBands& bands, const Field* more_irradiance) {
+  if (!observer) return {};
+  return [&observer, &bands, more_irradiance](const Progress& progress) {
+    if (!progress.irradiance) return observer(progress);
+    Progress all = progress;
+    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
+    all.irradiance = [&]() -> Field {
+      const Field irradiance = expanded(progress.irradiance(), bands);
+      const bool has_more = more_irradiance != nullptr && more_irradiance->size() > 0;
+      return has_more ? Field(irradiance + *more_irradiance) : irradiance;
+    };
+    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
+    return observer(all);
+  };
+}
+
 }  // namespace patchlight
