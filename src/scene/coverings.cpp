@@ -113,6 +113,17 @@ bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
 }
 
+bool is_sheet(const Scene& scene, const KeptSides& kept, PolygonIndex polygon) {
+  return kept.front[polygon] != 0 && kept.back[polygon] != 0 && !is_opening(scene, polygon);
+}
+
+// Is this the outer side of a body's face that gives no light?
+bool is_of_body(const Scene& scene, const KeptSides& kept, PolygonIndex polygon, Side side) {
+  const bool keeps_other = is_kept(kept, polygon, side == Side::front ? Side::back : Side::front);
+  const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
+  return !keeps_other && !is_opening(scene, polygon) && !(exitance > 0).any();
+}
+
 // Over which side of which polygon another lies.
 struct Covered {
   PolygonIndex polygon = 0;
@@ -166,6 +177,11 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
     for (const Side side : {Side::front, Side::back}) {
       const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
       if (!is_kept(kept, polygon, side) || !is_kept(kept, upper, other_side)) continue;
+      // The edge of a desk against a wall without thickness is not seen from beyond the wall.
+      if (is_sheet(scene, kept, polygon) && is_of_body(scene, kept, upper, other_side)) {
+        over.push_back({upper, other_side, polygon});
+        continue;
+      }
       over.push_back({polygon, side, upper});
       if (may_be_wall) under.push_back({upper, other_side, polygon});
     }
@@ -227,8 +243,7 @@ std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings&
       " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
   add(ProblemKind::overlapping_faces, std::move(faces),
       " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first, "
-      "and no error bar "
-      "has what that changes");
+      "but of a body against a sheet the sheet, and no error bar has what that changes");
   return problems;
 }
 

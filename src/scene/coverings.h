@@ -23,8 +23,10 @@ struct Coverings {
 
 /// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the
 /// first in the scene over the later one, so that geometry alone decides; but a clear one lies
-/// over smaller opaque ones that cover it together, the pieces of a wall on which it is drawn. Only kept sides
-/// cover or are covered. Expected O(n log n) for n polygons.
+/// over smaller opaque ones that cover it together, the pieces of a wall on which it is drawn; and a sheet, which has
+/// both sides kept, lies over the smaller face of a body that keeps one side, opaque and without light of its own: of a
+/// body that stands against a sheet nothing is seen from beyond. Only kept sides cover or are covered. Expected O(n log
+/// n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 
 /// ProblemKind::overlapping_faces with the polygons that are covered in part, and ProblemKind::covered_lamp with those

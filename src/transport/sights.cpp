@@ -51,10 +51,10 @@ Ray Sights::moved(PatchIndex patch, Ray ray) const {
 }
 
 bool Sights::lies_behind(PatchIndex patch, double height, const Hit& hit) const {
-  // Of two faces in one plane that look the same way, as of a rug on a floor, the lower one is met where it has no
-  // patches.
+  // Of two faces in one plane that look the same way, as of a rug on a floor, the lower one is met from behind.
   const Side other = hit.side == Side::front ? Side::back : Side::front;
-  if (!has_patches(hit) && occluder_.is_covered(hit.polygon, other, hit.point)) return true;
+  const bool may_be_lower = !has_patches(hit) || occluder_.lies_over(mesh_.polygon[patch], hit.polygon, other);
+  if (may_be_lower && occluder_.is_covered(hit.polygon, other, hit.point)) return true;
   if (height >= behind_) return false;
   const Vector& normal = mesh_.normal[patch];
   const Ray back{hit.point + (behind_ - height) * normal, -normal, mesh_.polygon[patch]};

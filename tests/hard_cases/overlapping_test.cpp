@@ -108,5 +108,66 @@ TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
   }
 }
 
+// What stands on a floor without thickness.
+enum class OnFloor { nothing, box, lamp_in_box };
+
+// That floor between two luminaires, with nothing else below it. A small face far above takes it out of the middle of
+// all, where rays meet it as in buildings: with rounding.
+Scene floor_between_lamps(OnFloor what) {
+  Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 10)}), rectangle(0, 0, 4, 3));
+  for (const double height : {-2.0, 2.0}) {
+    Luminaire luminaire;
+    luminaire.position = Point(1.7, 1.6, height);
+    luminaire.light = PointLight{Spectrum::Constant(1, 10)};
+    scene.luminaires.push_back(luminaire);
+  }
+  Quad far_above = rectangle(0.1, 0.2, 0.3, 0.4);
+  for (Point& corner : far_above) corner.z() = 31.7;
+  scene = with_quad(std::move(scene), far_above);
+  if (what == OnFloor::nothing) return scene;
+  scene = with_box(std::move(scene), Point(1, 1, 0), Point(2, 1.8, 0.7), false);
+  if (what == OnFloor::lamp_in_box) scene.polygons[2].material = 1;
+  return scene;
+}
+
+// Flux that arrives from below in the plane of the floor, W: on the floor, and on the bottom of the box.
+struct FromBelow {
+  double on_floor = 0;
+  double on_bottom = 0;
+  double area_of_bottom = 0;  // m^2, exposed
+};
+
+FromBelow from_below(const Scene& scene) {
+  Request request;
+  request.mesh.max_edge = 0.25;
+  const Simulation simulation = simulate(scene, request);
+  FromBelow flux;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (std::abs(simulation.mesh.centroid[i].z()) > 1e-9 || simulation.mesh.normal[i].z() > 0) continue;
+    double& sum = simulation.mesh.polygon[i] == 0 ? flux.on_floor : flux.on_bottom;
+    sum += simulation.problem.area[i] * simulation.solution.irradiance(i, 0);
+    if (simulation.mesh.polygon[i] != 0) flux.area_of_bottom += simulation.problem.area[i];
+  }
+  return flux;
+}
+
+// Law: what stands on a floor without thickness is not seen from below. The box hides none of its underside, and its
+// bottom is dark; the light of a point over a patch is found to some 1e-3.
+TEST(Overlapping, ABodyThatStandsOnASheetIsNotLitFromBeyond) {
+  const FromBelow alone = from_below(floor_between_lamps(OnFloor::nothing));
+  const FromBelow below = from_below(floor_between_lamps(OnFloor::box));
+  EXPECT_NEAR(below.on_floor, alone.on_floor, 2e-3 * alone.on_floor);
+  EXPECT_LT(below.on_bottom, 1e-5 * alone.on_floor);
+}
+
+// A lamp that is let into a ceiling without thickness is drawn on it, nothing covers its 1 m by 0.8 m, and both
+// together receive what the ceiling alone does.
+TEST(Overlapping, ALampLetIntoASheetIsInSight) {
+  const FromBelow alone = from_below(floor_between_lamps(OnFloor::nothing));
+  const FromBelow below = from_below(floor_between_lamps(OnFloor::lamp_in_box));
+  EXPECT_NEAR(below.on_floor + below.on_bottom, alone.on_floor, 2e-3 * alone.on_floor);
+  EXPECT_NEAR(below.area_of_bottom, 0.8, 1e-9);
+}
+
 }  // namespace
 }  // namespace patchlight::overlapping_test

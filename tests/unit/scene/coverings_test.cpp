@@ -2,6 +2,7 @@
 
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace patchlight::coverings_test {
@@ -49,7 +50,8 @@ TEST(Coverings, OfEqualOnesTheFirstLiesOver) {
   EXPECT_EQ(over(scene_of({floor_quad, shifted}), 0), Over{});
 }
 
-// Form factors are stored and used again with other lamps: they must not depend on them.
+// Form factors are stored and used again with other lamps: they must not depend on them, but for faces of bodies
+// against sheets.
 TEST(Coverings, DoNotDependOnLampsButALampThatIsCoveredIsNamed) {
   Scene scene = scene_of({rectangle(1, 1, 2, 2)});
   scene = with_quad(std::move(scene), floor_quad, 1);
@@ -67,6 +69,22 @@ TEST(Coverings, OnlySidesThatFaceTheSameWayAndAreKeptCover) {
   EXPECT_EQ(over(scene, 0), Over{});  // the rug's front looks down, its back is not kept
   EXPECT_EQ(over(scene, 0, Side::front, Sides::both), Over{1});
   EXPECT_EQ(over(scene, 0, Side::back, Sides::both), Over{1});
+}
+
+// Polygon 0 is a floor without thickness, 1 the bottom of the box that stands on it, whose inner sides are left out.
+TEST(Coverings, ASheetLiesOverTheFaceOfABodyThatStandsAgainstIt) {
+  Scene scene = with_box(scene_of({floor_quad}), Point(1, 1, 0), Point(2, 2, 1), false);
+  KeptSides kept = kept_sides(scene, Sides::both);
+  std::fill(kept.back.begin() + 1, kept.back.end(), 0);
+  const Coverings standing = find_coverings(scene, kept);
+  EXPECT_EQ(standing.over_side(0, Side::back).size(), 0U);
+  ASSERT_EQ(standing.over_side(1, Side::front).size(), 1U);
+  EXPECT_EQ(standing.over_side(1, Side::front)[0], 0U);
+  // A lamp that is let into a ceiling shines.
+  scene.polygons[1].material = 1;
+  const Coverings let_in = find_coverings(scene, kept);
+  EXPECT_EQ(let_in.over_side(0, Side::back).size(), 1U);
+  EXPECT_EQ(let_in.over_side(1, Side::front).size(), 0U);
 }
 
 TEST(Coverings, PolygonsThatRoundingSetsApartLieInOnePlane) {
