@@ -98,6 +98,19 @@ double patches_that_fit(const Plan& plan) {
   return std::max(1.0, std::sqrt(half * half + left / of_a_pair) - half);
 }
 
+namespace {
+
+// Advice where pairs do not fit but rows of rays would.
+std::string advice_by_rays(std::size_t patches, const Plan& plan) {
+  if (plan.assembly.storage != Storage::tiles) return {};
+  Plan rays = plan;
+  rays.assembly.storage = Storage::rays;
+  if (memory_needed(patches, rays) > usable_memory(plan.resources)) return {};
+  return "take rows of rays instead with assembly.storage=rays";
+}
+
+}  // namespace
+
 void require_memory(std::size_t patches, const Request& request, const Plan& plan) {
   const double needed = memory_needed(patches, plan);
   const double usable = usable_memory(plan.resources);
@@ -105,8 +118,7 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
   const auto fitting = static_cast<long>(patches_that_fit(plan));
   // Small faces take a patch each, however few are asked for.
   const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
-  const std::string by_rays =
-      plan.assembly.storage == Storage::tiles ? "take rows of rays instead with assembly.storage=rays" : "";
+  const std::string by_rays = advice_by_rays(patches, plan);
   const std::string hint =
       usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
       : too_many_faces

@@ -5,6 +5,7 @@
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
 #include "plan/choose_storage.h"
+#include "plan/memory.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -103,6 +104,26 @@ TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
   Request refined;
   refined.accuracy.relative_error = 0.01;
   EXPECT_EQ(chosen(2000, 63, refined).storage, Storage::tiles) << "faces get more patches where it matters";
+}
+
+// What does not fit by pairs is sent to rows of rays only where these do.
+TEST(RequireMemory, AdvisesRaysOnlyWhereTheyFit) {
+  const Scene scene = furnished_room(0.5);
+  Request request;
+  request.mesh.patches = 20000;
+  request.assembly.storage = Storage::tiles;
+  const auto said = [&](double bytes) -> std::string {
+    request.resources.memory = bytes;
+    try {
+      require_memory(20000, request, make_plan(scene, request));
+    } catch (const MemoryError& refusal) {
+      return refusal.what();
+    }
+    return "nothing";
+  };
+  EXPECT_NE(said(500e6).find("assembly.storage=rays"), std::string::npos) << said(500e6);
+  EXPECT_EQ(said(60e6).find("assembly.storage=rays"), std::string::npos) << said(60e6);
+  EXPECT_NE(said(60e6), "nothing");
 }
 
 // Many patches are not solved by pairs, unless something that is asked for takes these; what is asked for stays.
