@@ -90,11 +90,7 @@ Shades::Indices Shades::triangles_over(std::span<const HalfSpace> below) const {
 }
 
 bool Shades::lies_under(PolygonIndex polygon, PolygonIndex other) const {
-  for (const Side side : {Side::front, Side::back}) {
-    const auto over = coverings_.over_side(polygon, side);
-    if (std::find(over.begin(), over.end(), other) != over.end()) return true;
-  }
-  return false;
+  return coverings_.lies_over(other, polygon, Side::front) || coverings_.lies_over(other, polygon, Side::back);
 }
 
 // What darkens a patch, in its plane.

@@ -3,6 +3,7 @@
 #include "lighting/mirror_chains.h"
 #include "plan/close_lamps.h"
 
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -47,6 +48,24 @@ std::vector<std::string> notes_on_run(const Scene& scene, const Tracing& tracing
   if (refines(plan.accuracy)) return notes;
   for (std::string& note : notes_on_close_lamps(scene, tracing.between_patches(), plan.max_edge))
     notes.push_back(std::move(note));
+  return notes;
+}
+
+std::vector<std::string> notes_on_hidden_lamps(const Scene& scene, const Simulation& simulation) {
+  const PatchMesh& mesh = simulation.mesh;
+  const Eigen::VectorXd& overlaid = simulation.transport.lost.overlaid;
+  const Occluder& occluder = simulation.tracing->between_patches();
+  std::set<std::string> names;
+  for (PatchIndex i = 0; i < overlaid.size(); ++i) {
+    const bool was_hidden = overlaid[i] == 1 && emits(scene, mesh.polygon[i], mesh.side[i]);
+    if (was_hidden && !occluder.is_covered(mesh.polygon[i], mesh.side[i], mesh.centroid[i]))
+      names.insert(scene.materials[mesh.material[i]].name);
+  }
+  std::vector<std::string> notes;
+  for (const std::string& name : names)
+    notes.push_back("material '" + name +
+                    "' emits, but little light comes from it: faces of it lay under others when the form factors were "
+                    "made, as they were dark; make the form factors anew with the lamps of now");
   return notes;
 }
 

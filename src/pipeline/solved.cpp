@@ -3,6 +3,7 @@
 #include "accuracy/enclosed.h"
 #include "base/vectors.h"
 #include "pipeline/light_of_lamps.h"
+#include "pipeline/notes_on_run.h"
 #include "pipeline/solve_for_interest.h"
 #include "solve/energy.h"
 
@@ -52,6 +53,9 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   simulation.tracing = run.tracing;
   if (run.scene.sky || run.scene.sun)
     simulation.enclosed = enclosed_patches(run.scene, run.tracing->all_faces(run.scene), simulation.mesh);
+  if (run.with.exchange || run.with.ray_exchange) {
+    for (std::string& note : notes_on_hidden_lamps(run.scene, simulation)) simulation.notes.push_back(std::move(note));
+  }
 
   if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);
 

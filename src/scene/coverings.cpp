@@ -4,6 +4,8 @@
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/problem_face.h"
+#include "scene/shells.h"
+#include "scene/solids.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>
@@ -113,22 +115,12 @@ bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
 }
 
-bool is_sheet(const Scene& scene, const KeptSides& kept, PolygonIndex polygon) {
-  return kept.front[polygon] != 0 && kept.back[polygon] != 0 && !is_opening(scene, polygon);
-}
-
-// Is this the outer side of a body's face that gives no light?
-bool is_of_body(const Scene& scene, const KeptSides& kept, PolygonIndex polygon, Side side) {
-  const bool keeps_other = is_kept(kept, polygon, side == Side::front ? Side::back : Side::front);
-  const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
-  return !keeps_other && !is_opening(scene, polygon) && !(exitance > 0).any();
-}
-
-// Over which side of which polygon another lies.
+// Over which side of which polygon another lies, and by which side of its own.
 struct Covered {
   PolygonIndex polygon = 0;
   Side side = Side::front;
   PolygonIndex by = 0;
+  Side by_side = Side::front;
 };
 
 // Finds the polygons that lie over one, side by side.
@@ -177,13 +169,8 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
     for (const Side side : {Side::front, Side::back}) {
       const Side other_side = (side == Side::front) == same_front ? Side::front : Side::back;
       if (!is_kept(kept, polygon, side) || !is_kept(kept, upper, other_side)) continue;
-      // The edge of a desk against a wall without thickness is not seen from beyond the wall.
-      if (is_sheet(scene, kept, polygon) && is_of_body(scene, kept, upper, other_side)) {
-        over.push_back({upper, other_side, polygon});
-        continue;
-      }
-      over.push_back({polygon, side, upper});
-      if (may_be_wall) under.push_back({upper, other_side, polygon});
+      over.push_back({polygon, side, upper, other_side});
+      if (may_be_wall) under.push_back({upper, other_side, polygon, side});
     }
   });
   const double wall = whole_wall * lower.area;
@@ -194,7 +181,35 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
   return under;
 }
 
+// Is the larger face seen from both sides, and the smaller one opaque and without light?
+bool may_hide(const Scene& scene, const KeptSides& kept, const Covered& covered) {
+  return kept.front[covered.polygon] != 0 && kept.back[covered.polygon] != 0 && !is_opening(scene, covered.polygon) &&
+         !is_opening(scene, covered.by) && !emits(scene, covered.by, covered.by_side);
+}
+
+// Where the smaller face is one of a closed solid, as the edge of a desk against a wall without thickness, the larger
+// one lies over it. Solids are looked for where that may be.
+void hide_solids(const Scene& scene, const KeptSides& kept, std::vector<std::vector<Covered>>& found) {
+  std::vector<Covered*> pairs;
+  for (std::vector<Covered>& some : found)
+    for (Covered& covered : some)
+      if (may_hide(scene, kept, covered)) pairs.push_back(&covered);
+  if (pairs.empty()) return;
+  const Shells shells = shells_of(scene);
+  const std::vector<std::uint8_t> inner = inner_sides(scene, shells, closed_solids(scene, shells));
+  for (Covered* const pair : pairs) {
+    const Side behind = pair->by_side == Side::front ? Side::back : Side::front;
+    const bool is_of_solid = inner[2 * std::size_t{pair->by} + static_cast<std::size_t>(behind)] != 0;
+    if (is_of_solid) *pair = {pair->by, pair->by_side, pair->polygon, pair->side};
+  }
+}
+
 }  // namespace
+
+bool Coverings::lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const {
+  const auto over_it = over_side(polygon, side);
+  return std::binary_search(over_it.begin(), over_it.end(), upper);
+}
 
 std::span<const PolygonIndex> Coverings::over_side(PolygonIndex polygon, Side side) const {
   if (over.empty()) return {};
@@ -209,6 +224,7 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
                       in_plane_tolerance * extent_of(scene)};
   std::vector<std::vector<Covered>> found(count);
   parallel_for(count, [&](std::size_t p) { found[p] = search.of(static_cast<PolygonIndex>(p)); });
+  hide_solids(scene, kept, found);
   std::vector<std::vector<PolygonIndex>> over(2 * count);
   for (const std::vector<Covered>& some : found) {
     for (const Covered& covered : some)
@@ -221,16 +237,26 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
 
 std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
   std::vector<ProblemFace> faces;
+  std::vector<ProblemFace> of_solids;
   std::vector<ProblemFace> lamps;
-  const auto emits = [&](MaterialIndex material) { return (scene.materials[material].exitance > 0).any(); };
+  const auto area_of = [&](PolygonIndex p) { return area_vector(corner_points(scene, p)).norm(); };
   for (PolygonIndex p = 0; 2 * std::size_t{p} < coverings.over.size(); ++p) {
-    const bool front = !coverings.over_side(p, Side::front).empty();
-    const bool back = !coverings.over_side(p, Side::back).empty();
-    const Polygon& polygon = scene.polygons[p];
-    if (front || back) faces.push_back(problem_face(scene, polygon));
-    if ((front && emits(polygon.material)) || (back && polygon.back_material && emits(*polygon.back_material))) {
-      lamps.push_back(problem_face(scene, polygon));
+    bool is_covered = false;
+    bool is_hidden = false;
+    bool is_dark_lamp = false;
+    for (const Side side : {Side::front, Side::back}) {
+      const auto over = coverings.over_side(p, side);
+      if (over.empty()) continue;
+      const double area = same_area * area_of(p);
+      // But a pane lies over the smaller pieces of a wall.
+      const auto is_larger = [&](PolygonIndex other) { return !is_opening(scene, other) && area_of(other) > area; };
+      (std::any_of(over.begin(), over.end(), is_larger) ? is_hidden : is_covered) = true;
+      is_dark_lamp = is_dark_lamp || emits(scene, p, side);
     }
+    const ProblemFace face = problem_face(scene, scene.polygons[p]);
+    if (is_covered) faces.push_back(face);
+    if (is_hidden) of_solids.push_back(face);
+    if (is_dark_lamp) lamps.push_back(face);
   }
   std::vector<Problem> problems;
   const auto add = [&](ProblemKind kind, std::vector<ProblemFace> concerned, const std::string& what) {
@@ -243,7 +269,10 @@ std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings&
       " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
   add(ProblemKind::overlapping_faces, std::move(faces),
       " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first, "
-      "but of a body against a sheet the sheet, and no error bar has what that changes");
+      "and no error bar has what that changes");
+  add(ProblemKind::overlapping_faces, std::move(of_solids),
+      " against a larger one that is seen from both sides, with a solid behind, which is taken to stand before it and "
+      "not to be seen from beyond; where a solid is let into a face, that has to be cut out there");
   return problems;
 }
 

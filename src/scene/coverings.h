@@ -16,17 +16,20 @@ constexpr double in_plane_tolerance = 3e-7;
 /// Where polygons lie one on the other in the same plane, as a rug drawn on a floor, or the floors of two solids: for
 /// each side of a polygon the polygons that lie over part of it and face the same way.
 struct Coverings {
-  std::vector<std::vector<PolygonIndex>> over;  ///< at 2 * polygon + side; empty when nothing in the scene overlaps
+  std::vector<std::vector<PolygonIndex>> over;  ///< at 2 * polygon + side, ascending; empty when nothing overlaps
 
   std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const;
+
+  /// True when `upper` lies over some place of this side of `polygon`.
+  bool lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const;
 };
 
-/// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the
-/// first in the scene over the later one, so that geometry alone decides; but a clear one lies
-/// over smaller opaque ones that cover it together, the pieces of a wall on which it is drawn; and a sheet, which has
-/// both sides kept, lies over the smaller face of a body that keeps one side, opaque and without light of its own: of a
-/// body that stands against a sheet nothing is seen from beyond. Only kept sides cover or are covered. Expected O(n log
-/// n) for n polygons.
+/// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the first in
+/// the scene over the later one. A clear one lies over smaller opaque ones that cover it together, the pieces of a wall
+/// on which it is drawn. A larger one with both sides kept lies over the outer side of a closed solid, which stands
+/// against it: from beyond a wall without thickness no desk is seen. So geometry alone decides, with one exception: the
+/// side of a solid that emits lies over the larger one, as that of a lamp which is let into a ceiling. Only kept sides
+/// cover or are covered. Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 
 /// ProblemKind::overlapping_faces with the polygons that are covered in part, and ProblemKind::covered_lamp with those

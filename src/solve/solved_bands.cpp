@@ -74,10 +74,10 @@ Observer telling_all_bands(const Observer& observer, const SolvedBands& bands, c
     if (!progress.irradiance) return observer(progress);
     Progress all = progress;
     const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
-    all.irradiance = [&]() -> Field {
-      const Field irradiance = expanded(progress.irradiance(), bands);
-      const bool has_more = more_irradiance != nullptr && more_irradiance->size() > 0;
-      return has_more ? Field(irradiance + *more_irradiance) : irradiance;
+    all.irradiance = [&] {
+      Field irradiance = expanded(progress.irradiance(), bands);
+      if (more_irradiance != nullptr && more_irradiance->size() > 0) irradiance += *more_irradiance;
+      return irradiance;
     };
     all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
     return observer(all);

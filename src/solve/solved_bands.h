@@ -29,8 +29,8 @@ Field reduced(const FieldView& field, const SolvedBands& bands);
 /// All bands from the solved ones.
 Field expanded(const FieldView& field, const SolvedBands& bands);
 
-/// An observer of the solved bands that tells the one of all bands. Irradiance that none of them has, in all bands, is
-/// added to what they have, if there is any. Refers to all arguments.
+/// An observer of the solved bands that tells the one of all bands. `more_irradiance`, of all bands and in none of the
+/// solved ones, is added where it is given and not empty. Refers to all arguments.
 Observer telling_all_bands(const Observer& observer, const SolvedBands& bands, const Field* more_irradiance = nullptr);
 
 }  // namespace patchlight

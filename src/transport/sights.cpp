@@ -53,8 +53,8 @@ Ray Sights::moved(PatchIndex patch, Ray ray) const {
 bool Sights::lies_behind(PatchIndex patch, double height, const Hit& hit) const {
   // Of two faces in one plane that look the same way, as of a rug on a floor, the lower one is met from behind.
   const Side other = hit.side == Side::front ? Side::back : Side::front;
-  const bool may_be_lower = !has_patches(hit) || occluder_.lies_over(mesh_.polygon[patch], hit.polygon, other);
-  if (may_be_lower && occluder_.is_covered(hit.polygon, other, hit.point)) return true;
+  if (occluder_.lies_over(mesh_.polygon[patch], hit.polygon, other)) return true;
+  if (!has_patches(hit) && occluder_.is_covered(hit.polygon, other, hit.point)) return true;
   if (height >= behind_) return false;
   const Vector& normal = mesh_.normal[patch];
   const Ray back{hit.point + (behind_ - height) * normal, -normal, mesh_.polygon[patch]};
@@ -130,7 +130,9 @@ bool Sights::is_in_contact(const Hit& hit) const {
   const Vector& normal = mesh_.normal[mesh_.patches_on(hit.polygon, hit.side).begin];
   const Ray through{hit.point - behind_ * normal, normal, hit.polygon};
   const auto next = occluder_.first_hits({&through, 1})[0];
-  return next && next->distance < 2 * behind_ && has_patches(*next);
+  if (!next || next->distance >= 2 * behind_ || !has_patches(*next)) return false;
+  const Side other = next->side == Side::front ? Side::back : Side::front;
+  return !occluder_.lies_over(hit.polygon, next->polygon, other);
 }
 
 }  // namespace patchlight

@@ -52,8 +52,8 @@ class Sights {
   /// Whether a side that is met has patches.
   bool has_patches(const Hit& hit) const;
 
-  /// Does another face lie against the one that was hit, where it was? One that lies over it and faces the same way, as
-  /// a rug on a floor, is met from behind, where it has no patches.
+  /// Does another face lie against the one that was hit, where it was? Not one that it lies over, as the floor under a
+  /// rug.
   bool is_in_contact(const Hit& hit) const;
 
  private:

@@ -38,7 +38,10 @@ bool VisibilityTest::looks_out(const Ray& ray) const {
   Ray from_behind = ray;
   from_behind.origin -= reach * normal;
   const auto second = occluder.first_hits({&from_behind, 1}).front();
-  return !second || second->distance * ray.direction.dot(normal) >= 2 * reach;
+  if (!second || second->distance * ray.direction.dot(normal) >= 2 * reach) return true;
+  // What the receiver lies over is met from behind.
+  const Side other = second->side == Side::front ? Side::back : Side::front;
+  return occluder.lies_over(receiver.polygon, second->polygon, other);
 }
 
 std::vector<Ray> VisibilityTest::rays_from(const Point& point, std::uint32_t seed) const {

@@ -258,9 +258,8 @@ bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) c
   return tracer_->faces->covered_places.covers(polygon, side, tracer_->recentred(place));
 }
 
-bool Occluder::lies_over(PolygonIndex other, PolygonIndex polygon, Side side) const {
-  const auto over = tracer_->faces->covered_places.coverings.over_side(polygon, side);
-  return std::binary_search(over.begin(), over.end(), other);
+bool Occluder::lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const {
+  return tracer_->faces->covered_places.coverings.lies_over(upper, polygon, side);
 }
 
 bool Occluder::is_covered_in_part(PolygonIndex polygon, Side side) const {

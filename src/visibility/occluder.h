@@ -156,8 +156,8 @@ class Occluder {
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
 
-  /// True when this other polygon lies over some place of a side.
-  bool lies_over(PolygonIndex other, PolygonIndex polygon, Side side) const;
+  /// True when `upper` lies over some place of this side of `polygon`.
+  bool lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const;
 
   /// True when another polygon lies over some place of this side.
   bool is_covered_in_part(PolygonIndex polygon, Side side) const;

@@ -3,10 +3,15 @@
 #include "patchlight/transport/exchange.h"
 
 #include "mesh/mesher.h"
+#include "pipeline/ray_form_factors.h"
 #include "support/scenes.h"
+#include "verify/path_tracer.h"
 #include "visibility/occluder.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <string>
 
 namespace patchlight::overlapping_test {
 namespace {
@@ -109,64 +114,102 @@ TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
 }
 
 // What stands on a floor without thickness.
-enum class OnFloor { nothing, box, lamp_in_box };
+enum class OnFloor { box, lamp_in_box };
 
-// That floor between two luminaires, with nothing else below it. A small face far above takes it out of the middle of
-// all, where rays meet it as in buildings: with rounding.
-Scene floor_between_lamps(OnFloor what) {
+constexpr double intensity = 10;  // W/sr
+
+// That floor, polygon 0, on it a box, whose bottom is polygon 2, and a luminaire above and below it. Without the small
+// face far above, polygon 1, the floor's plane would go through the middle of all, where no coordinate is rounded.
+Scene floor_between_luminaires(OnFloor what) {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 10)}), rectangle(0, 0, 4, 3));
   for (const double height : {-2.0, 2.0}) {
     Luminaire luminaire;
-    luminaire.position = Point(1.7, 1.6, height);
-    luminaire.light = PointLight{Spectrum::Constant(1, 10)};
+    luminaire.position = Point(2, 1.5, height);
+    luminaire.light = PointLight{Spectrum::Constant(1, intensity)};
     scene.luminaires.push_back(luminaire);
   }
   Quad far_above = rectangle(0.1, 0.2, 0.3, 0.4);
   for (Point& corner : far_above) corner.z() = 31.7;
-  scene = with_quad(std::move(scene), far_above);
-  if (what == OnFloor::nothing) return scene;
-  scene = with_box(std::move(scene), Point(1, 1, 0), Point(2, 1.8, 0.7), false);
+  scene = with_box(with_quad(std::move(scene), far_above), Point(1, 1, 0), Point(2, 1.8, 0.7), false);
   if (what == OnFloor::lamp_in_box) scene.polygons[2].material = 1;
   return scene;
 }
 
-// Flux that arrives from below in the plane of the floor, W: on the floor, and on the bottom of the box.
-struct FromBelow {
-  double on_floor = 0;
-  double on_bottom = 0;
-  double area_of_bottom = 0;  // m^2, exposed
+// The solid angle of the floor from 2 m below its middle, four times that of a quarter with sides a and b from h:
+// atan(a b / (h sqrt(a^2 + b^2 + h^2))). No light but the luminaire's gets there.
+double flux_from_below() { return intensity * 4 * std::atan(2 * 1.5 / (2 * std::sqrt(2 * 2 + 1.5 * 1.5 + 2 * 2))); }
+
+// Patches on the underside of a polygon in the plane of the floor: their area that is in sight, m^2, what arrives
+// there, W, and the highest irradiance.
+struct Underside {
+  double area = 0;
+  double flux = 0;
+  double highest = 0;
 };
 
-FromBelow from_below(const Scene& scene) {
+Underside underside_of(const Simulation& simulation, PolygonIndex polygon) {
+  Underside found;
+  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
+    if (simulation.mesh.polygon[i] != polygon || simulation.mesh.normal[i].z() > 0) continue;
+    found.area += simulation.problem.area[i];
+    found.flux += simulation.problem.area[i] * simulation.solution.irradiance(i, 0);
+    found.highest = std::max(found.highest, simulation.solution.irradiance(i, 0));
+  }
+  return found;
+}
+
+// Light of a point over a patch of 0.25 m is integrated with samples of this error or less.
+constexpr double sampling_error = 2e-3;
+
+Simulation simulated_finely(const Scene& scene) {
   Request request;
   request.mesh.max_edge = 0.25;
-  const Simulation simulation = simulate(scene, request);
-  FromBelow flux;
-  for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
-    if (std::abs(simulation.mesh.centroid[i].z()) > 1e-9 || simulation.mesh.normal[i].z() > 0) continue;
-    double& sum = simulation.mesh.polygon[i] == 0 ? flux.on_floor : flux.on_bottom;
-    sum += simulation.problem.area[i] * simulation.solution.irradiance(i, 0);
-    if (simulation.mesh.polygon[i] != 0) flux.area_of_bottom += simulation.problem.area[i];
-  }
-  return flux;
+  return simulate(scene, request);
 }
 
 // Law: what stands on a floor without thickness is not seen from below. The box hides none of its underside, and its
-// bottom is dark; the light of a point over a patch is found to some 1e-3.
-TEST(Overlapping, ABodyThatStandsOnASheetIsNotLitFromBeyond) {
-  const FromBelow alone = from_below(floor_between_lamps(OnFloor::nothing));
-  const FromBelow below = from_below(floor_between_lamps(OnFloor::box));
-  EXPECT_NEAR(below.on_floor, alone.on_floor, 2e-3 * alone.on_floor);
-  EXPECT_LT(below.on_bottom, 1e-5 * alone.on_floor);
+// bottom is dark.
+TEST(Overlapping, ASolidThatStandsOnASheetIsNotLitFromBeyond) {
+  const Simulation simulation = simulated_finely(floor_between_luminaires(OnFloor::box));
+  EXPECT_NEAR(underside_of(simulation, 0).flux, flux_from_below(), sampling_error * flux_from_below());
+  EXPECT_EQ(underside_of(simulation, 2).highest, 0);
 }
 
-// A lamp that is let into a ceiling without thickness is drawn on it, nothing covers its 1 m by 0.8 m, and both
-// together receive what the ceiling alone does.
+// A lamp that is let into a ceiling without thickness is drawn on it: nothing covers its 1 m by 0.8 m, both together
+// receive what the ceiling alone does, and paths to the lamp find the same.
 TEST(Overlapping, ALampLetIntoASheetIsInSight) {
-  const FromBelow alone = from_below(floor_between_lamps(OnFloor::nothing));
-  const FromBelow below = from_below(floor_between_lamps(OnFloor::lamp_in_box));
-  EXPECT_NEAR(below.on_floor + below.on_bottom, alone.on_floor, 2e-3 * alone.on_floor);
-  EXPECT_NEAR(below.area_of_bottom, 0.8, 1e-9);
+  const Scene scene = floor_between_luminaires(OnFloor::lamp_in_box);
+  const Simulation simulation = simulated_finely(scene);
+  const Underside lamp = underside_of(simulation, 2);
+  EXPECT_NEAR(underside_of(simulation, 0).flux + lamp.flux, flux_from_below(), sampling_error * flux_from_below());
+  EXPECT_NEAR(lamp.area, 0.8, 1e-9);
+
+  const std::vector<Point> corners = corner_points(scene, 2);
+  const PathReceiver receiver{{corners[0], corners[1], corners[2], corners[3]}, 2, Side::front};
+  const PathEstimate paths =
+      trace_irradiance(scene, kept_sides(scene, Sides::automatic), {&receiver, 1}, {.paths = 4096});
+  EXPECT_NEAR(lamp.flux / lamp.area, paths.irradiance(0, 0),
+              sampling_error * paths.irradiance(0, 0) + 4 * paths.standard_error(0, 0));
+}
+
+// With rows of rays that were stored while it was dark, it is still hidden, and a note says so.
+TEST(Overlapping, ALampThatWasHiddenWhenRowsWereStoredIsNamed) {
+  Request request;
+  request.mesh.max_edge = 0.5;
+  request.assembly.storage = Storage::rays;
+  request.solver.solver = Solver::gmres;
+  const RayFormFactors found = find_ray_form_factors(floor_between_luminaires(OnFloor::box), request);
+  Steps with;
+  with.ray_exchange = [&found](const PatchMesh&) { return found.exchange; };
+  with.mesh = [&found] { return found.mesh; };
+  const auto notes_with = [&](OnFloor what) {
+    std::string notes;
+    for (const std::string& note : simulate(floor_between_luminaires(what), request, {}, with).notes) notes += note;
+    return notes;
+  };
+  EXPECT_NE(notes_with(OnFloor::lamp_in_box).find("lay under others when the form factors were made"),
+            std::string::npos);
+  EXPECT_EQ(notes_with(OnFloor::box).find("lay under others when the form factors were made"), std::string::npos);
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ TEST(Coverings, OfEqualOnesTheFirstLiesOver) {
   EXPECT_EQ(over(scene_of({floor_quad, shifted}), 0), Over{});
 }
 
-// Form factors are stored and used again with other lamps: they must not depend on them, but for faces of bodies
-// against sheets.
+// Form factors are stored and used again with other lamps: what lies over what depends on none but those in the faces
+// of solids.
 TEST(Coverings, DoNotDependOnLampsButALampThatIsCoveredIsNamed) {
   Scene scene = scene_of({rectangle(1, 1, 2, 2)});
   scene = with_quad(std::move(scene), floor_quad, 1);
@@ -71,20 +71,25 @@ TEST(Coverings, OnlySidesThatFaceTheSameWayAndAreKeptCover) {
   EXPECT_EQ(over(scene, 0, Side::back, Sides::both), Over{1});
 }
 
-// Polygon 0 is a floor without thickness, 1 the bottom of the box that stands on it, whose inner sides are left out.
-TEST(Coverings, ASheetLiesOverTheFaceOfABodyThatStandsAgainstIt) {
+// Polygon 0 is a floor with both sides, 1 the bottom of a box that stands on it, 7 a rug with one side.
+TEST(Coverings, AFaceSeenFromBothSidesLiesOverASolidThatStandsAgainstIt) {
   Scene scene = with_box(scene_of({floor_quad}), Point(1, 1, 0), Point(2, 2, 1), false);
-  KeptSides kept = kept_sides(scene, Sides::both);
-  std::fill(kept.back.begin() + 1, kept.back.end(), 0);
-  const Coverings standing = find_coverings(scene, kept);
-  EXPECT_EQ(standing.over_side(0, Side::back).size(), 0U);
-  ASSERT_EQ(standing.over_side(1, Side::front).size(), 1U);
-  EXPECT_EQ(standing.over_side(1, Side::front)[0], 0U);
-  // A lamp that is let into a ceiling shines.
-  scene.polygons[1].material = 1;
-  const Coverings let_in = find_coverings(scene, kept);
-  EXPECT_EQ(let_in.over_side(0, Side::back).size(), 1U);
-  EXPECT_EQ(let_in.over_side(1, Side::front).size(), 0U);
+  scene = with_quad(std::move(scene), rectangle(2.5, 2.5, 3.5, 3.5));
+  for (const bool has_inner_sides : {false, true}) {
+    scene.polygons[1].material = 0;
+    KeptSides kept = kept_sides(scene, Sides::both);
+    if (!has_inner_sides) std::fill(kept.back.begin() + 1, kept.back.end(), 0);
+    const Coverings standing = find_coverings(scene, kept);
+    EXPECT_FALSE(standing.lies_over(1, 0, Side::back));
+    EXPECT_TRUE(standing.lies_over(0, 1, Side::front));
+    EXPECT_TRUE(standing.lies_over(7, 0, Side::front)) << "a rug is no solid";
+    ASSERT_EQ(problems_with_overlaps(scene, standing).size(), 2U) << "the rug's floor, and the box";
+    // A lamp that is let into a ceiling shines.
+    scene.polygons[1].material = 1;
+    const Coverings let_in = find_coverings(scene, kept);
+    EXPECT_TRUE(let_in.lies_over(1, 0, Side::back));
+    EXPECT_FALSE(let_in.lies_over(0, 1, Side::front));
+  }
 }
 
 TEST(Coverings, PolygonsThatRoundingSetsApartLieInOnePlane) {
