@@ -24,7 +24,7 @@ def measured(words):
     _, status, used = os.wait4(os.posix_spawnp(words[0], words, os.environ), 0)
     if status != 0:
         sys.exit(f"error: {' '.join(words)} failed")
-    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024**2
+    return used.ru_utime + used.ru_stime, used.ru_maxrss * 1024 / 1e9
 
 
 def solved(build, model, patches, folder):
