@@ -134,8 +134,9 @@ std::vector<SampledSource> sampled_sources(const Lighting& lighting, const Light
   if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
   if (lighting.sky) {
     const auto means_at = [&lighting](const Receiver& receiver) {
-      const auto mean = [&lighting, aim = sky_aim(lighting, receiver)](const Receiver& at,
-                                                                       const ReceiverSamples& samples, bool) {
+      const AimFor what = receiver.is_point() ? AimFor::points : AimFor::patch;
+      const auto mean = [&lighting, aim = sky_aim(lighting, receiver, what)](const Receiver& at,
+                                                                             const ReceiverSamples& samples, bool) {
         return sky_irradiance(lighting, at, aim, samples.rays);
       };
       return at_each_set(lighting.bands, mean)(receiver);

@@ -38,16 +38,19 @@ double free_share_ahead(const Lighting& lighting, const Receiver& receiver, cons
   return static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / rays_ahead;
 }
 
-// Where some of the sky is seen through holes, and not much of it without.
-bool pays_to_aim(const Lighting& lighting, const Receiver& receiver, const std::vector<double>& probabilities) {
-  const double through_holes = free_share_ahead(lighting, receiver, [&](const SurfacePoint& at, double s, double t) {
-    const Choice opening = choose(probabilities, s);
-    return toward(lighting.openings[opening.index], at.point, opening.rest, t);
-  });
-  if (through_holes == 0) return false;
+// Does a ray to the sky through one of the holes get there?
+bool sees_sky_through_holes(const Lighting& lighting, const Receiver& receiver,
+                            const std::vector<double>& probabilities) {
+  return free_share_ahead(lighting, receiver, [&](const SurfacePoint& at, double s, double t) {
+           const Choice opening = choose(probabilities, s);
+           return toward(lighting.openings[opening.index], at.point, opening.rest, t);
+         }) > 0;
+}
+
+bool sees_much_sky(const Lighting& lighting, const Receiver& receiver) {
   return free_share_ahead(lighting, receiver, [](const SurfacePoint& at, double s, double t) {
            return cosine_direction(at.normal, s, t);
-         }) <= much_sky;
+         }) > much_sky;
 }
 
 // How far along a ray from here that crosses these clear faces, and meets nothing opaque, an opening lies; nothing when
@@ -120,7 +123,7 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
 
 }  // namespace
 
-SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver) {
+SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) {
   const SurfacePoint at = receiver.place(0.5, 0.5);
   SkyAim aim;
   double sum = 0;
@@ -139,7 +142,9 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver) {
   }
   if (!(sum > 0)) return {};
   for (double& probability : aim.probabilities) probability /= sum;
-  return aim.at_panes || pays_to_aim(lighting, receiver, aim.probabilities) ? aim : SkyAim();
+  if (aim.at_panes) return aim;
+  if (what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities)) return {};
+  return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 
 Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {

@@ -2,6 +2,7 @@
 
 #include "lighting/receiver.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace patchlight {
@@ -12,10 +13,14 @@ struct SkyAim {
   bool at_panes = false;              ///< some of these are clear faces
 };
 
+/// What rays are for: the mean over a patch, or single points.
+enum class AimFor : std::uint8_t { patch, points };
+
 /// Each opening with a probability as the solid angle that it would fill if it were turned to the receiver's middle,
-/// roughly; none behind the receiver. Holes alone are not aimed at where a few rays see much of the sky without, or
-/// none of it through the holes, which may be hidden.
-SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver);
+/// roughly; none behind the receiver. Holes alone are not aimed at where a few rays see much of the sky without, nor
+/// for a patch where a few see none of it through the holes, which may be hidden: of a point that would miss what is
+/// left in sight of a window behind a table's leg, and no error would tell.
+SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
 
 /// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
 /// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the

@@ -58,7 +58,7 @@ SkyAim GatheredLight::aim_at(PatchIndex patch) const {
       },
       mesh.side[patch],
       {corners.points.begin(), corners.points.begin() + corners.count}};
-  return aim_at_few(sky_aim(solved_.lights.lighting, receiver), solved_.lights.lighting.openings);
+  return aim_at_few(sky_aim(solved_.lights.lighting, receiver, AimFor::points), solved_.lights.lighting.openings);
 }
 
 std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const {

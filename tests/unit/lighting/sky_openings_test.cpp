@@ -1,5 +1,6 @@
 #include "lighting/sky_openings.h"
 
+#include "form_factor/point_polygon.h"
 #include "lighting/direct_irradiance.h"
 #include "support/scenes.h"
 
@@ -102,6 +103,24 @@ TEST(SkyOpenings, OfTwoCentimetresLightAPointAsTheirFormFactor) {
       EXPECT_NEAR(direct.irradiance(0, 0), expected, 0.002 * expected);
       EXPECT_LT(direct.standard_error(0, 0), 0.002 * expected);
     }
+  }
+}
+
+TEST(SkyOpenings, LightAPointThatSeesLittleOfThem) {
+  // A screen 0.5 m before the hole of 1 m leaves a strip of 1 cm of it in sight, E = pi L F: of some 2,048 rays to the
+  // hole about 20 get out, of 32 that are spread evenly one at a third of the points.
+  Scene scene = pierced_room(1, false);
+  const double edge = 0.49;
+  scene = with_quad(std::move(scene),
+                    {Point(-2, 0.5, -2), Point(-2, 0.5, 2), Point(0.75 * edge, 0.5, 2), Point(0.75 * edge, 0.5, -2)});
+  const Lighting lighting = lighting_of(scene, Tracing(scene));
+  const std::vector<Point> strip{Point(edge, 0, -0.5), Point(edge, 0, 0.5), Point(0.5, 0, 0.5), Point(0.5, 0, -0.5)};
+  for (int k = 0; k < 20; ++k) {
+    const SurfacePoint point{Point(0, 2, 0.03 * (k - 10)), -Vector::UnitY()};
+    const DirectIrradiance direct = direct_irradiance(lighting, {&point, 1});
+    const double expected = 3 * pi * point_to_polygon(point.point, point.normal, strip);
+    EXPECT_NEAR(direct.irradiance(0, 0), expected, 4 * direct.standard_error(0, 0)) << k;
+    EXPECT_LT(direct.standard_error(0, 0), 0.3 * expected) << k;
   }
 }
 
