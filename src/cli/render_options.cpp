@@ -1,5 +1,7 @@
 #include "cli/render_options.h"
 
+#include "base/lower_case.h"
+#include "base/shell_word.h"
 #include "cli/add_option.h"
 #include "cli/distinct_files.h"
 #include "cli/lightmap_options.h"
@@ -8,6 +10,7 @@
 #include "cli/parse_value.h"
 #include "cli/picture_options.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,11 +79,25 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
   return options;
 }
 
+namespace {
+
+// What to do without a solution; it may stand in the place of the model.
+std::string without_solution(const std::vector<std::string>& models) {
+  const auto is_result = [](const std::string& file) { return in_lower_case(file).ends_with(".vtp"); };
+  const auto result = std::find_if(models.begin(), models.end(), is_result);
+  if (result == models.end())
+    return "found no solution; expected --solution RESULT.vtp, which patchlight solve has written";
+  return "found the solution " + *result +
+         " in the place of the model; expected the model that was solved: patchlight " + "render MODEL --solution " +
+         shell_word(*result) + " -o VIEW.png";
+}
+
+}  // namespace
+
 RenderArguments finish_render(const RenderOptionsGiven& options) {
   if (options.model.models.empty())
     throw UsageError("render: found no model; expected: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
-  if (options.solution.empty())
-    throw UsageError("render: found no solution; expected --solution RESULT.vtp, which patchlight solve has written");
+  if (options.solution.empty()) throw UsageError("render: " + without_solution(options.model.models));
   if (options.picture.file.empty() && options.observers.empty() && options.lightmap.folder.empty())
     throw UsageError("render: nothing would be written; expected -o VIEW.png, --observers or --lightmap");
   if (options.picture.file.empty() && !options.page.empty())

@@ -173,6 +173,8 @@ class RenderTest(ToolTest):
     def test_refuses_what_is_no_solution(self):
         self.write("text.vtp", "no file of VTK\n")
         self.assertIn("text.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "text.vtp", "-o", "a.png"))
+        alone = self.refused(USAGE, "render", "room.vtp", "-o", "a.png")
+        self.assertIn("render MODEL --solution room.vtp", alone)
         grid = self.refused(USAGE, "render", "room.obj", "--solution", "room.vtu", "-o", "a.png")
         self.assertIn("-o RESULT.vtu -o RESULT.vtp", grid)
         self.assertIn("none.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "none.vtp", "-o", "a.png"))
