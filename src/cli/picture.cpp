@@ -58,7 +58,8 @@ std::optional<std::string> missed_error(const PictureSettings& settings, const P
   const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
   std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
                      " (root mean square), not the " + rounded(100 * settings.error, 2) +
-                     "% of --picture-error, as a pixel has " + std::to_string(settings.most_samples) + " samples at most; ";
+                     "% of --picture-error, as a pixel has " + std::to_string(settings.most_samples) +
+                     " samples at most; ";
   // Errors fall with the root of the samples' number at the slowest.
   const double times = std::pow(*picture.reached_error / settings.error, 2);
   const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
