@@ -188,12 +188,17 @@ bool may_hide(const Scene& scene, const KeptSides& kept, const Covered& covered)
 }
 
 // Where the smaller face is one of a closed solid, as the edge of a desk against a wall without thickness, the larger
-// one lies over it. Solids are looked for where that may be.
+// one lies over it. But what lies over a lamp stays in sight with that, or each of the three would lie under another.
+// Solids are looked for where that may be.
 void hide_solids(const Scene& scene, const KeptSides& kept, std::vector<std::vector<Covered>>& found) {
+  std::vector<std::uint8_t> lies_over_lamp(found.size(), 0);
+  for (const std::vector<Covered>& some : found)
+    for (const Covered& covered : some)
+      if (emits(scene, covered.polygon, covered.side)) lies_over_lamp[covered.by] = 1;
   std::vector<Covered*> pairs;
   for (std::vector<Covered>& some : found)
     for (Covered& covered : some)
-      if (may_hide(scene, kept, covered)) pairs.push_back(&covered);
+      if (lies_over_lamp[covered.by] == 0 && may_hide(scene, kept, covered)) pairs.push_back(&covered);
   if (pairs.empty()) return;
   const Shells shells = shells_of(scene);
   const std::vector<std::uint8_t> inner = inner_sides(scene, shells, closed_solids(scene, shells));

@@ -92,6 +92,19 @@ TEST(Coverings, AFaceSeenFromBothSidesLiesOverASolidThatStandsAgainstIt) {
   }
 }
 
+// Of a floor with both sides, polygon 0, the lamp in the side of a solid, 1, and the side of a smaller solid, 7, which
+// overlap in one plane, no two lie over each other in turn.
+TEST(Coverings, OfThreeThatOverlapOneIsInSight) {
+  Scene scene = with_box(scene_of({floor_quad}), Point(1, 1, 0), Point(3, 3, 1), false);
+  scene = with_box(std::move(scene), Point(1.5, 1.5, 0), Point(2, 2, 0.5), false);
+  scene.polygons[1].material = 1;
+  const Coverings found = find_coverings(scene, kept_sides(scene, Sides::both));
+  EXPECT_TRUE(found.lies_over(1, 0, Side::back));
+  EXPECT_TRUE(found.lies_over(7, 0, Side::back));
+  EXPECT_TRUE(found.lies_over(7, 1, Side::front));
+  EXPECT_TRUE(found.over_side(7, Side::front).empty());
+}
+
 TEST(Coverings, PolygonsThatRoundingSetsApartLieInOnePlane) {
   // The extent is 6: 1e-6 is below 3e-7 of it, 3e-6 is not. Which one is in front does not matter.
   for (const double height : {1e-6, -1e-6}) {
