@@ -88,7 +88,7 @@ std::string without_solution(const std::vector<std::string>& models) {
   if (result == models.end())
     return "found no solution; expected --solution RESULT.vtp, which patchlight solve has written";
   return "found the solution " + *result +
-         " in the place of the model; expected the model that was solved: patchlight " + "render MODEL --solution " +
+         " in the place of the model; expected the model that was solved: patchlight render MODEL --solution " +
          shell_word(*result) + " -o VIEW.png";
 }
 

@@ -258,6 +258,7 @@ std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings&
       (std::any_of(over.begin(), over.end(), is_larger) ? is_hidden : is_covered) = true;
       is_dark_lamp = is_dark_lamp || emits(scene, p, side);
     }
+    if (!is_covered && !is_hidden) continue;
     const ProblemFace face = problem_face(scene, scene.polygons[p]);
     if (is_covered) faces.push_back(face);
     if (is_hidden) of_solids.push_back(face);

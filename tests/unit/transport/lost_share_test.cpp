@@ -105,6 +105,10 @@ TEST(LostShare, FindsContactBetweenSolidsThatTouchWalls) {
   }
 }
 
+LostShare lost_among_overlapping(const Scene& scene, const KeptSides& kept, const PatchMesh& mesh) {
+  return measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept)), 256, 1);
+}
+
 // A rug drawn on a floor, which may have an underside, lies over it and faces the same way: before a wall whose back is
 // seen, both are in plain sight.
 TEST(LostShare, TakesNoRugForContact) {
@@ -119,8 +123,7 @@ TEST(LostShare, TakesNoRugForContact) {
     KeptSides kept = kept_sides(scene, Sides::front);
     kept.back[0] = has_underside ? 1 : 0;
     const PatchMesh mesh = tessellate(scene, kept, 9);
-    const LostShare lost =
-        measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept)), 256, 1);
+    const LostShare lost = lost_among_overlapping(scene, kept, mesh);
     const PatchIndex top = mesh.patches_on(2, Side::front).begin;
     EXPECT_EQ(lost.covered[top], 0);
     at_backs.push_back(lost.at_backs[top]);
@@ -159,8 +162,7 @@ TEST(LostShare, TakesNoFloorForContactWithARug) {
     KeptSides kept = kept_sides(scene, Sides::front);
     kept.back[0] = has_underside ? 1 : 0;
     const PatchMesh mesh = tessellate(scene, kept, 9);
-    const LostShare lost =
-        measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept)), 256, 1);
+    const LostShare lost = lost_among_overlapping(scene, kept, mesh);
     const PatchIndex rug = mesh.patches_on(1, Side::front).begin;
     EXPECT_EQ(lost.covered[rug], 0) << has_underside;
     EXPECT_EQ(lost.escaped[rug], 1) << has_underside;
