@@ -76,8 +76,9 @@ Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
 /// at that distance takes, and the half is measured. 0 where s is smaller. `S` as the transport has it, m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
-/// The same, s as rows of rays have it. O(rays).
-Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved);
+/// The same, s as rows of rays have it: as the patches are, or what it would still be if each was cut so many times.
+/// O(rays).
+Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved, int cuts = 0);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are
 /// sqrt(3) of those inside a patch where the irradiance is linear.

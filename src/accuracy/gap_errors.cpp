@@ -20,27 +20,27 @@ constexpr double gap_scale = 0.5;
 // Normals of faces that look back at each other have a product below this one.
 constexpr double opposed = -0.5;
 
-// True when patch j is near to patch i and looks back at it.
-bool is_near(const PatchMesh& mesh, PatchIndex i, PatchIndex j) {
+// True when patch j is nearer to patch i than this share of its edge and looks back at it.
+bool is_near(const PatchMesh& mesh, PatchIndex i, PatchIndex j, double within) {
   if (mesh.normal[i].dot(mesh.normal[j]) > opposed) return false;
   const double distance = (mesh.centroid[i] - mesh.centroid[j]).dot(mesh.normal[j]);
-  return distance >= 0 && distance < near * std::sqrt(mesh.area[i]);
+  return distance >= 0 && distance < within * std::sqrt(mesh.area[i]);
 }
 
 // The share of the hemisphere of patch i in which there are near faces that look back.
 double share_of_near_faces(const PatchMesh& mesh, const ExchangeAreas& S, const Eigen::VectorXd& area, PatchIndex i) {
   double sum = 0;
   for (PatchIndex j = 0; j < mesh.size(); ++j)
-    if (is_near(mesh, i, j)) sum += static_cast<double>(S.at(std::min(i, j), std::max(i, j)));
+    if (is_near(mesh, i, j, near)) sum += static_cast<double>(S.at(std::min(i, j), std::max(i, j)));
   return sum / area[i];
 }
 
-double share_of_near_faces(const PatchMesh& mesh, const RayRows& rows, PatchIndex i) {
+double share_of_near_faces(const PatchMesh& mesh, const RayRows& rows, PatchIndex i, double within) {
   double sum = 0;
   for (std::uint64_t k = rows.first_hit[i]; k < rows.first_hit[i + 1]; ++k)
-    if (is_near(mesh, i, rows.hits[k])) sum += rows.hit_weight[i];
+    if (is_near(mesh, i, rows.hits[k], within)) sum += rows.hit_weight[i];
   for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-    if (is_near(mesh, i, rows.entries[k].patch)) sum += static_cast<double>(rows.entries[k].form_factor);
+    if (is_near(mesh, i, rows.entries[k].patch, within)) sum += static_cast<double>(rows.entries[k].form_factor);
   return sum;
 }
 
@@ -62,9 +62,11 @@ Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProb
                          [&](PatchIndex i) { return share_of_near_faces(mesh, S, solved.problem.area, i); });
 }
 
-Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved) {
+Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved, int cuts) {
+  const double within = std::ldexp(near, -cuts);
   return errors_by_share(mesh, solved.solution.irradiance, [&](PatchIndex i) {
-    return 0.5 * (share_of_near_faces(mesh, transport.rows(0), i) + share_of_near_faces(mesh, transport.rows(1), i));
+    return 0.5 * (share_of_near_faces(mesh, transport.rows(0), i, within) +
+                  share_of_near_faces(mesh, transport.rows(1), i, within));
   });
 }
 

@@ -55,11 +55,14 @@ Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh
   return summed_by_parent(mesh, noise.rowwise().sum()).col(0).matrix();
 }
 
+Eigen::VectorXd squares_of_patches(const SolvedProblem& solved, const FieldView& bar, const Eigen::VectorXd& weight) {
+  const Eigen::ArrayXd area = solved.problem.area.array() * weight.array().square();
+  return ((squared_reflectance(solved) * bar.square()).colwise() * area).rowwise().maxCoeff().matrix();
+}
+
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
                                    const Eigen::VectorXd& weight) {
-  const Eigen::ArrayXd area = solved.problem.area.array() * weight.array().square();
-  const Field squares = (squared_reflectance(solved) * bar.square()).colwise() * area;
-  return summed_by_parent(mesh, squares.rowwise().maxCoeff()).col(0).matrix();
+  return summed_by_parent(mesh, squares_of_patches(solved, bar, weight).array()).col(0).matrix();
 }
 
 std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const CutGoal& goal) {

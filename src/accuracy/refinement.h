@@ -41,7 +41,10 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
 Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
                                  const Eigen::VectorXd& weight);
 
-/// The squares of bars on the irradiance as relative_bar() adds them up, per parent, worst band.
+/// The squares of bars on the irradiance as relative_bar() adds them up, per patch, worst band.
+Eigen::VectorXd squares_of_patches(const SolvedProblem& solved, const FieldView& bar, const Eigen::VectorXd& weight);
+
+/// The same per parent.
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
                                    const Eigen::VectorXd& weight);
 

@@ -49,6 +49,7 @@ std::string bytes_of(const RayOptions& options, std::span<const float> bright_de
   append_bytes(bytes, options.rays);
   append_bytes(bytes, options.toward_bright);
   append_bytes(bytes, options.seed);
+  for (const std::uint8_t doublings : options.doublings) append_bytes(bytes, doublings);
   for (const float density : bright_densities) append_bytes(bytes, density);
   return bytes;
 }

@@ -177,17 +177,24 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more) {
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
                                    const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  const auto effort = [&, mean = mean_area(mesh)](std::size_t k) {
+  const std::span<const std::uint8_t> more = options.doublings;
+  const auto effort = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh)](std::size_t k) {
     constexpr double most = most_doublings;
-    const double doublings = std::clamp(std::log2(mesh.area[k] / mean) / 2, -most, most);
-    return std::ldexp(1.0, static_cast<int>(std::lround(doublings)));
+    const double doublings = std::clamp(std::log2(mesh.area[k] / usual) / 2, -most, most);
+    return std::ldexp(1.0, static_cast<int>(std::lround(doublings)) + (more.empty() ? 0 : more[k]));
   };
-  const Estimator estimator = estimator_for(lighting, options, most_doublings);
+  const int most_more = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
+  const Estimator estimator = estimator_for(lighting, options, most_doublings + most_more);
   return at_receivers(estimator, mesh.size(), patch, effort, options, observer);
 }
 
-Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error) {
-  return standard_error.max(means_around(mesh, area, standard_error));
+Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error,
+                         std::span<const std::uint8_t> doublings) {
+  if (doublings.empty()) return standard_error.max(means_around(mesh, area, standard_error));
+  Eigen::ArrayXd rays(standard_error.rows());
+  for (std::size_t i = 0; i < doublings.size(); ++i) rays[static_cast<Eigen::Index>(i)] = std::exp2(doublings[i]);
+  const Field of_usual = standard_error.colwise() * rays.sqrt();
+  return of_usual.max(means_around(mesh, area, of_usual)).colwise() / rays.sqrt();
 }
 
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,

@@ -20,6 +20,8 @@ struct LightingOptions {
   int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
   int sky_samples = 1024;     ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
+  double usual_area = 0;                         ///< m^2 of a patch that takes just as many; 0: the mean of all
+  std::span<const std::uint8_t> doublings = {};  ///< per patch: how often that number is doubled; empty: never
   std::uint32_t alike = 1;  ///< 1 or more: so many patches that follow each other take the same samples, so that little
                             ///< noise is in their differences
 };
@@ -48,8 +50,9 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
 
 /// Standard errors of patches, each no less than the root mean square of those around it by their areas, m^2: the
 /// spread of four estimates may be small by chance, and all four may miss the edge of a shadow that patches around
-/// find.
-Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error);
+/// find. Errors are compared by as many rays, with LightingOptions::doublings.
+Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error,
+                         std::span<const std::uint8_t> doublings = {});
 
 /// Irradiance at points.
 DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,

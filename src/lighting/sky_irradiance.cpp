@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -64,16 +65,22 @@ std::optional<double> distance_to(const Opening& opening, const Point& from, con
   return crossing->distance;
 }
 
-// Density of the rays towards openings, 1/sr, for such a ray.
+// Density of the rays towards openings, 1/sr, for such a ray. Without probabilities there are none.
 double aimed_density(const Lighting& lighting, const std::vector<double>& probabilities, const Point& from,
                      const Vector& direction, const std::vector<Crossing>& crossings) {
   double density = 0;
-  for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
-    const Opening& opening = lighting.openings[k];
-    const std::optional<double> distance = distance_to(opening, from, direction, crossings);
+  if (probabilities.empty()) return density;
+  const auto add = [&](const Opening& opening, double probability, double distance) {
     const double facing = std::abs(opening.normal.dot(direction));
-    if (distance && facing > 0) density += probabilities[k] * *distance * *distance / (facing * opening.area);
+    if (facing > 0) density += probability * distance * distance / (facing * opening.area);
+  };
+  const std::vector<Opening>& openings = lighting.openings;
+  for (std::size_t k = first_hole(openings); k < openings.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    if (const auto distance = distance_to(openings[k], from, direction)) add(openings[k], probabilities[k], *distance);
+  }
+  for (const Crossing& crossing : crossings) {
+    if (const auto k = opening_of(openings, crossing.polygon)) add(openings[*k], probabilities[*k], crossing.distance);
   }
   return density;
 }
@@ -121,6 +128,17 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
   return rays;
 }
 
+// Is a corner of the opening so high above the plane of a place? Mostly its centre tells.
+bool rises_above(const Opening& opening, const SurfacePoint& at, double height) {
+  const double of_centre = at.normal.dot(opening.centre - at.point);
+  if (of_centre > height) return true;
+  if (of_centre + opening.radius <= height) return false;
+  return std::any_of(opening.triangles.begin(), opening.triangles.end(), [&](const std::array<Point, 3>& triangle) {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [&](const Point& corner) { return at.normal.dot(corner - at.point) > height; });
+  });
+}
+
 }  // namespace
 
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) {
@@ -128,13 +146,9 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
   SkyAim aim;
   double sum = 0;
   for (const Opening& opening : lighting.openings) {
-    double rise = 0;
-    for (const auto& triangle : opening.triangles) {
-      for (const Point& corner : triangle) rise = std::max(rise, at.normal.dot(corner - at.point));
-    }
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
-    const bool is_before = rise > plane_rounding * std::sqrt(square);
+    const bool is_before = rises_above(opening, at, plane_rounding * std::sqrt(square));
     const double weight = is_before && !is_own ? opening.area / (square + opening.area) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);

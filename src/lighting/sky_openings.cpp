@@ -164,13 +164,13 @@ std::vector<Opening> shining_holes(const Scene& scene, const LightPaths& paths) 
 }
 
 // True when a light way from such an end passes one of these openings.
-bool passes(const LitEnd& end, const Point& place, const std::vector<const Opening*>& openings) {
+bool passes(const LitEnd& end, const Point& place, const std::vector<Opening>& openings) {
   return std::any_of(openings.begin(), openings.end(),
-                     [&](const Opening* opening) { return distance_to(*opening, place, -end.direction).has_value(); });
+                     [&](const Opening& opening) { return distance_to(opening, place, -end.direction).has_value(); });
 }
 
 // Of the lit lines through a hole, the share that passes none of these openings.
-double share_apart(const Opening& hole, const LightPaths& paths, const std::vector<const Opening*>& openings) {
+double share_apart(const Opening& hole, const LightPaths& paths, const std::vector<Opening>& openings) {
   const std::vector<LitEnd> ends = lit_ends(hole, paths);
   std::vector<Ray> rays;
   for (const LitEnd& end : ends) rays.push_back({end.on_hole, end.direction, no_polygon});
@@ -217,24 +217,27 @@ Opening opening_at(const Scene& scene, PolygonIndex polygon) {
 }
 
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
-  std::vector<Opening> openings = shining_holes(scene, paths);
+  std::vector<Opening> openings;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_opening(scene, p)) openings.push_back(opening_at(scene, p));
+  }
+  for (Opening& hole : shining_holes(scene, paths)) {
+    if (share_apart(hole, paths, openings) > little_light) openings.push_back(std::move(hole));
   }
   return openings;
 }
 
-std::vector<Opening> openings_apart(const std::vector<Opening>& openings, const LightPaths& paths) {
-  std::vector<const Opening*> kept;
-  for (const Opening& opening : openings) {
-    if (opening.polygon != no_polygon) kept.push_back(&opening);
-  }
-  for (const Opening& opening : openings) {
-    if (opening.polygon == no_polygon && share_apart(opening, paths, kept) > little_light) kept.push_back(&opening);
-  }
-  std::vector<Opening> apart;
-  for (const Opening* opening : kept) apart.push_back(*opening);
-  return apart;
+std::size_t first_hole(const std::vector<Opening>& openings) {
+  const auto is_face = [](const Opening& opening) { return opening.polygon != no_polygon; };
+  return static_cast<std::size_t>(std::partition_point(openings.begin(), openings.end(), is_face) - openings.begin());
+}
+
+std::optional<std::size_t> opening_of(const std::vector<Opening>& openings, PolygonIndex polygon) {
+  const auto end = openings.begin() + static_cast<std::ptrdiff_t>(first_hole(openings));
+  const auto found = std::lower_bound(openings.begin(), end, polygon,
+                                      [](const Opening& opening, PolygonIndex p) { return opening.polygon < p; });
+  if (found == end || found->polygon != polygon) return std::nullopt;
+  return static_cast<std::size_t>(found - openings.begin());
 }
 
 }  // namespace patchlight

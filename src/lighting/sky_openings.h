@@ -5,6 +5,7 @@
 #include "lighting/light_paths.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -27,15 +28,18 @@ Opening opening_at(const Scene& scene, PolygonIndex polygon);
 /// Places that see more than this share of the sky find it without aiming at openings.
 inline constexpr double much_sky = 0.25;
 
-/// All clear faces, and of holes_between_faces() those through which the sky shines at places that see less of it
-/// than that, at most 256: those through which most straight lines get in.
-/// Where there are more, all of one plane are one opening first. Found by rays; that a hole is missed costs
-/// accuracy alone.
+/// All clear faces, in the order of their polygons, and then of holes_between_faces() those through which the sky
+/// shines at places that see less of it than that: of the 256 through which most straight lines get in, those that let
+/// in light which passes no opening before them. Gaps between furniture behind a window, and the other holes of its
+/// frame, say nothing more of the sky. Where there are more holes, all of one plane are one first. Found by rays; that
+/// a hole is missed costs accuracy alone.
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths);
 
-/// All clear faces of these, and the holes through which light gets in that passes no opening kept before: gaps between
-/// furniture behind a window, and the other holes of its frame, say nothing more of the sky.
-std::vector<Opening> openings_apart(const std::vector<Opening>& openings, const LightPaths& paths);
+/// The place of the first hole among sky_openings().
+std::size_t first_hole(const std::vector<Opening>& openings);
+
+/// The place of a clear face among them; nothing for other polygons.
+std::optional<std::size_t> opening_of(const std::vector<Opening>& openings, PolygonIndex polygon);
 
 /// Uniformly distributed over an opening for (u, v) of the unit square.
 Point point_of(const Opening& opening, double u, double v);

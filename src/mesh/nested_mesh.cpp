@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace patchlight {
@@ -49,28 +50,67 @@ NestedMesh nest(PatchMesh parents) {
   return nest(std::move(parents), large);
 }
 
-FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents) {
-  Refinement parents = refine(mesh.parents, marked_parents);
-  std::vector<PatchIndex> parts(mesh.parents.size(), 0);
-  for (const PatchIndex parent : parents.parent) ++parts[parent];
+namespace {
+
+// A mesh each patch of which is cut so many times, and others that balance takes.
+Refinement refined(const PatchMesh& mesh, std::vector<std::uint8_t> cuts) {
+  Refinement result{mesh, std::vector<PatchIndex>(mesh.size())};
+  std::iota(result.parent.begin(), result.parent.end(), PatchIndex{0});
+  while (std::any_of(cuts.begin(), cuts.end(), [](std::uint8_t more) { return more > 0; })) {
+    Refinement once = refine(result.mesh, cuts);
+    std::vector<std::uint8_t> left;
+    for (PatchIndex& parent : once.parent) {
+      left.push_back(cuts[parent] > 0 ? cuts[parent] - 1 : 0);
+      parent = result.parent[parent];
+    }
+    cuts = std::move(left);
+    result = std::move(once);
+  }
+  return result;
+}
+
+}  // namespace
+
+FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts) {
+  assert(cuts.size() == mesh.parents.size());
   const auto patches_before = [&](PatchIndex parent) {
-    const PatchRange range = mesh.patches_of(parents.parent[parent]);
+    const PatchRange range = mesh.patches_of(parent);
     return range.end - range.begin;
   };
 
-  // What was whole stays so until it is cut; then it is a parent as others are.
+  // 1. Parents as often as their patches; one that was whole gets parts first.
+  std::vector<std::uint8_t> of_parents;
+  for (PatchIndex g = 0; g < mesh.parents.size(); ++g)
+    of_parents.push_back(cuts[g] > 0 && patches_before(g) == 1 ? cuts[g] - 1 : cuts[g]);
+  Refinement parents = refined(mesh.parents, std::move(of_parents));
+  std::vector<PatchIndex> parts(mesh.parents.size(), 0);
+  for (const PatchIndex before : parents.parent) ++parts[before];
+
+  // 2. What was whole stays so until it is cut; then it is a parent as others are.
   std::vector<std::uint8_t> is_cut;
-  for (PatchIndex g = 0; g < parents.mesh.size(); ++g)
-    is_cut.push_back(parts[parents.parent[g]] > 1 || patches_before(g) > 1 ? 1 : 0);
-  FinerMesh finer{nest(std::move(parents.mesh), is_cut), {}};
+  for (const PatchIndex before : parents.parent)
+    is_cut.push_back(parts[before] > 1 || patches_before(before) > 1 || cuts[before] > 0 ? 1 : 0);
+  FinerMesh finer{nest(std::move(parents.mesh), is_cut), {}, {}};
+
+  // 3. Which patches are as they were.
+  for (const PatchIndex parent : finer.mesh.parent) finer.within.push_back(parents.parent[parent]);
   finer.place.assign(finer.mesh.patches.size(), no_patch);
   for (PatchIndex g = 0; g < finer.mesh.parents.size(); ++g) {
     const PatchRange now = finer.mesh.patches_of(g);
-    if (parts[parents.parent[g]] != 1 || now.end - now.begin != patches_before(g)) continue;
-    const PatchIndex first_before = mesh.first_patch[parents.parent[g]];
-    for (PatchIndex k = 0; k < now.end - now.begin; ++k) finer.place[now.begin + k] = first_before + k;
+    const PatchIndex before = parents.parent[g];
+    if (parts[before] != 1 || now.end - now.begin != patches_before(before)) continue;
+    for (PatchIndex k = 0; k < now.end - now.begin; ++k) finer.place[now.begin + k] = mesh.first_patch[before] + k;
   }
   return finer;
+}
+
+FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents) {
+  std::vector<std::uint8_t> cuts;
+  for (PatchIndex g = 0; g < mesh.parents.size(); ++g) {
+    const bool is_whole = mesh.first_patch[g + 1] - mesh.first_patch[g] == 1;
+    cuts.push_back(marked_parents[g] == 0 ? 0 : is_whole ? 2 : 1);
+  }
+  return cut_patches(mesh, cuts);
 }
 
 Field summed_by_parent(const NestedMesh& mesh, const FieldView& values) {

@@ -31,11 +31,16 @@ std::size_t parts_of_parent(double edge, double longest);
 /// A nested mesh made from another.
 struct FinerMesh {
   NestedMesh mesh;
-  std::vector<PatchIndex> place;  ///< per patch: the same patch in the mesh before, or no_patch
+  std::vector<PatchIndex> place;   ///< per patch: the same patch in the mesh before, or no_patch
+  std::vector<PatchIndex> within;  ///< per patch: the parent of the mesh before in which it lies
 };
 
-/// The same with finer patches where parents are marked: these are cut, with those that balance takes, see refine().
-/// A parent that stayed whole has parts of its own once it is cut.
+/// The same with finer patches: those of each parent are cut so many times, and with them those that balance takes, see
+/// refine(). A parent that was whole has parts after the first time.
+FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts_of_parents);
+
+/// The same where parents are marked: their patches are cut once, and a parent that was whole is cut into four that
+/// have parts of their own.
 FinerMesh refine(const NestedMesh& mesh, std::span<const std::uint8_t> marked_parents);
 
 /// Sums over the patches of each parent.

@@ -83,10 +83,12 @@ BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const Ray
 }
 
 // Rows, with rays towards that.
-TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light) {
+TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light,
+                       const std::vector<std::uint8_t>& doublings) {
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
-  const RayOptions options = rays_as_planned(plan.assembly, mesh);
+  RayOptions options = rays_as_planned(plan.assembly, mesh);
+  options.doublings = doublings;
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
   return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
@@ -120,16 +122,16 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
 
 }  // namespace
 
-ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
-  LitProblem lit = lit_problem(run, plan, mesh, area);
+  LitProblem lit = lit_problem(run, plan, mesh, area, known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
                                   : traced_lamps(run, plan, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
   if (!is_known) {
-    exchange.rows = traced_rows(run, plan, mesh, light);
+    exchange.rows = traced_rows(run, plan, mesh, light, known.row_doublings);
     if (run.tracing->has_specular_faces())
       exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};
@@ -164,7 +166,7 @@ ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen:
   const RayLight& light = all.light;
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit{problem_of(part.scene, mesh, area, plan.sides.emit_from_back, reflections_of(plan)),
-                 columns_of(light.lit.direct_standard_error, bands)};
+                 columns_of(light.lit.direct_standard_error, bands), light.lit.doublings};
   lit.problem.direct_irradiance = columns_of(light.lit.problem.direct_irradiance, bands);
   found.light = light_of(found.exchange, std::move(lit), mesh.size());
   found.light.in_mirrors = {columns_of(light.in_mirrors.irradiance, bands),

@@ -23,6 +23,8 @@ struct RayLight {
   std::vector<std::uint8_t>
       is_missed;              ///< per patch: bright, but rows that are known have sent no ray there on purpose
   double rays_per_patch = 0;  ///< mean number over the hemisphere
+  std::optional<DirectIrradiance> as_found = {};  ///< of luminaires, sun and sky, over whole patches, where the next
+                                                  ///< mesh may take it over
 };
 
 /// Rows as they were traced, of the geometry alone, and the light that goes with them, as means over whole patches.
@@ -35,7 +37,7 @@ struct ExchangeAndLight {
 /// triangles and convex quadrilaterals: what all surfaces emit alike, and the light of many lamps, stays in the rows,
 /// which send rays towards bright patches on purpose. By Steps::ray_exchange where it is given; lamps that it does
 /// not know are found apart as well, by shadow rays. \throws Cancelled; InputError when these are too many.
-ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh);
+ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});
 
 /// The same in some of its bands, by the run `part` that has no others: rows are the same, what lamps send straight
 /// through clear faces is found anew.

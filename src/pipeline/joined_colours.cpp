@@ -107,6 +107,9 @@ void add_effects(SolvedMesh& sum, const SolvedMesh& part) {
   sum.interest = part.interest;
   add(sum.effects, 1, part.effects);
   add(sum.noise, 1, part.noise);
+  add(sum.row_noise, 1, part.row_noise);
+  add(sum.light_noise, 1, part.light_noise);
+  sum.curable = std::max(sum.curable, part.curable);
   sum.noise_bar = std::max(sum.noise_bar, part.noise_bar);
   sum.light_bar = std::max(sum.light_bar, part.light_bar);
 }

@@ -77,7 +77,7 @@ std::vector<LightColour> light_colours(const Run& run) {
 
 SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
                              StageClock& clock) {
-  const ExchangeAndLight all_bands = exchange_and_light(run, meshed.plan, meshed.mesh.patches);
+  const ExchangeAndLight all_bands = exchange_and_light(run, meshed.plan, meshed.mesh.patches, meshed.known);
   clock.finish(Stage::form_factors);
   std::vector<SolvedMesh> parts;
   for (const LightColour& colour : colours) {
@@ -96,6 +96,8 @@ SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& col
     clock.finish(Stage::error_bars);
   }
   SolvedMesh all = joined(run, colours, meshed, std::move(parts));
+  const LitProblem& lit = all_bands.light.lit;
+  if (lit.direct_standard_error.size() > 0) all.light = {lit.problem.direct_irradiance, lit.direct_standard_error};
   if (all.interest.size() > 0) require_reflecting(run.scene, all.simulation.problem, all.interest);
   return all;
 }

@@ -1,11 +1,16 @@
 #include "pipeline/lit_problem.h"
 
+#include "base/sampling.h"
 #include "lighting/mirrored_irradiance.h"
+#include "mesh/kept_patches.h"
+#include "mesh/small_patches.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
@@ -36,29 +41,68 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
   return options;
 }
 
-LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area) {
+namespace {
+
+// Light of which some is known from the mesh before; the rest with as many more rays as are wanted.
+DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
+                                          LightingOptions options) {
+  if (!known.light) return direct_irradiance_as_planned(run, plan, mesh, options);
+  // 1. What is not known, on a mesh of its own, by rays that have told nothing of how many it takes.
+  std::vector<std::uint8_t> is_known;
+  std::vector<std::uint8_t> doublings;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const std::uint8_t more = known.light_doublings.empty() ? 0 : known.light_doublings[i];
+    is_known.push_back(known.place[i] != no_patch && more == 0 ? 1 : 0);
+    if (is_known.back() == 0) doublings.push_back(more);
+  }
+  PatchMesh whole = mesh;
+  whole.middles.clear();
+  options.usual_area = mean_area(mesh);
+  options.doublings = doublings;
+  options.seed = hash({options.seed, 1});
+  const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
+
+  // 2. With what is.
+  const auto joined = [&](const Field& before, const Field& anew) {
+    Field all(mesh.size(), anew.cols());
+    Eigen::Index next = 0;
+    for (PatchIndex i = 0; i < mesh.size(); ++i)
+      all.row(i) = is_known[i] != 0 ? before.row(known.place[i]) : anew.row(next++);
+    return all;
+  };
+  return {joined(known.light->irradiance, found.irradiance), joined(known.light->standard_error, found.standard_error)};
+}
+
+}  // namespace
+
+LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
+                       const Known& known) {
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
-  DirectIrradiance direct = direct_irradiance_as_planned(run, plan, mesh, lighting_options(plan, mesh));
+  LightingOptions options = lighting_options(plan, mesh);
+  // Where few patches need them, more are taken there alone.
+  if (cuts_locally(run)) options.sky_samples /= 2;
+  DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
+  lit.doublings = known.light_doublings;
   return lit;
 }
 
 DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
-                                   const Eigen::VectorXd& exposed_area) {
+                                   const Eigen::VectorXd& exposed_area, std::span<const std::uint8_t> doublings) {
   if (direct.irradiance.size() == 0) return direct;
   const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exposed_area);
   direct.irradiance.colwise() *= factor;
   direct.standard_error.colwise() *= factor;
-  direct.standard_error = with_errors_around(mesh, exposed_area, direct.standard_error);
+  direct.standard_error = with_errors_around(mesh, exposed_area, direct.standard_error, doublings);
   return direct;
 }
 
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost) {
   RadiosityProblem& problem = lit.problem;
   DirectIrradiance direct{std::move(problem.direct_irradiance), std::move(lit.direct_standard_error)};
-  direct = over_exposed_part(std::move(direct), mesh, lost, problem.area);
+  direct = over_exposed_part(std::move(direct), mesh, lost, problem.area, lit.doublings);
   problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
   return lit;

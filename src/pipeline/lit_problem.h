@@ -7,13 +7,16 @@
 #include "pipeline/run.h"
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
 
 /// What is solved on a mesh: its materials, and the light of luminaires, sun and sky where it first arrives.
 struct LitProblem {
   RadiosityProblem problem;
-  Field direct_standard_error;  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  Field direct_standard_error;               ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  std::vector<std::uint8_t> doublings = {};  ///< Known::light_doublings
 };
 
 /// Above so many patches fewer rays are taken of each: those around take the noise away.
@@ -24,12 +27,13 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 
 /// `exposed_area` as problem_of() takes it. Where one band stands for all, direct light is found once. \throws
 /// Cancelled.
-LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area);
+LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
+                       const Known& known = {});
 
 /// Light that was found as means over all of each patch but what other polygons lie over, as means over what is exposed
-/// of it, m^2; standard errors no less than those around. Empty where there is no such light.
+/// of it, m^2; standard errors no less than those around, each by as many rays. Empty where there is no such light.
 DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
-                                   const Eigen::VectorXd& exposed_area);
+                                   const Eigen::VectorXd& exposed_area, std::span<const std::uint8_t> doublings = {});
 
 /// The same of the direct light of lit_problem(), over RadiosityProblem::area.
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost);

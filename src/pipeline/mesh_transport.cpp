@@ -88,7 +88,7 @@ RawTransport raw_transport(RayTransportAndLight by_rays) {
 
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   if (plan.assembly.storage == Storage::rays)
-    return raw_transport(ray_light(run, mesh, exchange_and_light(run, plan, mesh)));
+    return raw_transport(ray_light(run, mesh, exchange_and_light(run, plan, mesh, known)));
   RawTransport found;
   if (plan.accuracy.error_bars) {
     found.assembly = assembly_of(run, plan, mesh, known);

@@ -8,6 +8,7 @@
 #include "mesh/means_around.h"
 #include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/needed_light.h"
 #include "pipeline/problem_of.h"
 #include "solve/scattering.h"
@@ -32,6 +33,8 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   // 2. Means over the exposed part of each patch, which is known but for its own error.
   const LostShare& lost = exchange.rows.lost;
   RadiosityProblem& problem = light.lit.problem;
+  if (cuts_locally(run) && light.lit.direct_standard_error.size() > 0)
+    light.as_found = {problem.direct_irradiance, light.lit.direct_standard_error};
   problem.area = exchange.rows.area;
   problem.scattering = with_sheets(std::move(problem.scattering), run.scene, mesh, problem.area);
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);

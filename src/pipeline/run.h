@@ -3,9 +3,11 @@
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
 
+#include "lighting/direct_irradiance.h"
 #include "mesh/nested_mesh.h"
 #include "visibility/tracing.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +35,11 @@ struct Known {
   std::vector<PatchIndex> place;     ///< per patch: the same one in that mesh, or no_patch
   std::optional<Assembly> exchange;  ///< its exchange areas before closure; none: all are new
   std::optional<LostShare> lost;     ///< its lost shares; none: all are new
+  std::optional<DirectIrradiance> light =
+      {};  ///< that of luminaires, sun and sky over its whole patches; none: all is new
+  std::vector<std::uint8_t> light_doublings = {};  ///< per patch: how often its rays to these are doubled, so that what
+                                                   ///< is known of it is not enough; empty: never
+  std::vector<std::uint8_t> row_doublings = {};  ///< the same of its rays over the hemisphere
 };
 
 /// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
@@ -50,8 +57,14 @@ struct SolvedMesh {
   Eigen::VectorXd interest = {};     ///< with parents: 1 for each patch whose error counts, else 0
   Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(), and of what light_bar is of
   Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
-  double noise_bar = 0;              ///< with parents: what rays between patches err, as relative_bar()
-  double light_bar = 0;              ///< with parents: and those towards luminaires, sun and sky
+  Eigen::VectorXd row_noise = {};  ///< with rows of rays and parents: the part of each patch in the square of noise_bar
+  Eigen::VectorXd light_noise = {};  ///< and in that of light_bar
+  double curable = 0;    ///< with rows of rays and parents: the share of the square of the mesh's error that some
+                         ///< cuts of patches would take away
+  double noise_bar = 0;  ///< with parents: what rays between patches err, as relative_bar()
+  double light_bar = 0;  ///< with parents: and those towards luminaires, sun and sky
+  std::optional<DirectIrradiance> light = {};  ///< with rows of rays that may be found anew in part: what these met,
+                                               ///< over whole patches
 };
 
 }  // namespace patchlight

@@ -10,6 +10,7 @@
 #include "mesh/refine.h"
 #include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/choose_storage.h"
@@ -260,8 +261,16 @@ Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Pla
   return next;
 }
 
+std::optional<MeshToSolve> Search::locally_cut(SolvedMesh& solved) {
+  if (steps_.size() > 1) return std::nullopt;
+  std::optional<MeshToSolve> next = with_local_cuts(run_, solved, steps_.back());
+  if (next) notes_.push_back(note_on_local_cuts(*next, steps_.back()));
+  return next;
+}
+
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
-  if (!refines(run_.plan.accuracy) || !solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
+  if (!solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
+  if (!refines(run_.plan.accuracy)) return locally_cut(solved);
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);

@@ -10,7 +10,8 @@ namespace patchlight {
 
 /// The way to an accuracy: finer and finer meshes, with more samples where these are what limits, until the plan's
 /// accuracy is reached or its time is up; by rows of rays where all pairs of the next mesh do not fit into the memory,
-/// unless these or a time were asked for. A run that asks for none has one mesh.
+/// unless these or a time were asked for. A run that asks for none has one mesh, and a second one where
+/// AccuracyOptions::local_cuts pay.
 class Search {
  public:
   /// Time counts from here on. `run` has to outlive the search.
@@ -42,6 +43,7 @@ class Search {
   Plan stored_for(const SolvedMesh& solved, double accuracy);
   Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
+  std::optional<MeshToSolve> locally_cut(SolvedMesh& solved);
   double patches_in_time(const Plan& plan, int samples) const;
 
   const Run& run_;

@@ -10,6 +10,7 @@
 #include "mesh/nested_mesh.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/lit_problem.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/unseen_differences_of.h"
 #include "transport/closure.h"
@@ -152,8 +153,9 @@ int rays_of_quarters(const Simulation& simulation) {
 
 // What the size of the patches errs by rows of rays.
 struct BarsOfRays {
-  Field of_light;  // that differs inside patches and parents
-  Field in_gaps;   // that are narrower than their patches
+  Field of_light;        // that differs inside patches and parents
+  Field in_gaps;         // that are narrower than their patches
+  Field in_narrow_gaps;  // and of these, in those that are narrower still once patches are cut as often as they may be
 };
 
 // What may be refined: parents by what their patches do, and by what errs in gaps, which is their own; none by its
@@ -168,13 +170,25 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   const auto is_of_gap = bars.in_gaps > bars.of_light;
   const Field of_light = is_of_gap.select(0.0, bars.of_light);
   const Field of_gaps = is_of_gap.select(bars.in_gaps, 0.0);
-  result.effects = scaled_to(squares_of_parents(result.mesh, solved, of_light, weight),
-                             summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0)) +
-                   squares_of_parents(result.mesh, solved, of_gaps, weight);
+  const auto squares = [&](const Field& bar) { return squares_of_parents(result.mesh, solved, bar, weight); };
+  result.effects =
+      scaled_to(squares(of_light), summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
+  const Eigen::VectorXd in_gaps = squares(of_gaps);
+  const double all = result.effects.sum() + in_gaps.sum();
+  if (refines(simulation.plan.accuracy)) {
+    result.effects += in_gaps;
+  } else {
+    // What so many cuts would not mend they need not begin with.
+    result.effects += (in_gaps - squares(bars.in_narrow_gaps)).cwiseMax(0.0);
+  }
+  result.curable = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
+  result.row_noise = squares_of_patches(solved, simulation.ray_standard_error, weight);
   result.noise_bar = relative(simulation.ray_standard_error);
   if (simulation.direct_standard_error.size() == 0) return result;
-  result.effects += squares_of_parents(result.mesh, solved, simulation.direct_standard_error, weight);
+  result.light_noise = squares_of_patches(solved, simulation.direct_standard_error, weight);
+  result.row_noise = (result.row_noise - result.light_noise).cwiseMax(0.0);
+  if (refines(simulation.plan.accuracy)) result.effects += squares(simulation.direct_standard_error);
   result.light_bar = relative(simulation.direct_standard_error);
   result.noise_bar =
       std::sqrt(std::max(0.0, result.noise_bar * result.noise_bar - result.light_bar * result.light_bar));
@@ -198,7 +212,8 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
   };
   const bool has_parents = result.mesh.parents.size() > 0;
   const BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
-                        gap_errors(simulation.mesh, transport.rays(), solved)};
+                        gap_errors(simulation.mesh, transport.rays(), solved),
+                        gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts)};
   // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
   // Where parents or gaps say more, that is not by noise.
@@ -208,7 +223,8 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
-  return refines(run.plan.accuracy) ? with_effects(std::move(result), weight, unseen, bars) : result;
+  const bool may_be_cut = refines(run.plan.accuracy) || (cuts_locally(run) && has_parents);
+  return may_be_cut ? with_effects(std::move(result), weight, unseen, bars) : result;
 }
 
 }  // namespace
@@ -221,6 +237,7 @@ double share_of_lamps(const RadiosityProblem& problem) {
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
   if (transport.rays) {
     // Beside the rows all of it is in the solution by now.
+    result.light = std::move(transport.light->as_found);
     transport.light.reset();
     transport.facts = {};
     return with_bars_of_rays(run, std::move(result), *transport.rays);

@@ -86,6 +86,11 @@ bool may_keep_solution(std::size_t patches, const Plan& plan) {
   return memory_needed(patches, plan) + bytes_kept * static_cast<double>(patches) <= usable_memory(plan.resources);
 }
 
+bool fits_as_next_mesh(std::size_t patches, const Plan& plan) {
+  return memory_needed(patches, plan) + bytes_of_next_mesh * static_cast<double>(patches) <=
+         usable_memory(plan.resources);
+}
+
 double usable_memory(const Resources& resources) { return resources.memory.value_or(usable_share * installed_bytes()); }
 
 // The number of patches for which memory_needed() is usable.

@@ -42,6 +42,8 @@ struct RayOptions {
   int toward_bright = 32;     ///< and towards bright patches; a multiple of 32
   int lost_share_rays = 256;  ///< of patches from which backs are seen, LostShare; of small ones mostly a quarter
   std::uint64_t seed = 1;
+  std::vector<std::uint8_t> doublings = {};  ///< per patch: how often its rays over the hemisphere are doubled; empty:
+                                             ///< never
 };
 
 /// The rows by two independent halves of the rays: each is unbiased, their mean is the better value, their difference

@@ -42,6 +42,11 @@ SamplePlace place_on(const SampledPatch& patch, float u, float v) {
   return place;
 }
 
+std::vector<std::uint32_t> doubled(std::vector<std::uint32_t> counts, std::span<const std::uint8_t> doublings) {
+  for (std::size_t i = 0; i < doublings.size(); ++i) counts[i] = std::min(counts[i] << doublings[i], most_rays);
+  return counts;
+}
+
 }  // namespace
 
 // What the random points of a patch are for: they are independent.
@@ -65,7 +70,7 @@ RowTracer::RowTracer(const PatchMesh& mesh, const Occluder& occluder, const Brig
       sights_(mesh, occluder),
       lookup_(mesh),
       keys_(patch_keys(mesh)),
-      counts_(ray_counts(mesh, options.rays)),
+      counts_(doubled(ray_counts(mesh, options.rays), options.doublings)),
       table_(std::max(*std::max_element(counts_.begin(), counts_.end()), toward_bright_), options.seed) {
   assert(toward_bright_ % ShadowPacket::size == 0);
 }

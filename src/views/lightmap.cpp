@@ -46,8 +46,7 @@ Lightmap bake_lightmap(const Scene& scene, const Simulation& simulation, const L
   PackedCharts charts = packed_charts(charts_of(scene, simulation.mesh), options.texel);
   require_memory_of(charts, simulation);
   const Scene lit = scene_for_sensors(scene, simulation.plan);
-  Lighting lighting = lighting_of(lit, *simulation.tracing);
-  lighting.openings = openings_apart(lighting.openings, lighting.paths);
+  const Lighting lighting = lighting_of(lit, *simulation.tracing);
   BakeOptions baking{.seed = hash({simulation.plan.assembly.seed})};
   if (!simulates(simulation.plan, Effect::interreflection)) baking.hemisphere.most_bounces = 0;
   return bake(solved_light(lit, simulation, lighting), sent_besides(simulation), std::move(charts), baking, observer);

@@ -129,8 +129,7 @@ Picture take_picture(const Scene& scene, const Simulation& simulation, const Pic
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
-    Lighting lighting = lighting_of(seen, *simulation.tracing);
-    lighting.openings = openings_apart(lighting.openings, lighting.paths);
+    const Lighting lighting = lighting_of(seen, *simulation.tracing);
     const SolvedLight light = solved_light(seen, simulation, lighting);
     const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
