@@ -26,12 +26,19 @@ void add_refinement_options(CLI::App& command, Request& request) {
           "refinement serves them; may be\nrepeated; default: by daylight .inside, all that is enclosed, else all")
       ->allow_extra_args(false)
       ->option_text("NAME");
+  request.accuracy.local_cuts = true;
+  command
+      .add_flag_callback(
+          "--keep-mesh", [&request] { request.accuracy.local_cuts = false; },
+          "stay with the first mesh; default: with rows of rays patches are cut,\nand rays doubled, where few patches "
+          "make most of an error above 2 %")
+      ->option_text(" ");
 }
 
 void add_accuracy_options(CLI::App& command, Request& request) {
   command.option_defaults()->group("Accuracy");
   add_refinement_options(command, request);
-  request.accuracy.cheap_error_bars = request.accuracy.local_cuts = true;
+  request.accuracy.cheap_error_bars = true;
   CLI::Option* const bars = command.add_flag_callback(
       "--error-bars", [&request] { request.accuracy.error_bars = true; },
       "error bars on every patch: from mesh, form factors and solver;\ndefault: with rows of rays, and up to 5,000 "
@@ -41,12 +48,6 @@ void add_accuracy_options(CLI::App& command, Request& request) {
           "--no-error-bars", [&request] { request.accuracy.cheap_error_bars = false; },
           "no error bars with pairs; rows of rays always have them; default: cheap\nones")
       ->excludes(bars)
-      ->option_text(" ");
-  command
-      .add_flag_callback(
-          "--keep-mesh", [&request] { request.accuracy.local_cuts = false; },
-          "stay with the first mesh; default: with rows of rays patches are cut,\nand rays doubled, where few patches "
-          "make most of an error above 2 %")
       ->option_text(" ");
 }
 

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/sampling.h"
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"
@@ -88,6 +89,8 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
   RayOptions options = rays_as_planned(plan.assembly, mesh);
+  // How many a patch takes, other rays have told.
+  if (!doublings.empty()) options.seed = hash({options.seed, 1});
   options.doublings = doublings;
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());

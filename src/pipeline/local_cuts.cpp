@@ -75,11 +75,11 @@ Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares) {
   const double all = squares.sum();
   const auto cuts_at = [&](double x) { return cuts_down_to(1 / x, mesh, squares); };
   if (!(all > 0)) return {std::vector<std::uint8_t>(mesh.parents.size(), 0), 0, 0};
-  const double x = largest_with(1 / all, 1e15 / all, [&](double x) {
+  const double found = largest_with(1 / all, 1e15 / all, [&](double x) {
     const Cuts cuts = cuts_at(x);
     return cuts.new_patches <= most && cuts.squared_error >= wanted;
   });
-  return cuts_at(x);
+  return cuts_at(found);
 }
 
 // How often the rays of each patch are doubled, how many more that are, as a share of all, and what it leaves.
@@ -135,14 +135,15 @@ Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::Ve
 // `most` more rays; none where there is no error.
 Doublings doublings_for(const FinerMesh& finer, const NestedMesh& before, const Eigen::VectorXd& squares, double error,
                         double most) {
-  if (!(error > 0)) return {};
+  const double sum = squares.sum();
+  if (!(error > 0 && sum > 0)) return {{}, 0, error * error};
   const double wanted = std::pow(part_of_rays * usual_error, 2);
-  const Noise noise = noise_on(finer, before, error * error / squares.sum() * squares);
-  const double x = largest_with(1e-6 / wanted, 1e15 / wanted, [&](double x) {
+  const Noise noise = noise_on(finer, before, error * error / sum * squares);
+  const double found = largest_with(1e-6 / wanted, 1e15 / wanted, [&](double x) {
     const Doublings doublings = doublings_down_to(1 / x, noise);
     return doublings.more_rays <= most && doublings.squared_error >= wanted;
   });
-  return doublings_down_to(1 / x, noise);
+  return doublings_down_to(1 / found, noise);
 }
 
 // Patches' parts in the squared error by the mesh; none of lamps, which stay whole.
@@ -182,6 +183,7 @@ std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, c
   const bool pays = gained > (1 - worthwhile * worthwhile) * errors.total * errors.total;
   if (!pays || !fits_as_next_mesh(finer.mesh.patches.size(), solved.simulation.plan)) return std::nullopt;
   MeshToSolve next{std::move(finer.mesh), solved.simulation.plan, {}};
+  next.plan.solver.keeps_unfinished = false;
   next.known.place = std::move(finer.place);
   next.known.light = std::move(solved.light);
   next.known.light_doublings = std::move(to_lights.of_patch);

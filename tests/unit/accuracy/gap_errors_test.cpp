@@ -30,11 +30,11 @@ RayTransport transport_with(float entry) {
   return RayTransport({rows, rows});
 }
 
-double error_of_first(double distance, float entry) {
+double error_of_first(double distance, float entry, int cuts = 0) {
   const RadiosityProblem problem;
   Solution solution;
   solution.irradiance = Field::Constant(2, 1, 3);
-  const Field errors = gap_errors(two_squares(distance), transport_with(entry), {problem, solution});
+  const Field errors = gap_errors(two_squares(distance), transport_with(entry), {problem, solution}, cuts);
   EXPECT_EQ(errors(1, 0), 0) << "no ray of it meets anything";
   return errors(0, 0);
 }
@@ -46,6 +46,12 @@ TEST(GapErrors, GrowWithTheShareOfNearFacesThatRaysMeet) {
 }
 
 TEST(GapErrors, AreNoneOfFacesThatAreNotNear) { EXPECT_EQ(error_of_first(0.61, 0.48F), 0); }
+
+// Three cuts make edges of an eighth: .6 of that is .075.
+TEST(GapErrors, ThatCutsDoNotMendAreThoseOfFacesWhichStayNear) {
+  EXPECT_EQ(error_of_first(0.076, 0.48F, 3), 0);
+  EXPECT_EQ(error_of_first(0.074, 0.48F, 3), error_of_first(0.074, 0.48F));
+}
 
 }  // namespace
 }  // namespace patchlight::gap_errors_test

@@ -6,6 +6,7 @@
 #include "support/scenes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <vector>
@@ -125,6 +126,33 @@ TEST(NestedMesh, PatchesWithAPlaceAreTheSameAsBefore) {
     }
     EXPECT_GT(2 * std::count(taken.begin(), taken.end(), 1), static_cast<long>(mesh.patches.size()));
     mesh = finer.mesh;
+  }
+}
+
+// The first parent, of a floor, and the small face, which is whole and has parts after the first cut.
+TEST(NestedMesh, PatchesAreCutAsOftenAsIsAskedFor) {
+  constexpr double rounding = 1e-13;  // of hundreds of sums
+  const NestedMesh mesh = nest(mesh_of(large_and_small(), 2));
+  for (std::uint8_t cuts = 1; cuts <= 3; ++cuts) {
+    std::vector<std::uint8_t> of_parents(mesh.parents.size(), 0);
+    const auto small = static_cast<PatchIndex>(std::find(mesh.parents.polygon.begin(), mesh.parents.polygon.end(), 1U) -
+                                               mesh.parents.polygon.begin());
+    of_parents[0] = of_parents[small] = cuts;
+    const FinerMesh finer = cut_patches(mesh, of_parents);
+    expect_consistent(finer.mesh);
+    const double parts = std::ldexp(1.0, 2 * cuts);
+    std::vector<double> within(mesh.parents.size(), 0);
+    for (PatchIndex i = 0; i < finer.mesh.patches.size(); ++i) {
+      const double area = finer.mesh.patches.area[i];
+      within[finer.within[i]] += area;
+      if (of_parents[finer.within[i]] == 0) continue;
+      EXPECT_EQ(finer.place[i], no_patch);
+      const double before = mesh.parents.area[finer.within[i]];
+      const double expected = finer.within[i] == small ? before / parts : before / (4 * parts);
+      EXPECT_NEAR(area, expected, rounding * expected);
+    }
+    for (PatchIndex g = 0; g < mesh.parents.size(); ++g)
+      EXPECT_NEAR(within[g], mesh.parents.area[g], rounding * mesh.parents.area[g]);
   }
 }
 

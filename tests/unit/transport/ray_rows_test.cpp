@@ -12,6 +12,7 @@
 #include "visibility/occluder.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -138,6 +139,30 @@ TEST(RayRows, FindTheLightOfBrightPatchesWithLessError) {
 }
 
 // H = F B is linear; sums of some hundred positive terms round by some 1e-14.
+// In a closed room every ray meets a patch. Rows of the others stay the same, to the last bit.
+TEST(RayRows, TakeMoreRaysWhereTheyAreDoubled) {
+  const Place place(cube_room(0.5, 1), 0.25);
+  RayOptions options;
+  const TracedRows usual = place.rows(options);
+  options.doublings.assign(place.mesh.size(), 0);
+  options.doublings[3] = 2;
+  const TracedRows doubled = place.rows(options);
+  for (std::size_t half = 0; half < 2; ++half) {
+    const RayRows& before = usual.halves[half];
+    const RayRows& after = doubled.halves[half];
+    for (PatchIndex i = 0; i < place.mesh.size(); ++i) {
+      const std::uint64_t rays = before.first_hit[i + 1] - before.first_hit[i];
+      ASSERT_EQ(after.first_hit[i + 1] - after.first_hit[i], i == 3 ? 4 * rays : rays);
+      if (i == 3) continue;
+      const auto first = before.hits.begin() + static_cast<std::ptrdiff_t>(before.first_hit[i]);
+      EXPECT_TRUE(std::equal(first, first + static_cast<std::ptrdiff_t>(rays),
+                             after.hits.begin() + static_cast<std::ptrdiff_t>(after.first_hit[i])));
+      EXPECT_EQ(after.hit_weight[i], before.hit_weight[i]);
+    }
+    EXPECT_NEAR(after.hit_weight[3], before.hit_weight[3] / 4, 1e-12);
+  }
+}
+
 TEST(RayRows, CarryLightLinearly) {
   const Place place(furnished_room(0.5), 0.5);
   const TracedRows rows = place.rows_toward_first_polygon({});
