@@ -30,8 +30,10 @@ void add_refinement_options(CLI::App& command, Request& request) {
   command
       .add_flag_callback(
           "--keep-mesh", [&request] { request.accuracy.local_cuts = false; },
-          "stay with the first mesh; default: with rows of rays patches are cut,\nand rays doubled, where few patches "
-          "make most of an error above 2 %")
+          "stays with the first mesh; default: by rows of rays patches are cut,\nand take more rays, where they err "
+          "most, if that takes away a third\nof an error above 2 %")
+      ->excludes(command.get_option("--accuracy"))
+      ->excludes(command.get_option("--time"))
       ->option_text(" ");
 }
 

@@ -56,6 +56,7 @@ const std::vector<OptionName>& usual_names() {
                                                 {"accuracy.seconds", "--time"},
                                                 {"accuracy.interest", "--interest"},
                                                 {"accuracy.error_bars", "--error-bars"},
+                                                {"accuracy.local_cuts=false", "--keep-mesh"},
                                                 {"resources.memory", "--memory"},
                                                 {"lightmap.texel", "--texel"},
                                                 {"lightmap.folder", "--lightmap"},

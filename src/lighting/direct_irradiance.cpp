@@ -30,6 +30,9 @@ constexpr std::uint32_t step = 17;
 // two, with at most this exponent.
 constexpr int most_doublings = 2;
 
+// And with this one where more are asked for.
+constexpr int most_asked = 4;
+
 // Whether so many rays to a ball can be blocked costs as much to find as they do.
 constexpr std::size_t few_rays = 16;
 
@@ -181,10 +184,10 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
   const auto effort = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh)](std::size_t k) {
     constexpr double most = most_doublings;
     const double doublings = std::clamp(std::log2(mesh.area[k] / usual) / 2, -most, most);
-    return std::ldexp(1.0, static_cast<int>(std::lround(doublings)) + (more.empty() ? 0 : more[k]));
+    const int by_area = static_cast<int>(std::lround(doublings));
+    return std::ldexp(1.0, more.empty() ? by_area : std::min(by_area + more[k], most_asked));
   };
-  const int most_more = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
-  const Estimator estimator = estimator_for(lighting, options, most_doublings + most_more);
+  const Estimator estimator = estimator_for(lighting, options, more.empty() ? most_doublings : most_asked);
   return at_receivers(estimator, mesh.size(), patch, effort, options, observer);
 }
 

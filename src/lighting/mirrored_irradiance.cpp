@@ -328,9 +328,10 @@ std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  const auto share = [&, mean = mean_area(mesh)](std::size_t k) {
+  const double usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh);
+  const auto share = [&](std::size_t k) {
     constexpr double least = 0.25;
-    return std::clamp(std::sqrt(mesh.area[k] / mean), least, 1.0);
+    return std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0);
   };
   return in_mirrors_at(lighting, lamps, mesh.size(), patch, share, options, 1, observer);
 }

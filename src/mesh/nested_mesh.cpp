@@ -93,7 +93,7 @@ FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts
   FinerMesh finer{nest(std::move(parents.mesh), is_cut), {}, {}};
 
   // 3. Which patches are as they were.
-  for (const PatchIndex parent : finer.mesh.parent) finer.within.push_back(parents.parent[parent]);
+  for (const PatchIndex parent : finer.mesh.parent) finer.parent_before.push_back(parents.parent[parent]);
   finer.place.assign(finer.mesh.patches.size(), no_patch);
   for (PatchIndex g = 0; g < finer.mesh.parents.size(); ++g) {
     const PatchRange now = finer.mesh.patches_of(g);

@@ -31,8 +31,8 @@ std::size_t parts_of_parent(double edge, double longest);
 /// A nested mesh made from another.
 struct FinerMesh {
   NestedMesh mesh;
-  std::vector<PatchIndex> place;   ///< per patch: the same patch in the mesh before, or no_patch
-  std::vector<PatchIndex> within;  ///< per patch: the parent of the mesh before in which it lies
+  std::vector<PatchIndex> place;          ///< per patch: the same patch in the mesh before, or no_patch
+  std::vector<PatchIndex> parent_before;  ///< per patch: the parent of the mesh before in which it lies
 };
 
 /// The same with finer patches: those of each parent are cut so many times, and with them those that balance takes, see

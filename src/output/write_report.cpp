@@ -69,6 +69,7 @@ Json request_part(const Request& request) {
   part["threads"] = request.resources.threads;
   part["memory_bytes"] = json_of(request.resources.memory);
   part["error_bars"] = request.accuracy.error_bars;
+  part["local_cuts"] = request.accuracy.local_cuts;
   part["accuracy"] = json_of(request.accuracy.relative_error);
   part["time_s"] = json_of(request.accuracy.seconds);
   part["interest"] = request.accuracy.interest;

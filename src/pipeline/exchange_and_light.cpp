@@ -90,7 +90,7 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
   RayOptions options = rays_as_planned(plan.assembly, mesh);
   // How many a patch takes, other rays have told.
-  if (!doublings.empty()) options.seed = hash({options.seed, 1});
+  if (!doublings.empty()) options.seed = hash({options.seed, seed_of_second_mesh});
   options.doublings = doublings;
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());

@@ -1,5 +1,6 @@
 #include "pipeline/expected_cost.h"
 
+#include "pipeline/local_cuts.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "transport/assembly_time.h"
@@ -48,7 +49,7 @@ double rays_per_patch(const Scene& scene, const Plan& plan) {
   double rays = 0;
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
-  if (scene.sky && simulates(plan, Effect::sky)) rays += 1024;
+  if (scene.sky && simulates(plan, Effect::sky)) rays += cuts_locally(plan) ? 512 : 1024;
   return rays;
 }
 

@@ -109,7 +109,7 @@ void add_effects(SolvedMesh& sum, const SolvedMesh& part) {
   add(sum.noise, 1, part.noise);
   add(sum.row_noise, 1, part.row_noise);
   add(sum.light_noise, 1, part.light_noise);
-  sum.curable = std::max(sum.curable, part.curable);
+  sum.share_cuts_mend = std::max(sum.share_cuts_mend, part.share_cuts_mend);
   sum.noise_bar = std::max(sum.noise_bar, part.noise_bar);
   sum.light_bar = std::max(sum.light_bar, part.light_bar);
 }

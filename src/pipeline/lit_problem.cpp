@@ -59,7 +59,7 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
   whole.middles.clear();
   options.usual_area = mean_area(mesh);
   options.doublings = doublings;
-  options.seed = hash({options.seed, 1});
+  options.seed = hash({options.seed, seed_of_second_mesh});
   const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
 
   // 2. With what is.

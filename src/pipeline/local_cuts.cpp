@@ -17,11 +17,11 @@
 namespace patchlight {
 namespace {
 
-// With an error of so much of the reflected light nothing is done that nobody has asked for.
+// An error of so much of the reflected light is left as it is where none was asked for.
 constexpr double usual_error = 0.02;
-// What of that mesh, rows and lights may take each, in quadrature.
-constexpr double part_of_mesh = 0.7;
-constexpr double part_of_rays = 0.5;
+// Shares of it that the mesh, the rays of rows and those to lights may err, in quadrature.
+constexpr double share_to_mesh = 0.7;
+constexpr double share_to_rays = 0.5;
 // It pays where it leaves less than this share of the error.
 constexpr double worthwhile = 0.7;
 
@@ -33,13 +33,13 @@ constexpr double most_more_to_lights = 0.5;
 constexpr double most_more_of_rows = 1.5;
 constexpr int most_doublings = 4;
 
-// The largest x for which is_enough(x) holds, as far as it holds for all below, by bisection of the logarithm; the
-// lowest where there is none.
-double largest_with(double low, double high, const auto& is_enough) {
+// The largest x between two for which is_allowed(x) holds, where it holds for all below one number and for none above;
+// the lowest where it never does.
+double largest_with(double low, double high, const auto& is_allowed) {
   low = std::log(low), high = std::log(high);
   for (int step = 0; step < 50; ++step) {
     const double middle = 0.5 * (low + high);
-    (is_enough(std::exp(middle)) ? low : high) = middle;
+    (is_allowed(std::exp(middle)) ? low : high) = middle;
   }
   return std::exp(low);
 }
@@ -70,7 +70,7 @@ Cuts cuts_down_to(double most, const NestedMesh& mesh, const Eigen::VectorXd& sq
 
 // The fewest that leave what may be left, within the limits.
 Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares) {
-  const double wanted = std::pow(part_of_mesh * usual_error, 2);
+  const double wanted = std::pow(share_to_mesh * usual_error, 2);
   const double most = most_new_patches * mesh.patches.size();
   const double all = squares.sum();
   const auto cuts_at = [&](double x) { return cuts_down_to(1 / x, mesh, squares); };
@@ -120,7 +120,7 @@ Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::Ve
   const Eigen::VectorXd of_parents = summed_by_parent(before, squares.array()).col(0).matrix();
   Noise noise;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const PatchIndex parent = finer.within[i];
+    const PatchIndex parent = finer.parent_before[i];
     const PatchRange range = before.patches_of(parent);
     const double share = mesh.area[i] / before.parents.area[parent];
     noise.squares.push_back(finer.place[i] != no_patch
@@ -137,7 +137,7 @@ Doublings doublings_for(const FinerMesh& finer, const NestedMesh& before, const 
                         double most) {
   const double sum = squares.sum();
   if (!(error > 0 && sum > 0)) return {{}, 0, error * error};
-  const double wanted = std::pow(part_of_rays * usual_error, 2);
+  const double wanted = std::pow(share_to_rays * usual_error, 2);
   const Noise noise = noise_on(finer, before, error * error / sum * squares);
   const double found = largest_with(1e-6 / wanted, 1e15 / wanted, [&](double x) {
     const Doublings doublings = doublings_down_to(1 / x, noise);
@@ -146,30 +146,33 @@ Doublings doublings_for(const FinerMesh& finer, const NestedMesh& before, const 
   return doublings_down_to(1 / found, noise);
 }
 
-// Patches' parts in the squared error by the mesh; none of lamps, which stay whole.
+// Parents' parts in the squared error by the mesh that cuts mend; none of lamps, which are not cut for what they err.
 Eigen::VectorXd squares_of(const SolvedMesh& solved, double error) {
-  Eigen::VectorXd squares = solved.effects.cwiseMax(0);
+  const double sum = solved.effects.cwiseMax(0).sum();
+  if (!(sum > 0)) return Eigen::VectorXd::Zero(solved.effects.size());
+  Eigen::VectorXd squares = error * error / sum * solved.effects.cwiseMax(0);
   const Field& exitance = solved.simulation.problem.exitance;
   for (PatchIndex i = 0; i < solved.mesh.patches.size(); ++i)
     if ((exitance.row(i) > 0).any()) squares[solved.mesh.parent[i]] = 0;
-  const double sum = squares.sum();
-  return sum > 0 ? Eigen::VectorXd(error * error / sum * squares) : squares;
+  return squares;
 }
 
 }  // namespace
 
+bool cuts_locally(const Plan& plan) {
+  const AccuracyOptions& accuracy = plan.accuracy;
+  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays;
+}
+
 bool cuts_locally(const Run& run) {
-  const AccuracyOptions& accuracy = run.plan.accuracy;
-  const bool makes_mesh = !run.with.mesh && !run.with.ray_exchange;
-  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && makes_mesh &&
-         run.plan.assembly.storage == Storage::rays;
+  return cuts_locally(run.plan) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
 }
 
 std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
   if (!cuts_locally(run) || !(errors.total > usual_error)) return std::nullopt;
 
   // 1. Patches where their size errs.
-  const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.curable) * errors.mesh);
+  const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh);
   const Cuts cuts = best_cuts(solved.mesh, squares);
   FinerMesh finer = cut_patches(solved.mesh, cuts.of_parent);
 
@@ -181,7 +184,8 @@ std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, c
   const double gained = squares.sum() - cuts.squared_error + std::pow(solved.light_bar, 2) - to_lights.squared_error +
                         std::pow(solved.noise_bar, 2) - of_rows.squared_error;
   const bool pays = gained > (1 - worthwhile * worthwhile) * errors.total * errors.total;
-  if (!pays || !fits_as_next_mesh(finer.mesh.patches.size(), solved.simulation.plan)) return std::nullopt;
+  if (!pays || !fits_as_next_mesh(finer.mesh.patches.size(), 1 + of_rows.more_rays, solved.simulation.plan))
+    return std::nullopt;
   MeshToSolve next{std::move(finer.mesh), solved.simulation.plan, {}};
   next.plan.solver.keeps_unfinished = false;
   next.known.place = std::move(finer.place);
@@ -202,8 +206,8 @@ std::string note_on_local_cuts(const MeshToSolve& next, const AccuracyStep& erro
   std::size_t doubled = 0;
   for (std::size_t i = 0; i < place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
   return "of " + std::to_string(errors.patches) + " patches " + std::to_string(cut) + " were cut, and " +
-         std::to_string(doubled) + " took more rays then, as few made most of an error of " + percent(errors.total, 2) +
-         " %; --keep-mesh leaves that out";
+         std::to_string(doubled) + " then took more rays, to take away most of an error of " +
+         percent(errors.total, 2) + " %; accuracy.local_cuts=false stays with the first mesh";
 }
 
 }  // namespace patchlight

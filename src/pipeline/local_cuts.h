@@ -2,6 +2,7 @@
 
 #include "pipeline/run.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -10,12 +11,17 @@ namespace patchlight {
 /// A patch is cut so often at most.
 inline constexpr int most_local_cuts = 3;
 
-/// Whether the run is of AccuracyOptions::local_cuts.
+/// With the run's seed that of the rays on the second mesh.
+inline constexpr std::uint64_t seed_of_second_mesh = 0x2d5;
+
+/// True when AccuracyOptions::local_cuts holds for the plan, and for the run.
+bool cuts_locally(const Plan& plan);
 bool cuts_locally(const Run& run);
 
-/// What comes after the first mesh of such a run: the same with patches cut, some of them several times, and rays of
-/// patches doubled, where that leaves much less of the error; of light that is known the rest is kept. None where the
-/// error is small enough already, where that would not pay, or where it would not fit into the memory.
+/// The mesh after the first one of such a run: some of its patches are cut, some of them several times, and rays of
+/// some are doubled, so that much less of the error is left. What is known of the light on other patches is taken from
+/// `solved`. None where the error is small, where that would not take a third of it away, or where it would not fit
+/// into the memory.
 std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, const AccuracyStep& errors);
 
 /// What was done, for Simulation::notes.

@@ -39,7 +39,7 @@ struct Known {
       {};  ///< that of luminaires, sun and sky over its whole patches; none: all is new
   std::vector<std::uint8_t> light_doublings = {};  ///< per patch: how often its rays to these are doubled, so that what
                                                    ///< is known of it is not enough; empty: never
-  std::vector<std::uint8_t> row_doublings = {};  ///< the same of its rays over the hemisphere
+  std::vector<std::uint8_t> row_doublings = {};    ///< the same of its rays over the hemisphere
 };
 
 /// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
@@ -59,10 +59,10 @@ struct SolvedMesh {
   Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
   Eigen::VectorXd row_noise = {};  ///< with rows of rays and parents: the part of each patch in the square of noise_bar
   Eigen::VectorXd light_noise = {};  ///< and in that of light_bar
-  double curable = 0;    ///< with rows of rays and parents: the share of the square of the mesh's error that some
-                         ///< cuts of patches would take away
-  double noise_bar = 0;  ///< with parents: what rays between patches err, as relative_bar()
-  double light_bar = 0;  ///< with parents: and those towards luminaires, sun and sky
+  double share_cuts_mend = 0;  ///< with rows of rays and parents: the share of the square of the mesh's error that some
+                               ///< cuts of patches would take away
+  double noise_bar = 0;        ///< with parents: what rays between patches err, as relative_bar()
+  double light_bar = 0;        ///< with parents: and those towards luminaires, sun and sky
   std::optional<DirectIrradiance> light = {};  ///< with rows of rays that may be found anew in part: what these met,
                                                ///< over whole patches
 };

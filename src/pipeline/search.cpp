@@ -117,6 +117,11 @@ std::optional<double> part_of_solver(const Run& run, double accuracy) {
   return asked || run.request.solver.relative_error ? asked : std::optional(share_of_interest * accuracy);
 }
 
+PatchIndex number_known(const std::vector<PatchIndex>& place) {
+  return static_cast<PatchIndex>(place.size() -
+                                 static_cast<std::size_t>(std::count(place.begin(), place.end(), no_patch)));
+}
+
 Plan with_samples(Plan plan, int samples) {
   (plan.assembly.storage == Storage::rays ? plan.assembly.rays : plan.assembly.samples) = samples;
   return plan;
@@ -190,7 +195,7 @@ SolvedMesh Search::noted(SolvedMesh solved) {
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
-  if (refines(run_.plan.accuracy)) keep(solved.simulation);
+  if (refines(run_.plan.accuracy) || cuts_locally(run_)) keep(solved.simulation);
   if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
@@ -264,7 +269,9 @@ Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Pla
 std::optional<MeshToSolve> Search::locally_cut(SolvedMesh& solved) {
   if (steps_.size() > 1) return std::nullopt;
   std::optional<MeshToSolve> next = with_local_cuts(run_, solved, steps_.back());
-  if (next) notes_.push_back(note_on_local_cuts(*next, steps_.back()));
+  if (!next) return next;
+  notes_.push_back(note_on_local_cuts(*next, steps_.back()));
+  known_ = number_known(next->known.place);
   return next;
 }
 
@@ -306,9 +313,7 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   known_ = 0;
   if (!keeps_known) return to_solve;
   to_solve.known.exchange = std::move(solved.raw);
-  const std::vector<PatchIndex>& place = to_solve.known.place;
-  known_ =
-      static_cast<PatchIndex>(place.size()) - static_cast<PatchIndex>(std::count(place.begin(), place.end(), no_patch));
+  known_ = number_known(to_solve.known.place);
   return to_solve;
 }
 

@@ -155,7 +155,8 @@ int rays_of_quarters(const Simulation& simulation) {
 struct BarsOfRays {
   Field of_light;        // that differs inside patches and parents
   Field in_gaps;         // that are narrower than their patches
-  Field in_narrow_gaps;  // and of these, in those that are narrower still once patches are cut as often as they may be
+  Field in_narrow_gaps;  // those narrower even than patches that are cut as often as AccuracyOptions::local_cuts may;
+                         // else empty
 };
 
 // What may be refined: parents by what their patches do, and by what errs in gaps, which is their own; none by its
@@ -179,9 +180,9 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
     result.effects += in_gaps;
   } else {
     // What so many cuts would not mend they need not begin with.
-    result.effects += (in_gaps - squares(bars.in_narrow_gaps)).cwiseMax(0.0);
+    result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
   }
-  result.curable = all > 0 ? result.effects.sum() / all : 0;
+  result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   result.row_noise = squares_of_patches(solved, simulation.ray_standard_error, weight);
   result.noise_bar = relative(simulation.ray_standard_error);
@@ -211,9 +212,10 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
     return expanded(errors_within_parents(result.mesh, transport.rays(), needed.solved()), needed.bands);
   };
   const bool has_parents = result.mesh.parents.size() > 0;
-  const BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
-                        gap_errors(simulation.mesh, transport.rays(), solved),
-                        gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts)};
+  const BarsOfRays bars{
+      has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
+      gap_errors(simulation.mesh, transport.rays(), solved),
+      cuts_locally(run) ? gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts) : Field()};
   // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
   // Where parents or gaps say more, that is not by noise.

@@ -86,7 +86,8 @@ bool may_keep_solution(std::size_t patches, const Plan& plan) {
   return memory_needed(patches, plan) + bytes_kept * static_cast<double>(patches) <= usable_memory(plan.resources);
 }
 
-bool fits_as_next_mesh(std::size_t patches, const Plan& plan) {
+bool fits_as_next_mesh(std::size_t patches, double times_the_rays, Plan plan) {
+  plan.assembly.rays = static_cast<int>(std::ceil(times_the_rays * plan.assembly.rays));
   return memory_needed(patches, plan) + bytes_of_next_mesh * static_cast<double>(patches) <=
          usable_memory(plan.resources);
 }

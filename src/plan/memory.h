@@ -25,8 +25,9 @@ double memory_needed(std::size_t patches, const Plan& plan);
 /// True when a solution may be copied as well before its errors are known.
 bool may_keep_solution(std::size_t patches, const Plan& plan);
 
-/// True when one of so many patches may be solved by rows of rays while a mesh before it is still there.
-bool fits_as_next_mesh(std::size_t patches, const Plan& plan);
+/// True when a mesh of so many patches may be solved by rows of rays, with so many times the plan's rays, while the one
+/// before it is still there.
+bool fits_as_next_mesh(std::size_t patches, double times_the_rays, Plan plan);
 
 /// Bytes that the run may take.
 double usable_memory(const Resources& resources);

@@ -199,6 +199,8 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--false-color", "--picture"], *solve, "--false-color", "luminance")
         self.assert_refused(USAGE, ["--points-output", "--points"], *solve, "--points-output", "a.csv")
         self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
+        for option, value in (("--accuracy", "2%"), ("--time", "30s")):
+            self.assert_refused(USAGE, ["--keep-mesh", option], *solve, "--keep-mesh", option, value)
         self.assert_refused(USAGE, ["--on-demand", "--solver progressive"], *solve, "--on-demand", "--solver", "cg")
         on_demand = (*solve, "--on-demand", "--solver", "progressive")
         for option, *value in (("--no-closure",), ("--form-factors", "a.ff"), ("--estimator", "area")):

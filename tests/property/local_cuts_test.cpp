@@ -54,32 +54,30 @@ std::vector<double> fluxes(const Simulation& s) {
   return flux;
 }
 
-double squared_distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += std::pow(a[k] - b[k], 2);
-  return sum;
-}
-
-// Over four seeds, against eight times the patches with four times the rays. What is stated falls as well.
+// The flux that arrives at the underside of the board, a hundredth of what the floor gets, and spread over patches that
+// are wider than the gap: against eight times the patches with four times the rays, in four seeds. A cut leaves
+// 2^-1.2 = .44 of such an error; .7 with what rays add. A quarter more patches are planned, balance aside.
 TEST(LocalCuts, TakeAwayErrorWithFewPatches) {
   const Scene scene = room_with_board();
+  const auto under_the_board = [](const Simulation& s) { return fluxes(s)[12]; };
   Request fine = by_rays(false);
   fine.mesh.patches = 12000;
   fine.assembly.rays = 256;
-  const std::vector<double> exact = fluxes(simulate(scene, fine));
+  const double exact = under_the_board(simulate(scene, fine));
   double whole = 0;
   double cut = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Simulation before = simulate(scene, by_rays(false, seed));
     const Simulation after = simulate(scene, by_rays(true, seed));
-    whole += squared_distance(fluxes(before), exact);
-    cut += squared_distance(fluxes(after), exact);
+    whole += under_the_board(before) - exact;
+    cut += under_the_board(after) - exact;
     ASSERT_EQ(before.accuracy.size(), 1U);
     ASSERT_EQ(after.accuracy.size(), 2U);
-    EXPECT_LT(after.accuracy[1].total, 0.7 * after.accuracy[0].total);
-    EXPECT_LT(after.mesh.size(), 1.6 * before.mesh.size());
+    EXPECT_LT(after.accuracy[1].total, after.accuracy[0].total);
+    EXPECT_LT(after.accuracy[1].total, before.accuracy[0].total);
+    EXPECT_LT(after.mesh.size(), 1.5 * before.mesh.size());
   }
-  EXPECT_LT(cut, 0.6 * whole);
+  EXPECT_LT(std::abs(cut), 0.7 * std::abs(whole));
 }
 
 TEST(LocalCuts, HaveTheSameBitsForAnyNumberOfThreads) {
@@ -95,20 +93,55 @@ TEST(LocalCuts, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.ray_standard_error == two.ray_standard_error).all());
 }
 
-// All flux that gets in is absorbed or leaves, as without cuts: by as many rays to about .3 %.
+// All flux that gets in is absorbed or leaves: rays carry it by chance, of R rays with equal parts of it 1 / sqrt(R) of
+// it, and less as they are stratified.
 TEST(LocalCuts, KeepTheBalance) {
   const Simulation s = simulate(room_with_board(), by_rays(true));
   ASSERT_EQ(s.accuracy.size(), 2U);
-  EXPECT_LT(s.balance.imbalance, 3e-3);
+  EXPECT_LT(s.balance.imbalance, 1 / std::sqrt(64.0 * s.mesh.size()));
 }
 
+struct Mean {
+  double value = 0;
+  double variance = 0;  // of the mean
+};
+
+Mean mean_of(const std::vector<double>& values) {
+  Mean mean;
+  const auto count = static_cast<double>(values.size());
+  for (const double value : values) mean.value += value / count;
+  for (const double value : values) mean.variance += std::pow(value - mean.value, 2) / (count * (count - 1));
+  return mean;
+}
+
+// Light that is kept is kept as it scattered little: that must not make the room darker. Within three standard errors
+// of the means over sixteen seeds, and these within half a per cent.
+TEST(LocalCuts, LetInAsMuchLight) {
+  const Scene scene = room_with_board();
+  std::vector<double> cut;
+  std::vector<double> whole;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    Request request = by_rays(true, seed);
+    request.mesh.patches = 500;
+    cut.push_back(simulate(scene, request).balance.arriving[0]);
+    request.accuracy.local_cuts = false;
+    whole.push_back(simulate(scene, request).balance.arriving[0]);
+  }
+  const Mean with = mean_of(cut);
+  const Mean without = mean_of(whole);
+  const double scatter = std::sqrt(with.variance + without.variance);
+  EXPECT_LT(scatter, 0.005 * without.value);
+  EXPECT_NEAR(with.value, without.value, 3 * scatter);
+}
+
+// A cube that a small lamp lights errs by less than 2 %, and its patches by parts of it that cuts would mend.
 TEST(LocalCuts, AreLeftOutWhereTheErrorIsSmall) {
-  Scene scene = cube_room(0.7, 0.3);
-  scene.materials.push_back(grey(0.4, 0.6));
-  scene = with_box(std::move(scene), Point(0.3, 0.3, 0.3), Point(0.6, 0.7, 0.5), false, 1);
-  const Simulation s = simulate(scene, by_rays(true));
+  Request request = by_rays(true);
+  request.mesh.patches = 4000;
+  const Simulation s = simulate(furnished_room(0.3), request);
   EXPECT_EQ(s.accuracy.size(), 1U);
-  EXPECT_LT((s.solution.radiosity - 1).abs().maxCoeff(), 1e-5);
+  EXPECT_LT(s.accuracy[0].total, 0.02);
+  EXPECT_GT(s.accuracy[0].total, 0.005);
 }
 
 // A mesh that does not fit beside the first one is not made.
@@ -116,7 +149,7 @@ TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   Request request = by_rays(true);
   const Simulation first = simulate(room_with_board(), request);
   ASSERT_EQ(first.accuracy.size(), 2U);
-  request.resources.memory = memory_needed(first.accuracy[0].patches, first.plan);
+  request.resources.memory = memory_needed(*request.mesh.patches, first.plan);
   EXPECT_EQ(simulate(room_with_board(), request).accuracy.size(), 1U);
 }
 

@@ -105,10 +105,11 @@ TEST(RowBlockFiles, HaveAKeyOfAllThatRowsDependOn) {
                                    key(room, 0.5, {.rays = 128}, {}, 0),
                                    key(room, 0.5, {.toward_bright = 64}, {}, 0),
                                    key(room, 0.5, {.seed = 2}, {}, 0),
+                                   key(room, 0.5, {.doublings = {0, 1}}, {}, 0),
                                    key(room, 0.5, {}, {.skip = {Effect::occlusion}}, 0),
                                    key(room, 0.5, {}, {.force = {Effect::occlusion}}, 0),
                                    key(room, 0.5, {}, {}, 1)};
-  EXPECT_EQ(keys.size(), 11U);
+  EXPECT_EQ(keys.size(), 12U);
   EXPECT_EQ(key(room, 0.5, {}, {}, 0), key(furnished_room(0.8), 0.5, {}, {}, 0));
 }
 

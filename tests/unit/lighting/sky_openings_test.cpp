@@ -7,6 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace patchlight::sky_openings_test {
@@ -75,6 +76,36 @@ TEST(SkyOpenings, AreTheHolesThroughWhichTheSkyShines) {
       EXPECT_NEAR(area_of(lighting.openings), std::pow(scale * width, 2), 1e-6 * std::pow(scale, 2));
     }
   }
+}
+
+// Between two boards behind the hole lies another, through which no light gets that has not passed the first.
+TEST(SkyOpenings, AreNotGapsBehindAnother) {
+  Scene scene = pierced_room(1, false);
+  const auto board = [](double z0, double z1) {
+    return Quad{Point(-1, 1, z0), Point(-1, 1, z1), Point(1, 1, z1), Point(1, 1, z0)};
+  };
+  scene = with_quad(with_quad(std::move(scene), board(-1, -0.1)), board(0.1, 1));
+  const std::vector<Opening> openings = lighting_of(scene, Tracing(scene)).openings;
+  ASSERT_EQ(openings.size(), 1U);
+  EXPECT_NEAR(openings[0].centre.y(), 0, 1e-9);
+}
+
+// Clear faces in the order of their polygons, then holes.
+TEST(SkyOpenings, AreFacesFirst) {
+  Scene scene = pierced_room(1, false);
+  scene.materials.push_back(grey(0));
+  scene.materials[1].transmittance = Spectrum::Constant(1, 0.8);
+  const double y = 4;
+  for (const double x : {-1.0, 0.5})
+    scene = with_quad(std::move(scene),
+                      {Point(x, y, -0.5), Point(x, y, 0.5), Point(x + 0.5, y, 0.5), Point(x + 0.5, y, -0.5)}, 1);
+  const auto last = static_cast<PolygonIndex>(scene.polygons.size() - 1);
+  const std::vector<Opening> openings = lighting_of(scene, Tracing(scene)).openings;
+  ASSERT_EQ(openings.size(), 3U);
+  EXPECT_EQ(first_hole(openings), 2U);
+  EXPECT_EQ(opening_of(openings, last - 1), 0U);
+  EXPECT_EQ(opening_of(openings, last), 1U);
+  EXPECT_EQ(opening_of(openings, 0), std::nullopt);
 }
 
 TEST(SkyOpenings, AreNotWhatLiesBesideAFloorInTheOpen) {

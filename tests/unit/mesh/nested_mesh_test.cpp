@@ -144,11 +144,11 @@ TEST(NestedMesh, PatchesAreCutAsOftenAsIsAskedFor) {
     std::vector<double> within(mesh.parents.size(), 0);
     for (PatchIndex i = 0; i < finer.mesh.patches.size(); ++i) {
       const double area = finer.mesh.patches.area[i];
-      within[finer.within[i]] += area;
-      if (of_parents[finer.within[i]] == 0) continue;
+      within[finer.parent_before[i]] += area;
+      if (of_parents[finer.parent_before[i]] == 0) continue;
       EXPECT_EQ(finer.place[i], no_patch);
-      const double before = mesh.parents.area[finer.within[i]];
-      const double expected = finer.within[i] == small ? before / parts : before / (4 * parts);
+      const double before = mesh.parents.area[finer.parent_before[i]];
+      const double expected = finer.parent_before[i] == small ? before / parts : before / (4 * parts);
       EXPECT_NEAR(area, expected, rounding * expected);
     }
     for (PatchIndex g = 0; g < mesh.parents.size(); ++g)

@@ -138,7 +138,6 @@ TEST(RayRows, FindTheLightOfBrightPatchesWithLessError) {
   EXPECT_LT(error(place.rows_toward_first_polygon({.rays = 512, .toward_bright = 256})), 0.02);
 }
 
-// H = F B is linear; sums of some hundred positive terms round by some 1e-14.
 // In a closed room every ray meets a patch. Rows of the others stay the same, to the last bit.
 TEST(RayRows, TakeMoreRaysWhereTheyAreDoubled) {
   const Place place(cube_room(0.5, 1), 0.25);
@@ -163,6 +162,7 @@ TEST(RayRows, TakeMoreRaysWhereTheyAreDoubled) {
   }
 }
 
+// H = F B is linear; sums of some hundred positive terms round by some 1e-14.
 TEST(RayRows, CarryLightLinearly) {
   const Place place(furnished_room(0.5), 0.5);
   const TracedRows rows = place.rows_toward_first_polygon({});
