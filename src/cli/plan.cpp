@@ -58,11 +58,11 @@ std::string cost_lines(const ExpectedCost& cost) {
 }
 
 // What the estimate does not hold.
-std::string further_costs(const Scene& scene, const Plan& plan) {
+std::string further_costs(const Scene& scene, const Plan& plan, PatchIndex patches) {
   std::size_t sensors = 0;
   for (const SensorGroup& group : scene.sensors) sensors += group.sensors.size();
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (cuts_locally(plan) ? "a second mesh where the first errs by more than 2 %, " : "") +
+         (cuts_locally(plan, patches) ? "a second mesh where the first errs by more than 2 %, " : "") +
          (sensors > 0 ? counted(sensors, "sensor") + ", " : "") + "pictures and pages, where they are asked for\n";
 }
 
@@ -88,7 +88,8 @@ ExitCode plan(const PlanArguments& arguments) {
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
-            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(scene, plan) << std::flush;
+            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(scene, plan, mesh.patches.size())
+            << std::flush;
   return good;
 }
 

@@ -45,11 +45,11 @@ double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& m
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 
-double rays_per_patch(const Scene& scene, const Plan& plan) {
+double rays_per_patch(const Scene& scene, const Plan& plan, PatchIndex patches) {
   double rays = 0;
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
-  if (scene.sky && simulates(plan, Effect::sky)) rays += cuts_locally(plan) ? 512 : 1024;
+  if (scene.sky && simulates(plan, Effect::sky)) rays += cuts_locally(plan, patches) ? 512 : 1024;
   return rays;
 }
 
@@ -65,12 +65,12 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
   if (plan.assembly.storage == Storage::rays) {
     cost.form_factor_seconds = seconds_per_row_of_rays * n * plan.assembly.rays / AssemblyOptions().rays;
     cost.solve_seconds = seconds_of_solution_by_rays * n;
-    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
+    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan, mesh.size()) * n;
     return cost;
   }
   cost.form_factor_seconds =
       assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.assembly.lost_share_rays * n;
-  cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
+  cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan, mesh.size()) * n;
   const bool solves = simulates(plan, Effect::interreflection);
   const double products = (plan.assembly.close ? products_of_closure : 0) + (solves ? products_of_solver : 0);
   cost.solve_seconds = seconds_per_entry * products * n * n;

@@ -81,7 +81,7 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   if (!has_point_or_daylight(run.scene)) return lit;
   LightingOptions options = lighting_options(plan, mesh);
   // Where few patches need them, more are taken there alone.
-  if (cuts_locally(run)) options.sky_samples /= 2;
+  if (known.light || cuts_locally(run, mesh.size())) options.sky_samples /= 2;
   DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);

@@ -25,6 +25,9 @@ constexpr double share_to_rays = 0.5;
 // It pays where it leaves less than this share of the error.
 constexpr double worthwhile = 0.7;
 
+// With more patches a second mesh takes minutes: who wants it asks for an accuracy.
+constexpr PatchIndex most_patches = 100'000;
+
 // So many new patches at most, as a share of all.
 constexpr double most_new_patches = 0.25;
 // So many more rays at most, as a share of all, and how often those of a patch are doubled. Rays of rows cost less than
@@ -159,17 +162,18 @@ Eigen::VectorXd squares_of(const SolvedMesh& solved, double error) {
 
 }  // namespace
 
-bool cuts_locally(const Plan& plan) {
+bool cuts_locally(const Plan& plan, PatchIndex patches) {
   const AccuracyOptions& accuracy = plan.accuracy;
-  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays;
+  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays &&
+         patches <= most_patches;
 }
 
-bool cuts_locally(const Run& run) {
-  return cuts_locally(run.plan) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
+bool cuts_locally(const Run& run, PatchIndex patches) {
+  return cuts_locally(run.plan, patches) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
 }
 
 std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
-  if (!cuts_locally(run) || !(errors.total > usual_error)) return std::nullopt;
+  if (!cuts_locally(run, errors.patches) || !(errors.total > usual_error)) return std::nullopt;
 
   // 1. Patches where their size errs.
   const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh);

@@ -14,9 +14,9 @@ inline constexpr int most_local_cuts = 3;
 /// With the run's seed that of the rays on the second mesh.
 inline constexpr std::uint64_t seed_of_second_mesh = 0x2d5;
 
-/// True when AccuracyOptions::local_cuts holds for the plan, and for the run.
-bool cuts_locally(const Plan& plan);
-bool cuts_locally(const Run& run);
+/// True when AccuracyOptions::local_cuts holds for the plan, and for a run with a first mesh of so many patches.
+bool cuts_locally(const Plan& plan, PatchIndex patches);
+bool cuts_locally(const Run& run, PatchIndex patches);
 
 /// The mesh after the first one of such a run: some of its patches are cut, some of them several times, and rays of
 /// some are doubled, so that much less of the error is left. What is known of the light on other patches is taken from

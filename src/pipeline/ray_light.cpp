@@ -33,7 +33,7 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   // 2. Means over the exposed part of each patch, which is known but for its own error.
   const LostShare& lost = exchange.rows.lost;
   RadiosityProblem& problem = light.lit.problem;
-  if (cuts_locally(run) && !run.is_part && light.lit.direct_standard_error.size() > 0)
+  if (cuts_locally(run, mesh.size()) && !run.is_part && light.lit.direct_standard_error.size() > 0)
     light.as_found = {problem.direct_irradiance, light.lit.direct_standard_error};
   problem.area = exchange.rows.area;
   problem.scattering = with_sheets(std::move(problem.scattering), run.scene, mesh, problem.area);

@@ -195,7 +195,8 @@ SolvedMesh Search::noted(SolvedMesh solved) {
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
-  if (refines(run_.plan.accuracy) || cuts_locally(run_)) keep(solved.simulation);
+  if (refines(run_.plan.accuracy) || (!steps_.empty() && cuts_locally(run_, steps_[0].patches)))
+    keep(solved.simulation);
   if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }

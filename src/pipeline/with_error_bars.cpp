@@ -212,10 +212,11 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
     return expanded(errors_within_parents(result.mesh, transport.rays(), needed.solved()), needed.bands);
   };
   const bool has_parents = result.mesh.parents.size() > 0;
+  const bool is_cut_locally = cuts_locally(run, simulation.mesh.size()) && has_parents;
   const BarsOfRays bars{
       has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
       gap_errors(simulation.mesh, transport.rays(), solved),
-      cuts_locally(run) ? gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts) : Field()};
+      is_cut_locally ? gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts) : Field()};
   // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
   // Where parents or gaps say more, that is not by noise.
@@ -225,7 +226,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
-  const bool may_be_cut = refines(run.plan.accuracy) || (cuts_locally(run) && has_parents);
+  const bool may_be_cut = refines(run.plan.accuracy) || is_cut_locally;
   return may_be_cut ? with_effects(std::move(result), weight, unseen, bars) : result;
 }
 
