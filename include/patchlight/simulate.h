@@ -105,7 +105,7 @@ using MeshOf = std::function<PatchMesh()>;
 using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
                                          const SolverOptions& options, const Observer& observer)>;
 
-/// Told of every mesh on the way to an accuracy.
+/// Told of every mesh on the way to an accuracy, or of AccuracyOptions::local_cuts.
 using LookAt = std::function<void(const Simulation& simulation)>;
 
 /// Steps of simulate() that may be done otherwise.

@@ -209,9 +209,9 @@ std::string note_on_local_cuts(const MeshToSolve& next, const AccuracyStep& erro
   };
   std::size_t doubled = 0;
   for (std::size_t i = 0; i < place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
-  return "of " + std::to_string(errors.patches) + " patches " + std::to_string(cut) + " were cut, and " +
-         std::to_string(doubled) + " then took more rays, to take away most of an error of " +
-         percent(errors.total, 2) + " %; accuracy.local_cuts=false stays with the first mesh";
+  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
+         " %: on a second one " + std::to_string(cut) + " of them are cut, and " + std::to_string(doubled) +
+         " patches take more rays; accuracy.local_cuts=false stays with the first";
 }
 
 }  // namespace patchlight

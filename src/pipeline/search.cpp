@@ -195,9 +195,11 @@ SolvedMesh Search::noted(SolvedMesh solved) {
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
-  if (refines(run_.plan.accuracy) || (!steps_.empty() && cuts_locally(run_, steps_[0].patches)))
-    keep(solved.simulation);
-  if (refines(run_.plan.accuracy) && run_.with.look) run_.with.look(solved.simulation);
+  const bool may_be_followed =
+      refines(run_.plan.accuracy) || (!steps_.empty() && cuts_locally(run_, steps_[0].patches));
+  if (!may_be_followed) return solved;
+  keep(solved.simulation);
+  if (run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
 

@@ -54,6 +54,21 @@ TEST(Unfinished, IsTheLastMeshWhoseErrorsAreKnown) {
   EXPECT_FALSE(left->costs.empty());
 }
 
+// As well where patches are cut without an accuracy.
+TEST(Unfinished, IsTheFirstMeshWithItsErrorsWhileASecondIsSolved) {
+  Request request;
+  request.mesh.patches = 500;
+  request.assembly.storage = Storage::rays;
+  request.solver.solver = Solver::gmres;
+  request.accuracy.local_cuts = true;
+  const auto second_mesh = [](const Progress& p, int solved) { return solved == 1 && p.stage == Stage::form_factors; };
+  const std::optional<Simulation> left = stopped_run(request, true, second_mesh);
+  ASSERT_TRUE(left);
+  EXPECT_TRUE(left->unfinished);
+  EXPECT_TRUE(left->error_bars);
+  EXPECT_EQ(left->accuracy.size(), 1U);
+}
+
 // The same bits as a run that was to end there.
 TEST(Unfinished, IsWhatARunThatEndsThereGives) {
   const auto second_mesh = [](const Progress& p, int solved) { return solved == 1 && p.stage == Stage::form_factors; };
