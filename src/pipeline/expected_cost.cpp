@@ -1,5 +1,6 @@
 #include "pipeline/expected_cost.h"
 
+#include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
@@ -49,7 +50,8 @@ double rays_per_patch(const Scene& scene, const Plan& plan, PatchIndex patches) 
   double rays = 0;
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
-  if (scene.sky && simulates(plan, Effect::sky)) rays += cuts_locally(plan, patches) ? 512 : 1024;
+  if (scene.sky && simulates(plan, Effect::sky))
+    rays += cuts_locally(plan, patches) && patches > many_patches ? 512 : 1024;
   return rays;
 }
 

@@ -34,6 +34,10 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 
 }  // namespace
 
+bool light_rays_grow(const Plan& plan, PatchIndex patches) {
+  return plan.assembly.storage == Storage::rays && refines(plan.accuracy) && patches <= many_patches;
+}
+
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
   constexpr int over_mirrors_of_many = 16;
   LightingOptions options{.seed = plan.assembly.seed};
@@ -42,6 +46,15 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
 }
 
 namespace {
+
+LightingOptions more_as_rows_have(const Run& run, const Plan& plan, LightingOptions options) {
+  constexpr int most = 16;
+  const int times = std::clamp(plan.assembly.rays / run.plan.assembly.rays, 1, most);
+  for (int* const samples :
+       {&options.lamp_samples, &options.sun_samples, &options.mirrored_samples, &options.sky_samples})
+    *samples *= times;
+  return options;
+}
 
 // Light of which some is known from the mesh before; the rest with as many more rays as are wanted.
 DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
@@ -80,8 +93,10 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
   LightingOptions options = lighting_options(plan, mesh);
-  // Where few patches need them, more are taken there alone.
-  if (known.light || cuts_locally(run, mesh.size())) options.sky_samples /= 2;
+  if (light_rays_grow(plan, mesh.size())) options = more_as_rows_have(run, plan, options);
+  // Of many patches few need as many: these take more on a second mesh.
+  const bool halves = known.light || cuts_locally(run, mesh.size());
+  if (halves && mesh.size() > many_patches) options.sky_samples /= 2;
   DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);

@@ -22,6 +22,10 @@ struct LitProblem {
 /// Above so many patches fewer rays are taken of each: those around take the noise away.
 inline constexpr PatchIndex many_patches = 20'000;
 
+/// True where rays to luminaires, sun and sky grow with those of rows on the way to an accuracy. On more patches that
+/// takes too long, and those where such rays err are cut.
+bool light_rays_grow(const Plan& plan, PatchIndex patches);
+
 /// How light of luminaires, sun and sky is looked for on these patches.
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 

@@ -209,9 +209,11 @@ std::string note_on_local_cuts(const MeshToSolve& next, const AccuracyStep& erro
   };
   std::size_t doubled = 0;
   for (std::size_t i = 0; i < place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
+  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
+  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
   return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
-         " %: on a second one " + std::to_string(cut) + " of them are cut, and " + std::to_string(doubled) +
-         " patches take more rays; accuracy.local_cuts=false stays with the first";
+         " %: on a second one " + cuts + (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
+         "; accuracy.local_cuts=false stays with the first";
 }
 
 }  // namespace patchlight

@@ -187,9 +187,11 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   result.row_noise = squares_of_patches(solved, simulation.ray_standard_error, weight);
   result.noise_bar = relative(simulation.ray_standard_error);
   if (simulation.direct_standard_error.size() == 0) return result;
+  if (light_rays_grow(simulation.plan, simulation.mesh.size())) return result;
+  // Where they do not, finer patches have more of them.
+  if (refines(simulation.plan.accuracy)) result.effects += squares(simulation.direct_standard_error);
   result.light_noise = squares_of_patches(solved, simulation.direct_standard_error, weight);
   result.row_noise = (result.row_noise - result.light_noise).cwiseMax(0.0);
-  if (refines(simulation.plan.accuracy)) result.effects += squares(simulation.direct_standard_error);
   result.light_bar = relative(simulation.direct_standard_error);
   result.noise_bar =
       std::sqrt(std::max(0.0, result.noise_bar * result.noise_bar - result.light_bar * result.light_bar));
