@@ -5,6 +5,7 @@
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 #include "transport/bright_patches.h"

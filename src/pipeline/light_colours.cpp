@@ -3,6 +3,7 @@
 #include "accuracy/interest.h"
 #include "pipeline/joined_colours.h"
 #include "pipeline/lit_problem.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/mesh_transport.h"
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"
