@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "light/pane.h"
+#include "mesh/kept_patches.h"
 #include "mesh/mesher.h"
 #include "mesh/refine.h"
 #include "scene/photometric_web.h"
@@ -469,6 +470,19 @@ TEST(DirectIrradiance, TakesMoreSamplesWhereTheyAreDoubled) {
     }
   }
   EXPECT_LT(doubled, usual / 4);
+}
+
+// As where all light of a mesh is known from the one before.
+TEST(DirectIrradiance, OfNoPatchesIsEmpty) {
+  Scene scene = room_with_window(0.5);
+  Sky sky;
+  sky.zenith_radiance = one_band(3);
+  scene.sky = sky;
+  const PatchMesh all = fronts(scene, 2);
+  const PatchMesh none = without_patches(all, std::vector<std::uint8_t>(all.size(), 1));
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), none, {.usual_area = 1});
+  EXPECT_EQ(direct.irradiance.rows(), 0);
+  EXPECT_EQ(direct.irradiance.cols(), 1);
 }
 
 // Beside a patch with an error of 1 by one ray, one by four rays has half of that at least.
