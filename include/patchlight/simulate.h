@@ -41,7 +41,7 @@ struct TransportFacts {
 struct AccuracyStep {
   PatchIndex patches = 0;
   PatchIndex new_patches = 0;  ///< those not in the mesh before
-  int samples = 0;             ///< samples_of() its plan
+  int samples = 0;             ///< of a pair; by rows of rays those of a patch in the mean, doubled ones included
   double mesh = 0;
   double form_factor = 0;
   double solver = 0;

@@ -34,7 +34,7 @@ Eigen::ArrayXd exposure_errors(const LostShare& lost) {
   const Eigen::ArrayXd covered = lost.covered.array();
   // Measured for straight edges in every direction, where from 1 to 99 % are covered:
   // tests/unit/transport/lost_share_test.cpp.
-  const double variance = 0.28 * std::pow(static_cast<double>(lost.rays_per_patch), -1.5);
+  const Eigen::ArrayXd variance = 0.28 * rays_of_patches(lost, static_cast<PatchIndex>(covered.size())).pow(-1.5);
   return (covered < 1).select((variance * (covered * (1 - covered)).sqrt()).sqrt() / (1 - covered), 0.0);
 }
 

@@ -11,7 +11,7 @@
 #include "output/write_plan.h"
 #include "pipeline/expected_cost.h"
 #include "pipeline/first_mesh.h"
-#include "pipeline/local_cuts.h"
+#include "pipeline/second_mesh.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
 #include "scene/problem_face.h"
@@ -62,7 +62,7 @@ std::string further_costs(const Scene& scene, const Plan& plan, PatchIndex patch
   std::size_t sensors = 0;
   for (const SensorGroup& group : scene.sensors) sensors += group.sensors.size();
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (cuts_locally(plan, patches) ? "a second mesh where the first errs by more than 2 %, " : "") +
+         (makes_second_mesh(plan, patches) ? "a second mesh where the first errs by more than 2 %, " : "") +
          (sensors > 0 ? counted(sensors, "sensor") + ", " : "") + "pictures and pages, where they are asked for\n";
 }
 

@@ -1,5 +1,6 @@
 #include "lighting/direct_irradiance.h"
 
+#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/receivers.h"
@@ -31,7 +32,7 @@ constexpr std::uint32_t step = 17;
 constexpr int most_doublings = 2;
 
 // And with this one where more are asked for.
-constexpr int most_asked = 4;
+constexpr int most_asked = 8;
 
 // Whether so many rays to a ball can be blocked costs as much to find as they do.
 constexpr std::size_t few_rays = 16;
@@ -194,8 +195,7 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
 Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error,
                          std::span<const std::uint8_t> doublings) {
   if (doublings.empty()) return standard_error.max(means_around(mesh, area, standard_error));
-  Eigen::ArrayXd rays(standard_error.rows());
-  for (std::size_t i = 0; i < doublings.size(); ++i) rays[static_cast<Eigen::Index>(i)] = std::exp2(doublings[i]);
+  const Eigen::ArrayXd rays = multiples(doublings, standard_error.rows());
   const Field of_usual = standard_error.colwise() * rays.sqrt();
   return of_usual.max(means_around(mesh, area, of_usual)).colwise() / rays.sqrt();
 }

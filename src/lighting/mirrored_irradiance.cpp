@@ -24,7 +24,7 @@ namespace {
 // fewer.
 constexpr std::uint32_t most_replicates = 8;
 constexpr std::size_t most_mirrors_of_sky = 16;
-constexpr int effort_at_points = 16;
+constexpr double effort_at_points = 16;  // a power of two
 
 // What one sample of a source gives a place if nothing is in the way.
 struct MirroredArrival {
@@ -124,18 +124,24 @@ struct SampledPlace {
   Eigen::Index replicate;
 };
 
+// How many replicates a receiver takes, and of how many points each.
+struct MirrorEffort {
+  std::size_t replicates = 0;
+  std::size_t points = 0;
+};
+
 struct MirrorSampler {
   const Lighting& lighting;
   std::vector<MirroredSource> sources;
-  std::vector<std::vector<std::array<double, 4>>> points;  // per replicate
+  std::vector<std::vector<std::array<double, 4>>> points;  // per replicate, the most that any takes
 
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
   void add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places, Field& sums) const;
   Spectrum sky_in(std::span<const MirrorRay> rays) const;
   Spectrum of_sky(std::span<const SampledPlace> places, bool is_point) const;
-  std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, std::size_t replicates) const;
-  Field replicates_at(const Receiver& receiver, std::uint32_t key, std::size_t replicates,
+  std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort) const;
+  Field replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                       std::span<const WantedChain> among) const;
 };
 
@@ -231,12 +237,12 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
 
 // Those over which no other polygon lies; replicates without such a place are left out of the numbers.
 std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std::uint32_t key,
-                                                   std::size_t replicates) const {
+                                                   const MirrorEffort& effort) const {
   std::vector<SampledPlace> places;
   Eigen::Index replicate = 0;
-  for (std::uint32_t r = 0; r < std::min(points.size(), replicates); ++r) {
+  for (std::uint32_t r = 0; r < effort.replicates; ++r) {
     const std::size_t before = places.size();
-    for (const auto& sample : shifted(points[r], hash({key, r}))) {
+    for (const auto& sample : shifted(std::span(points[r]).first(effort.points), hash({key, r}))) {
       const SurfacePoint at = receiver.place(sample[0], sample[1]);
       if (!is_covered(lighting, receiver, at)) places.push_back({at, sample, replicate});
     }
@@ -246,11 +252,11 @@ std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std
 }
 
 // One row each, of those with a place over which no other polygon lies.
-Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, std::size_t replicates,
+Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                                    std::span<const WantedChain> among) const {
   const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
   if (chains.empty() && !lighting.sky) return Field::Zero(1, lighting.bands);
-  const std::vector<SampledPlace> places = places_on(receiver, key, replicates);
+  const std::vector<SampledPlace> places = places_on(receiver, key, effort);
   Field found = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
   add_over_chains(chains, places, found);
   const std::span all(places);
@@ -273,31 +279,47 @@ MirroredEstimate estimate_from(const Field& replicates) {
   return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
 }
 
-// `receiver_at` and `share_at` give the receiver of each number up to `count`, and which share of the replicates it
-// takes.
-template <class ReceiverAt, class ShareAt>
-DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps, std::size_t count,
-                               const ReceiverAt& receiver_at, const ShareAt& share_at, const LightingOptions& options,
-                               int effort, const Observer& observer) {
+// Receivers, each of which takes a multiple of the usual number of samples.
+template <class ReceiverAt, class MultipleAt>
+struct MirrorReceivers {
+  std::size_t count = 0;
+  ReceiverAt at;
+  MultipleAt multiple_at;
+  double most = 1;  // of the multiples; a power of two
+};
+
+// Fewer samples than usual are fewer replicates, more are larger ones.
+MirrorEffort effort_for(double multiple, std::size_t usual_replicates, std::size_t usual_points) {
+  const double fewer = std::min(1.0, multiple) * static_cast<double>(usual_replicates);
+  const auto larger = std::bit_floor(static_cast<std::size_t>(std::max(1.0, multiple)));
+  return {std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(fewer))), larger * usual_points};
+}
+
+template <class ReceiverAt, class MultipleAt>
+DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps,
+                               const MirrorReceivers<ReceiverAt, MultipleAt>& all, const LightingOptions& options,
+                               const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
-  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, effort * options.mirrored_samples)));
+  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
   const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
+  const std::uint32_t of_each = samples / replicates;
   for (std::uint32_t r = 0; r < replicates; ++r)
-    sampler.points.push_back(scrambled_sobol(samples / replicates, hash({options.seed, r, 7})));
+    sampler.points.push_back(
+        scrambled_sobol(of_each * static_cast<std::uint32_t>(all.most), hash({options.seed, r, 7})));
   const std::vector<WantedChain> chains = sampler.all_chains();
+  const std::size_t count = all.count;
   const auto rows = static_cast<Eigen::Index>(count);
   DirectIrradiance direct{Field::Zero(rows, lighting.bands), Field::Zero(rows, lighting.bands)};
   const std::size_t groups = (count + receivers_at_once - 1) / receivers_at_once;
   parallel_for(groups, Stage::direct_light, observer, [&](std::size_t group) {
     const std::size_t begin = group * receivers_at_once;
     std::vector<Receiver> receivers;
-    for (std::size_t k = begin; k < std::min(count, begin + receivers_at_once); ++k)
-      receivers.push_back(receiver_at(k));
+    for (std::size_t k = begin; k < std::min(count, begin + receivers_at_once); ++k) receivers.push_back(all.at(k));
     const std::vector<WantedChain> near = sampler.chains_to(ball_around_all(receivers), chains);
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
-      const auto wanted = static_cast<std::size_t>(std::lround(share_at(k) * replicates));
-      const Field replicates_of = sampler.replicates_at(
-          receivers[k - begin], hash({options.seed, k / options.alike, 8}), std::max<std::size_t>(2, wanted), near);
+      const MirrorEffort effort = effort_for(all.multiple_at(k), replicates, of_each);
+      const Field replicates_of =
+          sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), effort, near);
       const MirroredEstimate found = estimate_from(replicates_of);
       direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
       direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
@@ -329,19 +351,23 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
                                      const LightingOptions& options, const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const double usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh);
-  const auto share = [&](std::size_t k) {
+  const std::span<const std::uint8_t> more = options.doublings;
+  const auto multiple = [&](std::size_t k) {
     constexpr double least = 0.25;
-    return std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0);
+    return std::ldexp(std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0), more.empty() ? 0 : more[k]);
   };
-  return in_mirrors_at(lighting, lamps, mesh.size(), patch, share, options, 1, observer);
+  const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
+  return in_mirrors_at(lighting, lamps, MirrorReceivers{mesh.size(), patch, multiple, std::ldexp(1.0, most)}, options,
+                       observer);
 }
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
                                      std::span<const SurfacePoint> points, const LightingOptions& options,
                                      const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
-  const auto all = [](std::size_t) { return 1.0; };
-  return in_mirrors_at(lighting, lamps, points.size(), point, all, options, effort_at_points, observer);
+  const auto multiple = [](std::size_t) { return effort_at_points; };
+  return in_mirrors_at(lighting, lamps, MirrorReceivers{points.size(), point, multiple, effort_at_points}, options,
+                       observer);
 }
 
 }  // namespace patchlight

@@ -71,6 +71,11 @@ Refinement refined(const PatchMesh& mesh, std::vector<std::uint8_t> cuts) {
 
 }  // namespace
 
+PatchIndex number_kept(std::span<const PatchIndex> places) {
+  return static_cast<PatchIndex>(places.size() -
+                                 static_cast<std::size_t>(std::count(places.begin(), places.end(), no_patch)));
+}
+
 FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts) {
   assert(cuts.size() == mesh.parents.size());
   const auto patches_before = [&](PatchIndex parent) {

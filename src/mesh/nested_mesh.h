@@ -35,6 +35,9 @@ struct FinerMesh {
   std::vector<PatchIndex> parent_before;  ///< per patch: the parent of the mesh before in which it lies
 };
 
+/// How many patches of the mesh before those places are.
+PatchIndex number_kept(std::span<const PatchIndex> places);
+
 /// The same with finer patches: those of each parent are cut so many times, and with them those that balance takes, see
 /// refine(). A parent that was whole has parts after the first time.
 FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts_of_parents);

@@ -20,11 +20,6 @@ int next_samples(const Plan& plan, double factor) {
   return std::max(samples, next);
 }
 
-// What one error may be when the others are as they are: what they leave, but no less than its share.
-double allowed(double accuracy, double share, double others) {
-  return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
-}
-
 // What samples err may be, when all else is as it is: mesh, solver, and what of the form factors' error has nothing
 // to do with their samples.
 double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
@@ -34,6 +29,10 @@ double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double 
 }
 
 }  // namespace
+
+double allowed(double accuracy, double share, double others) {
+  return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
+}
 
 int most_samples(const Plan& plan) { return plan.assembly.storage == Storage::rays ? 4096 : 256; }
 
@@ -54,13 +53,9 @@ int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accur
   constexpr double far_off = 1.5;
   const int samples = samples_of(plan.assembly);
   if (plan.assembly.storage != solved.simulation.plan.assembly.storage) return samples;
-  const bool by_rays = plan.assembly.storage == Storage::rays;
-  if (!by_rays && mesh_factor(solved, step, accuracy) > far_off) return samples;
-  const double patches = by_rays ? step.patches : patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
-  // As long as the mesh errs more than it may, it is enough when rays err half as much.
-  if (by_rays && mesh_factor(solved, step, accuracy) > far_off)
-    factor = std::min(factor, 2 * solved.noise_bar / step.mesh);
+  if (mesh_factor(solved, step, accuracy) > far_off) return samples;
+  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
+  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
   return factor > error_margin ? next_samples(plan, factor) : samples;
 }
 

@@ -7,6 +7,9 @@ namespace patchlight {
 /// Errors are brought this much lower than they have to be, as they are estimates.
 inline constexpr double error_margin = 1.25;
 
+/// What one error may be when the others are as they are: what they leave, but no less than its share.
+double allowed(double accuracy, double share, double others);
+
 /// Shadow rays of a pair, or rays of a patch, more than which are not worth their time.
 int most_samples(const Plan& plan);
 
@@ -20,9 +23,9 @@ double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double ac
 /// The factor by which the noise of samples has to fall.
 double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy);
 
-/// The samples that the next mesh takes with the storage of its plan. Noise falls as one over the root of samples and
-/// patches: samples for those patches that the mesh will need. As long as that is far off, the usual number of pairs'
-/// shadow rays does; rays of patches are not waited for, as what they err is in the mesh's error, too.
+/// The samples that the next mesh takes for its pairs. Noise falls as one over the root of samples and patches: samples
+/// for those patches that the mesh will need. As long as that is far off, the usual number does; and where the next
+/// mesh goes by rows of rays.
 int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy, const Plan& plan);
 
 }  // namespace patchlight

@@ -91,7 +91,7 @@ TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
   RayOptions options = rays_as_planned(plan.assembly, mesh);
   // How many a patch takes, other rays have told.
-  if (!doublings.empty()) options.seed = hash({options.seed, seed_of_second_mesh});
+  if (!doublings.empty()) options.seed = hash({options.seed, seed_of_later_meshes});
   options.doublings = doublings;
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
@@ -135,7 +135,7 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
   if (!is_known) {
-    exchange.rows = traced_rows(run, plan, mesh, light, known.row_doublings);
+    exchange.rows = traced_rows(run, plan, mesh, light, known.more_rays.of_rows);
     if (run.tracing->has_specular_faces())
       exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};

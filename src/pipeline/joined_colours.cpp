@@ -99,6 +99,7 @@ void add_facts(TransportFacts& sum, double weight, const TransportFacts& part) {
   add(sum.lost.dark, weight, part.lost.dark);
   add(sum.lost.overlaid, weight, part.lost.overlaid);
   sum.lost.rays_per_patch = part.lost.rays_per_patch;
+  sum.lost.doublings = part.lost.doublings;
   sum.counts.shadow_rays += part.counts.shadow_rays;
   sum.closure = part.closure;
 }

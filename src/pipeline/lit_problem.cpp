@@ -34,10 +34,6 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 
 }  // namespace
 
-bool light_rays_grow(const Plan& plan, PatchIndex patches) {
-  return plan.assembly.storage == Storage::rays && refines(plan.accuracy) && patches <= many_patches;
-}
-
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
   constexpr int over_mirrors_of_many = 16;
   LightingOptions options{.seed = plan.assembly.seed};
@@ -47,15 +43,6 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
 
 namespace {
 
-LightingOptions more_as_rows_have(const Run& run, const Plan& plan, LightingOptions options) {
-  constexpr int most = 16;
-  const int times = std::clamp(plan.assembly.rays / run.plan.assembly.rays, 1, most);
-  for (int* const samples :
-       {&options.lamp_samples, &options.sun_samples, &options.mirrored_samples, &options.sky_samples})
-    *samples *= times;
-  return options;
-}
-
 // Light of which some is known from the mesh before; the rest with as many more rays as are wanted.
 DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                                           LightingOptions options) {
@@ -63,16 +50,16 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
   // 1. What is not known, on a mesh of its own, by rays that have told nothing of how many it takes.
   std::vector<std::uint8_t> is_known;
   std::vector<std::uint8_t> doublings;
+  const std::vector<std::uint8_t>& more = known.more_rays.to_lights;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const std::uint8_t more = known.light_doublings.empty() ? 0 : known.light_doublings[i];
-    is_known.push_back(known.place[i] != no_patch && more == 0 ? 1 : 0);
-    if (is_known.back() == 0) doublings.push_back(more);
+    is_known.push_back(known.light_place[i] != no_patch ? 1 : 0);
+    if (is_known.back() == 0) doublings.push_back(more.empty() ? 0 : more[i]);
   }
   PatchMesh whole = mesh;
   whole.middles.clear();
   options.usual_area = mean_area(mesh);
   options.doublings = doublings;
-  options.seed = hash({options.seed, seed_of_second_mesh});
+  options.seed = hash({options.seed, seed_of_later_meshes});
   const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
 
   // 2. With what is.
@@ -80,7 +67,7 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
     Field all(mesh.size(), anew.cols());
     Eigen::Index next = 0;
     for (PatchIndex i = 0; i < mesh.size(); ++i)
-      all.row(i) = is_known[i] != 0 ? before.row(known.place[i]) : anew.row(next++);
+      all.row(i) = is_known[i] != 0 ? before.row(known.light_place[i]) : anew.row(next++);
     return all;
   };
   return {joined(known.light->irradiance, found.irradiance), joined(known.light->standard_error, found.standard_error)};
@@ -93,14 +80,13 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
   LightingOptions options = lighting_options(plan, mesh);
-  if (light_rays_grow(plan, mesh.size())) options = more_as_rows_have(run, plan, options);
-  // Of many patches few need as many: these take more on a second mesh.
+  // Of many patches few need as many: these take more on the next mesh.
   const bool halves = known.light || cuts_locally(run, mesh.size());
   if (halves && mesh.size() > many_patches) options.sky_samples /= 2;
   DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
-  lit.doublings = known.light_doublings;
+  lit.doublings = known.more_rays.to_lights;
   return lit;
 }
 

@@ -16,15 +16,11 @@ namespace patchlight {
 struct LitProblem {
   RadiosityProblem problem;
   Field direct_standard_error;               ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
-  std::vector<std::uint8_t> doublings = {};  ///< Known::light_doublings
+  std::vector<std::uint8_t> doublings = {};  ///< MoreRays::to_lights
 };
 
 /// Above so many patches fewer rays are taken of each: those around take the noise away.
 inline constexpr PatchIndex many_patches = 20'000;
-
-/// True where rays to luminaires, sun and sky grow with those of rows on the way to an accuracy. On more patches that
-/// takes too long, and those where such rays err are cut.
-bool light_rays_grow(const Plan& plan, PatchIndex patches);
 
 /// How light of luminaires, sun and sky is looked for on these patches.
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);

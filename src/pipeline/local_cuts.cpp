@@ -1,40 +1,26 @@
 #include "pipeline/local_cuts.h"
 
-#include "accuracy/errors.h"
 #include "accuracy/refinement.h"
-#include "base/rounded.h"
-#include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
-#include "plan/memory.h"
+#include "pipeline/error_goals.h"
+#include "pipeline/second_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <numeric>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
-// An error of so much of the reflected light is left as it is where none was asked for.
-constexpr double usual_error = 0.02;
-// Shares of it that the mesh, the rays of rows and those to lights may err, in quadrature.
+// Shares of an error that the mesh, the rays of rows and those to lights may have, in quadrature, where all have some.
 constexpr double share_to_mesh = 0.7;
 constexpr double share_to_rays = 0.5;
-// It pays where it leaves less than this share of the error.
-constexpr double worthwhile = 0.7;
 
-// With more patches a second mesh takes minutes: who wants it asks for an accuracy.
-constexpr PatchIndex most_patches = 100'000;
-
-// So many new patches at most, as a share of all.
-constexpr double most_new_patches = 0.25;
-// So many more rays at most, as a share of all, and how often those of a patch are doubled. Rays of rows cost less than
-// those to sun and sky, which are more.
-constexpr double most_more_to_lights = 0.5;
-constexpr double most_more_of_rows = 1.5;
-constexpr int most_doublings = 4;
+// So often rays of a patch are doubled at once, and before they are more than are worth their time.
+constexpr int most_doublings_at_once = 4;
 
 // The largest x between two for which is_allowed(x) holds, where it holds for all below one number and for none above;
 // the lowest where it never does.
@@ -71,10 +57,8 @@ Cuts cuts_down_to(double most, const NestedMesh& mesh, const Eigen::VectorXd& sq
   return cuts;
 }
 
-// The fewest that leave what may be left, within the limits.
-Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares) {
-  const double wanted = std::pow(share_to_mesh * usual_error, 2);
-  const double most = most_new_patches * mesh.patches.size();
+// The fewest that leave `wanted`, with so many new patches at most.
+Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares, double wanted, double most) {
   const double all = squares.sum();
   const auto cuts_at = [&](double x) { return cuts_down_to(1 / x, mesh, squares); };
   if (!(all > 0)) return {std::vector<std::uint8_t>(mesh.parents.size(), 0), 0, 0};
@@ -85,43 +69,64 @@ Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares) {
   return cuts_at(found);
 }
 
-// How often the rays of each patch are doubled, how many more that are, as a share of all, and what it leaves.
+// Noise of the patches of a mesh.
+struct Noise {
+  std::vector<double> squares;        // its part in the squared error
+  std::vector<double> rays;           // that make it, to a factor
+  std::vector<std::uint8_t> doubled;  // how often these are doubled already
+};
+
+// How often the rays of each patch are doubled, which ones more often than before, how many more rays that are, as a
+// share of all, and what it leaves.
 struct Doublings {
   std::vector<std::uint8_t> of_patch;
+  std::vector<std::uint8_t> is_doubled;
   double more_rays = 0;
   double squared_error = 0;
+  bool any = false;
 };
 
-// Noise of the patches of a mesh with as many rays as are usual.
-struct Noise {
-  std::vector<double> squares;  // its part in the squared error
-  std::vector<double> rays;     // to a factor
-};
-
-// Each until another doubling of as many rays as then would gain less than `least`.
-Doublings doublings_down_to(double least, const Noise& noise) {
+// Each until another doubling of as many rays as then would gain less than `least`, or would be more than `most`.
+Doublings doublings_down_to(double least, int most, const Noise& noise) {
   Doublings doublings;
   double all = 0;
   for (std::size_t i = 0; i < noise.rays.size(); ++i) {
     double square = noise.squares[i];
     double rays = noise.rays[i];
+    const int left = std::min(most_doublings_at_once, most - noise.doubled[i]);
     int times = 0;
-    for (; times < most_doublings && square > least * rays; ++times) square /= 2, rays *= 2;
-    doublings.of_patch.push_back(static_cast<std::uint8_t>(times));
+    for (; times < left && square > least * rays; ++times) square /= 2, rays *= 2;
+    doublings.of_patch.push_back(static_cast<std::uint8_t>(noise.doubled[i] + times));
+    doublings.is_doubled.push_back(times > 0 ? 1 : 0);
     doublings.squared_error += square;
     doublings.more_rays += rays - noise.rays[i];
+    doublings.any = doublings.any || times > 0;
     all += noise.rays[i];
   }
   doublings.more_rays /= all;
   return doublings;
 }
 
+// How often the rays of each patch of a finer mesh are doubled, as those in its place are.
+std::vector<std::uint8_t> doubled_on(const FinerMesh& finer, const NestedMesh& before,
+                                     const std::vector<std::uint8_t>& doublings) {
+  std::vector<std::uint8_t> doubled(finer.place.size(), 0);
+  if (doublings.empty()) return doubled;
+  for (std::size_t i = 0; i < doubled.size(); ++i) {
+    const auto [begin, end] = before.patches_of(finer.parent_before[i]);
+    doubled[i] = finer.place[i] != no_patch ? doublings[finer.place[i]]
+                                            : *std::max_element(doublings.begin() + begin, doublings.begin() + end);
+  }
+  return doubled;
+}
+
 // On a finer mesh. A smaller patch has fewer rays, by the root of its area.
-Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::VectorXd& squares) {
+Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::VectorXd& squares,
+               const std::vector<std::uint8_t>& doublings) {
   const PatchMesh& mesh = finer.mesh.patches;
   const double usual_area = mean_area(mesh);
   const Eigen::VectorXd of_parents = summed_by_parent(before, squares.array()).col(0).matrix();
-  Noise noise;
+  Noise noise{{}, {}, doubled_on(finer, before, doublings)};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const PatchIndex parent = finer.parent_before[i];
     const PatchRange range = before.patches_of(parent);
@@ -129,24 +134,30 @@ Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::Ve
     noise.squares.push_back(finer.place[i] != no_patch
                                 ? squares[finer.place[i]]
                                 : of_parents[parent] * std::sqrt(share / (range.end - range.begin)));
-    noise.rays.push_back(std::clamp(std::sqrt(mesh.area[i] / usual_area), 0.25, 4.0));
+    noise.rays.push_back(std::ldexp(std::clamp(std::sqrt(mesh.area[i] / usual_area), 0.25, 4.0), noise.doubled[i]));
   }
   return noise;
 }
 
-// The fewest for which the error, of which `squares` have the parts of the patches before, falls to its share, with
-// `most` more rays; none where there is no error.
-Doublings doublings_for(const FinerMesh& finer, const NestedMesh& before, const Eigen::VectorXd& squares, double error,
-                        double most) {
-  const double sum = squares.sum();
-  if (!(error > 0 && sum > 0)) return {{}, 0, error * error};
-  const double wanted = std::pow(share_to_rays * usual_error, 2);
-  const Noise noise = noise_on(finer, before, error * error / sum * squares);
-  const double found = largest_with(1e-6 / wanted, 1e15 / wanted, [&](double x) {
-    const Doublings doublings = doublings_down_to(1 / x, noise);
-    return doublings.more_rays <= most && doublings.squared_error >= wanted;
+// What rays err, the square of it that may be left, by how much they may grow, and how often they may be doubled.
+struct NoiseGoal {
+  double error = 0;
+  double wanted = 0;
+  double more_rays = 0;
+  int most_doublings = 0;
+};
+
+// The fewest for which the error falls to what may be left, within the limits; none where there is no error.
+Doublings best_doublings(Noise noise, const NoiseGoal& goal) {
+  const double sum = std::accumulate(noise.squares.begin(), noise.squares.end(), 0.0);
+  const double error = goal.error * goal.error;
+  for (double& square : noise.squares) square = sum > 0 ? error / sum * square : 0;
+  const auto doublings_at = [&](double x) { return doublings_down_to(1 / x, goal.most_doublings, noise); };
+  const double found = largest_with(1e-6 / goal.wanted, 1e15 / goal.wanted, [&](double x) {
+    const Doublings doublings = doublings_at(x);
+    return doublings.more_rays <= goal.more_rays && doublings.squared_error >= goal.wanted;
   });
-  return doublings_down_to(1 / found, noise);
+  return doublings_at(found);
 }
 
 // Parents' parts in the squared error by the mesh that cuts mend; none of lamps, which are not cut for what they err.
@@ -160,60 +171,69 @@ Eigen::VectorXd squares_of(const SolvedMesh& solved, double error) {
   return squares;
 }
 
+// How often rays may be doubled before they are more than are worth their time.
+int doublings_worth_it(const Plan& plan) {
+  return std::bit_width(static_cast<unsigned>(most_samples(plan) / plan.assembly.rays)) - 1;
+}
+
+// The square of allowed(), from the sum of the squares of the others.
+double allowed_square(double error, double share, double others) {
+  return std::pow(allowed(error, share, std::sqrt(others)), 2);
+}
+
 }  // namespace
 
 bool cuts_locally(const Plan& plan, PatchIndex patches) {
-  const AccuracyOptions& accuracy = plan.accuracy;
-  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays &&
-         patches <= most_patches;
+  return makes_second_mesh(plan, patches) || (refines(plan.accuracy) && plan.assembly.storage == Storage::rays);
 }
 
 bool cuts_locally(const Run& run, PatchIndex patches) {
-  return cuts_locally(run.plan, patches) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
+  return makes_second_mesh(run, patches) || (refines(run.plan.accuracy) && cuts_locally(run.plan, patches));
 }
 
-std::optional<MeshToSolve> with_local_cuts(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
-  if (!cuts_locally(run, errors.patches) || !(errors.total > usual_error)) return std::nullopt;
+LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const LocalGoal& goal) {
+  const double by_lights = solved.light_bar * solved.light_bar;
+  const double by_rows = solved.noise_bar * solved.noise_bar;
 
   // 1. Patches where their size errs.
   const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh);
-  const Cuts cuts = best_cuts(solved.mesh, squares);
+  const Cuts cuts = best_cuts(solved.mesh, squares, allowed_square(goal.error, share_to_mesh, by_lights + by_rows),
+                              goal.new_patches * solved.mesh.patches.size());
   FinerMesh finer = cut_patches(solved.mesh, cuts.of_parent);
 
   // 2. Rays where they do.
-  Doublings to_lights = doublings_for(finer, solved.mesh, solved.light_noise, solved.light_bar, most_more_to_lights);
-  Doublings of_rows = doublings_for(finer, solved.mesh, solved.row_noise, solved.noise_bar, most_more_of_rows);
+  const int most = doublings_worth_it(solved.simulation.plan);
+  const auto doublings = [&](const Eigen::VectorXd& noise, const std::vector<std::uint8_t>& before,
+                             const NoiseGoal& noise_goal) {
+    if (noise.size() == 0) return Doublings{};
+    return best_doublings(noise_on(finer, solved.mesh, noise, before), noise_goal);
+  };
+  const double lights_may = allowed_square(goal.error, share_to_rays, cuts.squared_error + by_rows);
+  Doublings to_lights = doublings(solved.light_noise, solved.more_rays.to_lights,
+                                  {solved.light_bar, lights_may, goal.more_to_lights, most});
+  const double rows_may = allowed_square(goal.error, share_to_rays, cuts.squared_error + to_lights.squared_error);
+  Doublings of_rows =
+      doublings(solved.row_noise, solved.more_rays.of_rows, {solved.noise_bar, rows_may, goal.more_of_rows, most});
 
-  // 3. Where that pays, and fits.
-  const double gained = squares.sum() - cuts.squared_error + std::pow(solved.light_bar, 2) - to_lights.squared_error +
-                        std::pow(solved.noise_bar, 2) - of_rows.squared_error;
-  const bool pays = gained > (1 - worthwhile * worthwhile) * errors.total * errors.total;
-  if (!pays || !fits_as_next_mesh(finer.mesh.patches.size(), 1 + of_rows.more_rays, solved.simulation.plan))
-    return std::nullopt;
-  MeshToSolve next{std::move(finer.mesh), solved.simulation.plan, {}};
-  next.plan.solver.keeps_unfinished = false;
-  next.known.place = std::move(finer.place);
-  next.known.light = std::move(solved.light);
-  next.known.light_doublings = std::move(to_lights.of_patch);
-  next.known.row_doublings = std::move(of_rows.of_patch);
-  return next;
+  // 3. What that takes and gains.
+  LocalCuts found{std::move(finer), {}, {}, of_rows.more_rays, 0, cuts.new_patches > 0 || to_lights.any || of_rows.any};
+  found.gain =
+      squares.sum() - cuts.squared_error + by_lights - to_lights.squared_error + by_rows - of_rows.squared_error;
+  found.light_place = found.mesh.place;
+  for (std::size_t i = 0; i < to_lights.is_doubled.size(); ++i)
+    if (to_lights.is_doubled[i] != 0) found.light_place[i] = no_patch;
+  found.more_rays = {std::move(to_lights.of_patch), std::move(of_rows.of_patch)};
+  return found;
 }
 
-std::string note_on_local_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
-  const std::vector<PatchIndex>& place = next.known.place;
-  const auto cut =
-      errors.patches - (place.size() - static_cast<std::size_t>(std::count(place.begin(), place.end(), no_patch)));
-  const auto is_doubled = [&](std::size_t i) {
-    const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
-    return any(next.known.light_doublings) || any(next.known.row_doublings);
-  };
-  std::size_t doubled = 0;
-  for (std::size_t i = 0; i < place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
-  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
-  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
-  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
-         " %: on a second one " + cuts + (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
-         "; accuracy.local_cuts=false stays with the first";
+MeshToSolve mesh_with(LocalCuts cuts, SolvedMesh& solved) {
+  MeshToSolve next{std::move(cuts.mesh.mesh), solved.simulation.plan, {}};
+  next.plan.solver.keeps_unfinished = false;
+  next.known.place = std::move(cuts.mesh.place);
+  next.known.light = std::move(solved.light);
+  next.known.light_place = std::move(cuts.light_place);
+  next.known.more_rays = std::move(cuts.more_rays);
+  return next;
 }
 
 }  // namespace patchlight

@@ -2,6 +2,7 @@
 
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
+#include "base/doublings.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "form_factor/patch_keys.h"
@@ -127,6 +128,7 @@ Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, c
 Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const PatchMesh& mesh,
                                     const Eigen::VectorXd& row_sum, const LostShare& lost) {
   const double small = small_area(mesh);
+  const Eigen::ArrayXd rays = rays_of_patches(lost, mesh.size());
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(row_sum.size());
   for (Eigen::Index i = 0; i < row_sum.size(); ++i) {
     const double s = row_sum[i];
@@ -137,7 +139,7 @@ Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const Patc
                                  half->first_entry[row]);
     if (!(s > 0 && met > 0)) continue;
     const bool sees_backs = lost.rays_per_patch > 0 && (lost.at_backs[i] > 0 || lost.covered[i] > 0);
-    const double to_backs = mesh.area[row] < small ? lost.rays_per_patch / 4.0 : lost.rays_per_patch;
+    const double to_backs = mesh.area[row] < small ? rays[i] / 4 : rays[i];
     variance[i] = std::max(0.0, 1 - s) / (sees_backs ? std::min(met, s * to_backs) : met);
   }
   return variance;
@@ -204,8 +206,11 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
   const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
   GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0),
                       scaled(smooth.variance, 1 + bias) + by.needed.of_lamps};
-  // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet.
-  found.variance = found.variance.max(mean_around(by.mesh, problem.area, found.variance)).eval();
+  // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet. Variances are compared
+  // by as many rays.
+  const Eigen::ArrayXd times = multiples(by.facts.lost.doublings, by.mesh.size());
+  const Field around = mean_around(by.mesh, problem.area, found.variance.colwise() * times);
+  found.variance = found.variance.max(around.colwise() / times).eval();
   if (!by.light.is_missed.empty())
     found.variance.rowwise() += variance_of_missed(by.light, sources, row_sum).transpose();
   SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), by.needed.of_lamps};

@@ -30,6 +30,12 @@ struct Run {
 /// What of a run its steps give.
 Given given_by(const Steps& with);
 
+/// How often the rays of each patch of a mesh are doubled; empty: never.
+struct MoreRays {
+  std::vector<std::uint8_t> to_lights = {};  ///< to luminaires, sun and sky
+  std::vector<std::uint8_t> of_rows = {};    ///< over the hemisphere
+};
+
 /// What is known from the mesh before.
 struct Known {
   std::vector<PatchIndex> place;     ///< per patch: the same one in that mesh, or no_patch
@@ -37,9 +43,8 @@ struct Known {
   std::optional<LostShare> lost;     ///< its lost shares; none: all are new
   std::optional<DirectIrradiance> light =
       {};  ///< that of luminaires, sun and sky over its whole patches; none: all is new
-  std::vector<std::uint8_t> light_doublings = {};  ///< per patch: how often its rays to these are doubled, so that what
-                                                   ///< is known of it is not enough; empty: never
-  std::vector<std::uint8_t> row_doublings = {};    ///< the same of its rays over the hemisphere
+  std::vector<PatchIndex> light_place = {};  ///< per patch: that whose light is its own, or no_patch; with `light`
+  MoreRays more_rays = {};
 };
 
 /// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
@@ -65,6 +70,7 @@ struct SolvedMesh {
   double light_bar = 0;        ///< with parents: and those towards luminaires, sun and sky
   std::optional<DirectIrradiance> light = {};  ///< with rows of rays that may be found anew in part: what these met,
                                                ///< over whole patches
+  MoreRays more_rays = {};                     ///< that it was solved with
 };
 
 }  // namespace patchlight

@@ -4,6 +4,7 @@
 
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
+#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/rounded.h"
 #include "mesh/nested_mesh.h"
@@ -12,6 +13,7 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
+#include "pipeline/second_mesh.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/choose_storage.h"
 #include "plan/memory.h"
@@ -70,9 +72,9 @@ double new_pairs(const AccuracyStep& step) {
   return all * all - known * known;
 }
 
-// The largest number of patches, new ones beside `known`, for which pairs take so many seconds.
-double patches_in(double seconds, double seconds_per_pair, double known) {
-  return std::sqrt(known * known + std::max(0.0, seconds) / seconds_per_pair);
+// The number of patches for which so many times the pairs of the last mesh have to be found.
+double patches_with(double times, const AccuracyStep& step) {
+  return std::sqrt(static_cast<double>(step.patches) * step.patches + std::max(0.0, times) * new_pairs(step));
 }
 
 // What the usable memory allows is told, as far as it can be known.
@@ -115,11 +117,6 @@ std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
 std::optional<double> part_of_solver(const Run& run, double accuracy) {
   const std::optional<double>& asked = run.plan.accuracy.solver_part;
   return asked || run.request.solver.relative_error ? asked : std::optional(share_of_interest * accuracy);
-}
-
-PatchIndex number_known(const std::vector<PatchIndex>& place) {
-  return static_cast<PatchIndex>(place.size() -
-                                 static_cast<std::size_t>(std::count(place.begin(), place.end(), no_patch)));
 }
 
 Plan with_samples(Plan plan, int samples) {
@@ -176,6 +173,8 @@ MeshToSolve Search::first() const {
 AccuracyStep Search::step_of(const SolvedMesh& solved) const {
   AccuracyStep step = accuracy_of(solved);
   step.new_patches -= known_;
+  const double multiple = multiples(solved.more_rays.of_rows, solved.simulation.mesh.size()).mean();
+  step.samples = static_cast<int>(std::lround(step.samples * multiple));
   step.seconds = wall_seconds() - start_;
   step.cpu_seconds = cpu_seconds() - cpu_start_;
   return step;
@@ -192,26 +191,24 @@ void Search::keep(const Simulation& simulation) {
 }
 
 SolvedMesh Search::noted(SolvedMesh solved) {
+  solved.more_rays = more_rays_;
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
   solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
   solved.simulation.accuracy = steps_;
   const bool may_be_followed =
-      refines(run_.plan.accuracy) || (!steps_.empty() && cuts_locally(run_, steps_[0].patches));
+      refines(run_.plan.accuracy) || (!steps_.empty() && makes_second_mesh(run_, steps_[0].patches));
   if (!may_be_followed) return solved;
   keep(solved.simulation);
   if (run_.with.look) run_.with.look(solved.simulation);
   return solved;
 }
 
-// The largest number of patches in the time that is left, with so many samples of each.
-double Search::patches_in_time(const Plan& plan, int samples) const {
+// How many times the last mesh could be solved again in the time that is left.
+double Search::times_in_time() const {
   if (!run_.plan.accuracy.seconds) return std::numeric_limits<double>::infinity();
-  const AccuracyStep& step = steps_.back();
+  const double now = steps_.back().seconds;
   const double before = steps_.size() > 1 ? steps_[steps_.size() - 2].seconds : 0;
-  const double left = (*run_.plan.accuracy.seconds - step.seconds) / error_margin;
-  const double taken = step.seconds - before;
-  if (plan.assembly.storage == Storage::rays) return step.patches * (left / taken) * step.samples / samples;
-  return patches_in(left, taken / new_pairs(step), step.patches);
+  return (*run_.plan.accuracy.seconds - now) / error_margin / (now - before);
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
@@ -220,12 +217,10 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   const AccuracyStep& step = steps_.back();
   const int samples = samples_of(plan.assembly);
   const bool by_time = run_.plan.accuracy.seconds.has_value();
-  int more = samples_for(solved, step, accuracy, plan);
-  // By time only rows of rays, where samples cost no more than patches, take more of them.
-  if (by_time && (keeps_entries(plan.assembly.storage) || patches_in_time(plan, more) < step.patches)) more = samples;
+  const int more = by_time ? samples : samples_for(solved, step, accuracy, plan);
   const std::size_t parents = solved.mesh.parents.size();
   const double fitting = patches_that_fit(with_samples(plan, more));
-  const std::size_t most = cuts_up_to(std::min(fitting, patches_in_time(plan, more)), step);
+  const std::size_t most = cuts_up_to(std::min(fitting, patches_with(times_in_time(), step)), step);
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
@@ -269,18 +264,53 @@ Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Pla
   return next;
 }
 
-std::optional<MeshToSolve> Search::locally_cut(SolvedMesh& solved) {
-  if (steps_.size() > 1) return std::nullopt;
-  std::optional<MeshToSolve> next = with_local_cuts(run_, solved, steps_.back());
-  if (!next) return next;
-  notes_.push_back(note_on_local_cuts(*next, steps_.back()));
-  known_ = number_known(next->known.place);
+// What the next mesh takes over from the last one is kept in mind.
+MeshToSolve Search::noted(MeshToSolve next, bool keeps_known) {
+  known_ = keeps_known ? number_kept(next.known.place) : 0;
+  more_rays_ = next.known.more_rays;
   return next;
+}
+
+// By rows of rays patches are cut, and rays doubled, where these err most. A mesh is no more than thrice as large as
+// the one before, as it is told from that where; what it takes is no more than is left of memory and time.
+std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accuracy) {
+  constexpr double most_growth = 2;
+  constexpr double least_growth = 0.1;
+  const Plan& plan = solved.simulation.plan;
+  const AccuracyStep& step = steps_.back();
+  // What is left where more rays gain nothing they do not mend.
+  constexpr double hardly = 0.95;
+  if (step.new_patches == 0 && step.total > hardly * steps_[steps_.size() - 2].total) return std::nullopt;
+  // Patches and rays cost about alike.
+  const double in_time = 0.5 * (times_in_time() - 1);
+  if (in_time < least_growth) return std::nullopt;
+  const double in_memory = std::max(0.0, patches_that_fit(plan) / step.patches - 1);
+  const double more_rays = std::min(most_growth, in_time);
+  LocalCuts cuts = local_cuts(
+      solved, step, {accuracy / error_margin, std::min({most_growth, in_time, in_memory}), more_rays, more_rays});
+  if (!cuts.changes) return std::nullopt;
+  const std::size_t patches = cuts.mesh.mesh.patches.size();
+  if (!fits_as_next_mesh(patches, 1 + cuts.more_of_rows, plan)) {
+    if (run_.plan.accuracy.seconds) return std::nullopt;
+    const double needed = patches_for(step.patches, mesh_factor(solved, step, accuracy));
+    refuse(plan, std::max<double>(static_cast<double>(patches), needed), step.total);
+  }
+  MeshToSolve next = mesh_with(std::move(cuts), solved);
+  next.plan = with_solver_part(next.plan, part_of_solver(run_, accuracy));
+  return noted(std::move(next), true);
+}
+
+std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
+  if (steps_.size() > 1) return std::nullopt;
+  std::optional<MeshToSolve> next = second_mesh(run_, solved, steps_.back());
+  if (!next) return next;
+  notes_.push_back(note_on_second_mesh(*next, steps_.back()));
+  return noted(std::move(*next), true);
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
-  if (!refines(run_.plan.accuracy)) return locally_cut(solved);
+  if (!refines(run_.plan.accuracy)) return second(solved);
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
@@ -288,10 +318,12 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   // What a tolerance that was asked for leaves no mesh mends.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
   if (!std::isfinite(step.solver)) return std::nullopt;
-  // Nor does one mend what as many rays leave as are worth their time.
-  const Plan& solved_by = solved.simulation.plan;
-  const bool has_most_rays = solved_by.assembly.storage == Storage::rays && step.samples >= most_samples(solved_by);
-  if (has_most_rays && solved.noise_bar > accuracy) return std::nullopt;
+  const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
+  return is_by_rays ? next_by_rays(solved, accuracy) : next_by_pairs(solved, accuracy);
+}
+
+std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accuracy) {
+  const AccuracyStep& step = steps_.back();
 
   // 1. More patches and samples, by rays where all pairs of them do not fit.
   Plan plan = stored_for(solved, accuracy);
@@ -309,15 +341,12 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
 
   // 2. What is known of them. The solver's error is never asked to be larger than on the mesh before.
   const bool keeps_known = !all_anew && keeps_entries(after.storage);
-  MeshToSolve to_solve{std::move(more.mesh.mesh),
-                       with_solver_part(more.plan, part_of_solver(run_, accuracy)),
-                       {std::move(more.mesh.place), {}, solved.simulation.transport.lost}};
+  MeshToSolve to_solve{std::move(more.mesh.mesh), with_solver_part(more.plan, part_of_solver(run_, accuracy)), {}};
   to_solve.plan.solver.keeps_unfinished = false;
-  known_ = 0;
-  if (!keeps_known) return to_solve;
-  to_solve.known.exchange = std::move(solved.raw);
-  known_ = number_known(to_solve.known.place);
-  return to_solve;
+  to_solve.known.place = std::move(more.mesh.place);
+  to_solve.known.lost = solved.simulation.transport.lost;
+  if (keeps_known) to_solve.known.exchange = std::move(solved.raw);
+  return noted(std::move(to_solve), keeps_known);
 }
 
 }  // namespace patchlight

@@ -40,11 +40,14 @@ class Search {
   AccuracyStep step_of(const SolvedMesh& solved) const;
   bool may_go_by_rays(const Plan& plan) const;
   Plan gone_by_rays(const Plan& plan);
+  std::optional<MeshToSolve> next_by_pairs(SolvedMesh& solved, double accuracy);
+  std::optional<MeshToSolve> next_by_rays(SolvedMesh& solved, double accuracy);
+  std::optional<MeshToSolve> second(SolvedMesh& solved);
+  MeshToSolve noted(MeshToSolve next, bool keeps_known);
   Plan stored_for(const SolvedMesh& solved, double accuracy);
   Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
-  std::optional<MeshToSolve> locally_cut(SolvedMesh& solved);
-  double patches_in_time(const Plan& plan, int samples) const;
+  double times_in_time() const;
 
   const Run& run_;
   double start_;      // wall-clock seconds
@@ -52,7 +55,8 @@ class Search {
   std::vector<AccuracyStep> steps_;
   std::vector<std::string> notes_;
   std::optional<Simulation> kept_;
-  PatchIndex known_ = 0;  // patches of the last mesh whose exchange areas were known
+  PatchIndex known_ = 0;  // patches of the last mesh that were in the one before
+  MoreRays more_rays_;    // of the last mesh
 };
 
 }  // namespace patchlight

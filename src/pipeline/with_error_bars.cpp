@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -29,7 +30,11 @@ namespace {
 // Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
 // patches, for the sake of time: the mean over the patches around takes the noise away.
 constexpr int rays_from_quarters = 16;
-constexpr int few_rays_from_quarters = 2;
+
+int usual_rays_of_quarters(PatchIndex patches) {
+  constexpr PatchIndex very_many_patches = 100'000;
+  return patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
+}
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
@@ -143,20 +148,22 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
          scaled_to(squares(bars.unseen.error), unseen.cwiseMax(0.0));
 }
 
-// Rays from each quarter of a patch: more of them where rows have more, as what the bars may leave is smaller.
+// More of them where rows have more, and where little may be left, as what the bars may leave is smaller.
 int rays_of_quarters(const Simulation& simulation) {
-  const PatchIndex patches = simulation.mesh.size();
-  const int usual = patches > many_patches ? few_rays_from_quarters : rays_from_quarters;
-  const int more = std::max(1, simulation.plan.assembly.rays / AssemblyOptions().rays);
-  return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(more)));
+  constexpr double usual_accuracy = 0.1;
+  const int usual = usual_rays_of_quarters(simulation.mesh.size());
+  const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
+  const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
+  const double of_accuracy = asked ? std::min<double>(rays_from_quarters / usual, usual_accuracy / *asked) : 1;
+  return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 
 // What the size of the patches errs by rows of rays.
 struct BarsOfRays {
   Field of_light;        // that differs inside patches and parents
   Field in_gaps;         // that are narrower than their patches
-  Field in_narrow_gaps;  // those narrower even than patches that are cut as often as AccuracyOptions::local_cuts may;
-                         // else empty
+  Field in_narrow_gaps;  // those narrower even than patches that are cut as often as on a second mesh; 0 where more
+                         // meshes may follow
 };
 
 // What may be refined: parents by what their patches do, and by what errs in gaps, which is their own; none by its
@@ -176,25 +183,22 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
       scaled_to(squares(of_light), summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
   const Eigen::VectorXd in_gaps = squares(of_gaps);
   const double all = result.effects.sum() + in_gaps.sum();
-  if (refines(simulation.plan.accuracy)) {
-    result.effects += in_gaps;
-  } else {
-    // What so many cuts would not mend they need not begin with.
-    result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
-  }
+  // What so many cuts would not mend they need not begin with.
+  result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
   result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
-  result.row_noise = squares_of_patches(solved, simulation.ray_standard_error, weight);
+  const auto of_each = [&](const Field& bar) { return squares_of_patches(solved, bar, weight); };
+  result.row_noise = of_each(simulation.ray_standard_error);
   result.noise_bar = relative(simulation.ray_standard_error);
-  if (simulation.direct_standard_error.size() == 0) return result;
-  if (light_rays_grow(simulation.plan, simulation.mesh.size())) return result;
-  // Where they do not, finer patches have more of them.
-  if (refines(simulation.plan.accuracy)) result.effects += squares(simulation.direct_standard_error);
-  result.light_noise = squares_of_patches(solved, simulation.direct_standard_error, weight);
-  result.row_noise = (result.row_noise - result.light_noise).cwiseMax(0.0);
-  result.light_bar = relative(simulation.direct_standard_error);
-  result.noise_bar =
-      std::sqrt(std::max(0.0, result.noise_bar * result.noise_bar - result.light_bar * result.light_bar));
+  const Field& of_lights = simulation.direct_standard_error;
+  if (of_lights.size() == 0) return result;
+  // How much of a patch is exposed the rays of rows tell.
+  const Field by_exposure = simulation.problem.direct_irradiance.colwise() * exposure_errors(simulation.transport.lost);
+  const Field by_rays = (of_lights.square() - by_exposure.square()).max(0.0).sqrt();
+  result.light_noise = of_each(by_rays);
+  result.light_bar = relative(by_rays);
+  result.row_noise = (result.row_noise - result.light_noise).cwiseMax(0);
+  result.noise_bar = std::sqrt(std::max(0.0, std::pow(result.noise_bar, 2) - std::pow(result.light_bar, 2)));
   return result;
 }
 
@@ -214,11 +218,8 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
     return expanded(errors_within_parents(result.mesh, transport.rays(), needed.solved()), needed.bands);
   };
   const bool has_parents = result.mesh.parents.size() > 0;
-  const bool is_cut_locally = cuts_locally(run, simulation.mesh.size()) && has_parents;
-  const BarsOfRays bars{
-      has_parents ? Field(unseen.error.max(within_parents())) : unseen.error,
-      gap_errors(simulation.mesh, transport.rays(), solved),
-      is_cut_locally ? gap_errors(simulation.mesh, transport.rays(), solved, most_local_cuts) : Field()};
+  const auto in_gaps = [&](int cuts) { return gap_errors(simulation.mesh, transport.rays(), solved, cuts); };
+  BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error, in_gaps(0), {}};
   // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
   // Where parents or gaps say more, that is not by noise.
@@ -228,8 +229,10 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .form_factor = simulation.ray_standard_error,
                            .solver = solver_errors(solved),
                            .display = unseen.display};
-  const bool may_be_cut = refines(run.plan.accuracy) || is_cut_locally;
-  return may_be_cut ? with_effects(std::move(result), weight, unseen, bars) : result;
+  if (!has_parents || !cuts_locally(run, simulation.mesh.size())) return result;
+  bars.in_narrow_gaps =
+      refines(run.plan.accuracy) ? Field::Zero(of_mesh.rows(), of_mesh.cols()) : in_gaps(most_local_cuts);
+  return with_effects(std::move(result), weight, unseen, bars);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "patchlight/transport/lost_share.h"
 
+#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
@@ -157,6 +158,10 @@ Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed
 
 }  // namespace
 
+Eigen::ArrayXd rays_of_patches(const LostShare& lost, PatchIndex patches) {
+  return lost.rays_per_patch * multiples(lost.doublings, patches);
+}
+
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
   Eigen::VectorXd clear(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i], mesh.side[i]);
@@ -191,10 +196,12 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const auto zero = Eigen::VectorXd::Zero(mesh.size());
   LostShare lost{zero, zero, zero, before.rays_per_patch, zero, {}, zero};
+  lost.doublings.assign(known.doublings.begin(), known.doublings.end());
   parallel_for(mesh.size(), Stage::form_factors, observer, [&](std::size_t k) {
     const auto i = static_cast<PatchIndex>(k);
     const PatchIndex b = known.place[i];
-    const Shares shares = b == no_patch ? sampler.measure(i, before.rays_per_patch, hash({seed, keys[i], 1}))
+    const int rays = before.rays_per_patch << (known.doublings.empty() ? 0 : known.doublings[i]);
+    const Shares shares = b == no_patch ? sampler.measure(i, rays, hash({seed, keys[i], 1}))
                                         : Shares{before.escaped[b], before.at_backs[b], before.covered[b],
                                                  before.dark[b], before.overlaid[b]};
     lost.escaped[i] = shares.escaped;

@@ -281,8 +281,8 @@ LostShare with_backs(LostShare lost, const std::vector<std::uint32_t>& sees_back
   for (std::size_t i = 0; i < place.size(); ++i) place[i] = sees_backs[i] != 0 ? no_patch : static_cast<PatchIndex>(i);
   lost.rays_per_patch = by.options.lost_share_rays;
   const bool is_specular = !by.occluder.specular_faces().empty();
-  return measure_lost_share(by.mesh, by.occluder, KnownShares{lost, place, is_specular, true}, by.options.seed,
-                            by.observer);
+  return measure_lost_share(by.mesh, by.occluder, KnownShares{lost, place, is_specular, true, by.options.doublings},
+                            by.options.seed, by.observer);
 }
 
 }  // namespace

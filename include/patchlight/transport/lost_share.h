@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -24,10 +25,14 @@ struct LostShare {
 
   Eigen::VectorXd overlaid = {};  ///< share of the area, part of `covered`, over which another polygon lies in the
                                   ///< patch's plane; empty: none of any
+  std::vector<std::uint8_t> doublings = {};  ///< how often rays_per_patch are doubled for the patch; empty: never
 
   /// True when no ray of any patch was lost.
   bool closed() const { return escaped.sum() + at_backs.sum() == 0; }
 };
+
+/// LostShare::rays_per_patch with their doublings, for each of so many patches.
+Eigen::ArrayXd rays_of_patches(const LostShare& lost, PatchIndex patches);
 
 /// LostShare::clear.
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder);
@@ -55,6 +60,7 @@ struct KnownShares {
   bool ends_at_specular = false;  ///< rays end at clear polygons and mirrors as at all others
   bool sees_backs = false;        ///< all others are known to see backs: no rays find that out first; and small ones,
                                   ///< small_area(), take a quarter of the rays where these find nothing covered
+  std::span<const std::uint8_t> doublings = {};  ///< LostShare::doublings of the new mesh
 };
 
 /// The same bits, with as many rays, but without tracing those of patches that are known.

@@ -84,5 +84,41 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   EXPECT_LT(lit, 6);
 }
 
+// A floor that gets light of a ball by a mirror that is too small for all of it. Three doublings leave an eighth of the
+// variance, or less as samples are stratified; patches that are not doubled keep their bits.
+TEST(MirroredIrradiance, OfDoubledPatchesHasAsManyMoreRays) {
+  Material mirror = grey(0);
+  mirror.specular_reflectance = Spectrum::Constant(1, 0.9);
+  Scene scene =
+      with_quad(empty_scene({grey(0.5), mirror}), {Point(-4, -4, 0), Point(4, -4, 0), Point(4, 4, 0), Point(-4, 4, 0)});
+  scene = with_quad(std::move(scene), {Point(-5, -1, 1), Point(-5, 1, 1), Point(-5, 1, 2), Point(-5, -1, 2)}, 1);
+  Luminaire lamp;
+  lamp.position = Point(0, 0, 4);
+  lamp.light = SphericalLamp{0.5, Spectrum::Constant(1, 7)};
+  scene.luminaires = {lamp};
+  const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(scene, tracing);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 2);
+  std::vector<std::uint8_t> doublings(mesh.size(), 0);
+  for (PatchIndex i = 0; i < mesh.size(); i += 2) doublings[i] = 3;
+  Field usual = Field::Zero(mesh.size(), 1);
+  Field doubled = usual;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const LightingOptions few{.mirrored_samples = 32, .seed = seed};
+    LightingOptions more = few;
+    more.doublings = doublings;
+    const DirectIrradiance before = mirrored_irradiance(lighting, {}, mesh, few);
+    const DirectIrradiance after = mirrored_irradiance(lighting, {}, mesh, more);
+    usual += before.standard_error.square();
+    doubled += after.standard_error.square();
+    for (PatchIndex i = 1; i < mesh.size(); i += 2) EXPECT_EQ(before.irradiance(i, 0), after.irradiance(i, 0));
+  }
+  double squares_before = 0;
+  double squares_after = 0;
+  for (PatchIndex i = 0; i < mesh.size(); i += 2) squares_before += usual(i, 0), squares_after += doubled(i, 0);
+  ASSERT_GT(squares_before, 0);
+  EXPECT_LT(squares_after, 1.25 * squares_before / 8);
+}
+
 }  // namespace
 }  // namespace patchlight::mirrored_irradiance_test

@@ -210,5 +210,27 @@ TEST(LostShare, OfPatchesKnownToSeeBacksIsTheSame) {
     EXPECT_EQ(told.*share, all.*share);
 }
 
+// What is doubled twice takes four times as many rays, and others what they took: the same bits.
+TEST(LostShare, OfDoubledPatchesIsThatOfAsManyMoreRays) {
+  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
+  const std::vector<Quad> faces = box_faces(Point(0.3, 0.4, 0), Point(2.2, 1.9, 1), false);
+  for (std::size_t face = 1; face < faces.size(); ++face) scene = with_quad(std::move(scene), faces[face]);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 1);
+  const Occluder occluder(scene);
+  const std::vector<PatchIndex> nowhere(mesh.size(), no_patch);
+  std::vector<std::uint8_t> doublings(mesh.size(), 0);
+  for (PatchIndex i = 0; i < mesh.size(); i += 2) doublings[i] = 2;
+  LostShare none;
+  none.rays_per_patch = 64;
+  const LostShare found =
+      measure_lost_share(mesh, occluder, KnownShares{.lost = none, .place = nowhere, .doublings = doublings}, 1);
+  const LostShare few = measure_lost_share(mesh, occluder, 64, 1);
+  const LostShare many = measure_lost_share(mesh, occluder, 256, 1);
+  ASSERT_GT((few.covered.array() > 0 && few.covered.array() < 1).count(), 2);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) EXPECT_EQ(found.covered[i], (i % 2 == 0 ? many : few).covered[i]);
+  const Eigen::ArrayXd exposed = exposure_errors(found);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) EXPECT_EQ(exposed[i], exposure_errors(i % 2 == 0 ? many : few)[i]);
+}
+
 }  // namespace
 }  // namespace patchlight::lost_share_test

@@ -1,0 +1,67 @@
+#include "pipeline/second_mesh.h"
+
+#include "base/rounded.h"
+#include "mesh/nested_mesh.h"
+#include "pipeline/error_goals.h"
+#include "pipeline/local_cuts.h"
+#include "plan/memory.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// An error of so much is left as it is where no accuracy was asked for.
+constexpr double usual_error = 0.02;
+
+// What a second mesh is made for, as what it leaves is an estimate. Rays of rows cost less than those to sun and sky,
+// which are more.
+constexpr LocalGoal usual{
+    .error = usual_error / error_margin, .new_patches = 0.25, .more_to_lights = 0.5, .more_of_rows = 1.5};
+
+// It pays where it leaves less than this share of the error.
+constexpr double worthwhile = 0.7;
+
+// With more patches a second mesh takes minutes: who wants it asks for an accuracy.
+constexpr PatchIndex most_patches = 100'000;
+
+}  // namespace
+
+bool makes_second_mesh(const Plan& plan, PatchIndex patches) {
+  const AccuracyOptions& accuracy = plan.accuracy;
+  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays &&
+         patches <= most_patches;
+}
+
+bool makes_second_mesh(const Run& run, PatchIndex patches) {
+  return makes_second_mesh(run.plan, patches) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
+}
+
+std::optional<MeshToSolve> second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
+  if (!makes_second_mesh(run, errors.patches) || !(errors.total > usual_error)) return std::nullopt;
+  LocalCuts cuts = local_cuts(solved, errors, usual);
+  const bool pays = cuts.gain > (1 - worthwhile * worthwhile) * errors.total * errors.total;
+  const std::size_t patches = cuts.mesh.mesh.patches.size();
+  if (!pays || !fits_as_next_mesh(patches, 1 + cuts.more_of_rows, solved.simulation.plan)) return std::nullopt;
+  return mesh_with(std::move(cuts), solved);
+}
+
+std::string note_on_second_mesh(const MeshToSolve& next, const AccuracyStep& errors) {
+  const auto is_doubled = [&](std::size_t i) {
+    const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
+    return any(next.known.more_rays.to_lights) || any(next.known.more_rays.of_rows);
+  };
+  const std::size_t cut = errors.patches - number_kept(next.known.place);
+  std::size_t doubled = 0;
+  for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
+  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
+  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
+  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
+         " %: on a second one " + cuts + (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
+         "; accuracy.local_cuts=false stays with the first";
+}
+
+}  // namespace patchlight
