@@ -219,9 +219,11 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
 
   // 3. Look at the solution, and tell of it
   results = with_views(std::move(results), arguments, observer);
+  const SensorView& sensors = results.views.sensors;
+  const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
   results.report =
       report_of(results.scene, arguments.request, simulation,
-                sensor_facts(results.scene.sensors, results.views.sensors.readings, results.views.sensors.warnings));
+                are_read ? sensor_facts(results.scene.sensors, sensors.readings, sensors.warnings) : SensorFacts{});
   return results;
 }
 

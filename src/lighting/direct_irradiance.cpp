@@ -32,7 +32,7 @@ constexpr std::uint32_t step = 17;
 constexpr int most_doublings = 2;
 
 // And with this one where more are asked for.
-constexpr int most_asked = 8;
+constexpr int most_asked = 6;
 
 // Whether so many rays to a ball can be blocked costs as much to find as they do.
 constexpr std::size_t few_rays = 16;
@@ -182,13 +182,15 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
                                    const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const std::span<const std::uint8_t> more = options.doublings;
-  const auto effort = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh)](std::size_t k) {
+  const auto doublings = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh)](std::size_t k) {
     constexpr double most = most_doublings;
-    const double doublings = std::clamp(std::log2(mesh.area[k] / usual) / 2, -most, most);
-    const int by_area = static_cast<int>(std::lround(doublings));
-    return std::ldexp(1.0, more.empty() ? by_area : std::min(by_area + more[k], most_asked));
+    const auto by_area = static_cast<int>(std::lround(std::clamp(std::log2(mesh.area[k] / usual) / 2, -most, most)));
+    return more.empty() ? by_area : std::min(by_area + more[k], most_asked);
   };
-  const Estimator estimator = estimator_for(lighting, options, more.empty() ? most_doublings : most_asked);
+  int most = most_doublings;
+  for (std::size_t k = 0; k < more.size(); ++k) most = std::max(most, doublings(k));
+  const Estimator estimator = estimator_for(lighting, options, most);
+  const auto effort = [&](std::size_t k) { return std::ldexp(1.0, doublings(k)); };
   return at_receivers(estimator, mesh.size(), patch, effort, options, observer);
 }
 

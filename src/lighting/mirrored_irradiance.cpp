@@ -24,7 +24,7 @@ namespace {
 // fewer.
 constexpr std::uint32_t most_replicates = 8;
 constexpr std::size_t most_mirrors_of_sky = 16;
-constexpr double effort_at_points = 16;  // a power of two
+constexpr int doublings_at_points = 4;
 
 // What one sample of a source gives a place if nothing is in the way.
 struct MirroredArrival {
@@ -279,25 +279,19 @@ MirroredEstimate estimate_from(const Field& replicates) {
   return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
 }
 
-// Receivers, each of which takes a multiple of the usual number of samples.
-template <class ReceiverAt, class MultipleAt>
+// Receivers: what share of the replicates each takes, and how often the points of these are doubled.
+template <class ReceiverAt, class ShareAt, class DoublingsAt>
 struct MirrorReceivers {
   std::size_t count = 0;
   ReceiverAt at;
-  MultipleAt multiple_at;
-  double most = 1;  // of the multiples; a power of two
+  ShareAt share_at;
+  DoublingsAt doublings_at;
+  int most_doublings = 0;
 };
 
-// Fewer samples than usual are fewer replicates, more are larger ones.
-MirrorEffort effort_for(double multiple, std::size_t usual_replicates, std::size_t usual_points) {
-  const double fewer = std::min(1.0, multiple) * static_cast<double>(usual_replicates);
-  const auto larger = std::bit_floor(static_cast<std::size_t>(std::max(1.0, multiple)));
-  return {std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(fewer))), larger * usual_points};
-}
-
-template <class ReceiverAt, class MultipleAt>
+template <class... At>
 DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps,
-                               const MirrorReceivers<ReceiverAt, MultipleAt>& all, const LightingOptions& options,
+                               const MirrorReceivers<At...>& all, const LightingOptions& options,
                                const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
@@ -305,7 +299,7 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
   const std::uint32_t of_each = samples / replicates;
   for (std::uint32_t r = 0; r < replicates; ++r)
     sampler.points.push_back(
-        scrambled_sobol(of_each * static_cast<std::uint32_t>(all.most), hash({options.seed, r, 7})));
+        scrambled_sobol(of_each << static_cast<unsigned>(all.most_doublings), hash({options.seed, r, 7})));
   const std::vector<WantedChain> chains = sampler.all_chains();
   const std::size_t count = all.count;
   const auto rows = static_cast<Eigen::Index>(count);
@@ -317,7 +311,8 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
     for (std::size_t k = begin; k < std::min(count, begin + receivers_at_once); ++k) receivers.push_back(all.at(k));
     const std::vector<WantedChain> near = sampler.chains_to(ball_around_all(receivers), chains);
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
-      const MirrorEffort effort = effort_for(all.multiple_at(k), replicates, of_each);
+      const auto share = static_cast<std::size_t>(std::lround(all.share_at(k) * replicates));
+      const MirrorEffort effort{std::max<std::size_t>(2, share), std::size_t{of_each} << all.doublings_at(k)};
       const Field replicates_of =
           sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), effort, near);
       const MirroredEstimate found = estimate_from(replicates_of);
@@ -352,22 +347,24 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const double usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh);
   const std::span<const std::uint8_t> more = options.doublings;
-  const auto multiple = [&](std::size_t k) {
+  const auto share = [&](std::size_t k) {
     constexpr double least = 0.25;
-    return std::ldexp(std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0), more.empty() ? 0 : more[k]);
+    return std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0);
   };
+  const auto doublings = [&](std::size_t k) -> unsigned { return more.empty() ? 0 : more[k]; };
   const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
-  return in_mirrors_at(lighting, lamps, MirrorReceivers{mesh.size(), patch, multiple, std::ldexp(1.0, most)}, options,
-                       observer);
+  return in_mirrors_at(lighting, lamps, MirrorReceivers{std::size_t{mesh.size()}, patch, share, doublings, most},
+                       options, observer);
 }
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
                                      std::span<const SurfacePoint> points, const LightingOptions& options,
                                      const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
-  const auto multiple = [](std::size_t) { return effort_at_points; };
-  return in_mirrors_at(lighting, lamps, MirrorReceivers{points.size(), point, multiple, effort_at_points}, options,
-                       observer);
+  const auto all = [](std::size_t) { return 1.0; };
+  const auto doublings = [](std::size_t) -> unsigned { return doublings_at_points; };
+  return in_mirrors_at(lighting, lamps, MirrorReceivers{points.size(), point, all, doublings, doublings_at_points},
+                       options, observer);
 }
 
 }  // namespace patchlight

@@ -2,10 +2,9 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/sampling.h"
+#include "base/doublings.h"
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
-#include "pipeline/local_cuts.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 #include "transport/bright_patches.h"
@@ -13,6 +12,7 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,14 +22,27 @@ namespace {
 
 // Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that look at
 // backs most lie inside of solids, which few rays tell as well.
-RayOptions rays_as_planned(const AssemblyOptions& assembly, const PatchMesh& mesh) {
+RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
+  const AssemblyOptions& assembly = plan.assembly;
   constexpr int packets = 32;
   constexpr int to_backs_of_many = 64;
   return {.rays = assembly.rays,
           .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
-          .lost_share_rays = mesh.size() > many_patches ? std::min(assembly.lost_share_rays, to_backs_of_many)
-                                                        : assembly.lost_share_rays,
+          .lost_share_rays = takes_few_rays(plan, mesh.size()) ? std::min(assembly.lost_share_rays, to_backs_of_many)
+                                                               : assembly.lost_share_rays,
           .seed = assembly.seed};
+}
+
+// Rays that are the same for all patches grow as those of a patch in the mean do, by powers of two.
+int times_for_all(const Known& known) {
+  const std::vector<std::uint8_t>& doublings = known.more_rays.of_rows;
+  const double mean = doublings.empty() ? 1 : multiples(doublings, static_cast<Eigen::Index>(doublings.size())).mean();
+  return static_cast<int>(std::bit_floor(static_cast<unsigned>(mean)));
+}
+
+Plan with_rays_to_lamps(Plan plan, const Known& known) {
+  plan.assembly.rays *= times_for_all(known);
+  return plan;
 }
 
 // H = F_lamps E_lamps for factors of one value per patch and lamp.
@@ -86,13 +99,13 @@ BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const Ray
 
 // Rows, with rays towards that.
 TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light,
-                       const std::vector<std::uint8_t>& doublings) {
+                       const Known& known) {
   const Occluder& occluder = run.tracing->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
-  RayOptions options = rays_as_planned(plan.assembly, mesh);
-  // How many a patch takes, other rays have told.
-  if (!doublings.empty()) options.seed = hash({options.seed, seed_of_later_meshes});
-  options.doublings = doublings;
+  RayOptions options = rays_as_planned(plan, mesh);
+  options.seed = seed_on(known, options.seed);
+  options.doublings = known.more_rays.of_rows;
+  options.toward_bright *= times_for_all(known);
   if (!run.with.row_blocks) return trace_rows(mesh, occluder, bright_patches, options, run.observer);
   const RowBlocks blocks = run.with.row_blocks(mesh, options, bright_patches.densities());
   return trace_rows(mesh, occluder, bright_patches, options, run.observer, &blocks);
@@ -131,11 +144,11 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   LitProblem lit = lit_problem(run, plan, mesh, area, known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_lamps(run, plan, mesh, lit.problem);
+                                  : traced_lamps(run, with_rays_to_lamps(plan, known), mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
   if (!is_known) {
-    exchange.rows = traced_rows(run, plan, mesh, light, known.more_rays.of_rows);
+    exchange.rows = traced_rows(run, plan, mesh, light, known);
     if (run.tracing->has_specular_faces())
       exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};

@@ -1,7 +1,7 @@
 #include "pipeline/expected_cost.h"
 
 #include "pipeline/lit_problem.h"
-#include "pipeline/local_cuts.h"
+#include "pipeline/second_mesh.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "transport/assembly_time.h"
@@ -51,7 +51,7 @@ double rays_per_patch(const Scene& scene, const Plan& plan, PatchIndex patches) 
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
   if (scene.sky && simulates(plan, Effect::sky))
-    rays += cuts_locally(plan, patches) && patches > many_patches ? 512 : 1024;
+    rays += takes_few_rays(plan, patches) && (refines(plan.accuracy) || makes_second_mesh(plan, patches)) ? 512 : 1024;
   return rays;
 }
 

@@ -4,8 +4,8 @@
 #include "lighting/mirrored_irradiance.h"
 #include "mesh/kept_patches.h"
 #include "mesh/small_patches.h"
-#include "pipeline/local_cuts.h"
 #include "pipeline/problem_of.h"
+#include "pipeline/second_mesh.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
@@ -34,10 +34,19 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
 
 }  // namespace
 
+bool takes_few_rays(const Plan& plan, PatchIndex patches) {
+  return patches > many_patches || (refines(plan.accuracy) && plan.assembly.storage == Storage::rays);
+}
+
+std::uint64_t seed_on(const Known& known, std::uint64_t seed) {
+  constexpr std::uint64_t of_later_meshes = 0x2d5;
+  return known.meshes == 0 ? seed : hash({seed, of_later_meshes, known.meshes});
+}
+
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
   constexpr int over_mirrors_of_many = 16;
   LightingOptions options{.seed = plan.assembly.seed};
-  if (mesh.size() > many_patches) options.mirrored_samples = over_mirrors_of_many;
+  if (takes_few_rays(plan, mesh.size())) options.mirrored_samples = over_mirrors_of_many;
   return options;
 }
 
@@ -59,7 +68,7 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
   whole.middles.clear();
   options.usual_area = mean_area(mesh);
   options.doublings = doublings;
-  options.seed = hash({options.seed, seed_of_later_meshes});
+  options.seed = seed_on(known, options.seed);
   const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
 
   // 2. With what is.
@@ -80,9 +89,9 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
   LightingOptions options = lighting_options(plan, mesh);
-  // Of many patches few need as many: these take more on the next mesh.
-  const bool halves = known.light || cuts_locally(run, mesh.size());
-  if (halves && mesh.size() > many_patches) options.sky_samples /= 2;
+  // Few patches need as many where more meshes may follow: these take more there.
+  const bool is_followed = plan.assembly.storage == Storage::rays && cuts_locally(run, mesh.size());
+  if ((known.light || is_followed) && takes_few_rays(plan, mesh.size())) options.sky_samples /= 2;
   DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);

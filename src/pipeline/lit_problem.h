@@ -22,6 +22,13 @@ struct LitProblem {
 /// Above so many patches fewer rays are taken of each: those around take the noise away.
 inline constexpr PatchIndex many_patches = 20'000;
 
+/// True for many patches, and on the way to an accuracy by rows of rays, where those that need more get them by
+/// MoreRays.
+bool takes_few_rays(const Plan& plan, PatchIndex patches);
+
+/// What chooses the rays on a mesh: those that have told how many it takes are not used again.
+std::uint64_t seed_on(const Known& known, std::uint64_t seed);
+
 /// How light of luminaires, sun and sky is looked for on these patches.
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 

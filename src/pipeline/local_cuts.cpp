@@ -1,9 +1,9 @@
 #include "pipeline/local_cuts.h"
 
 #include "accuracy/refinement.h"
+#include "base/doublings.h"
 #include "mesh/small_patches.h"
 #include "pipeline/error_goals.h"
-#include "pipeline/second_mesh.h"
 
 #include <algorithm>
 #include <bit>
@@ -22,15 +22,17 @@ constexpr double share_to_rays = 0.5;
 // So often rays of a patch are doubled at once, and before they are more than are worth their time.
 constexpr int most_doublings_at_once = 4;
 
-// The largest x between two for which is_allowed(x) holds, where it holds for all below one number and for none above;
-// the lowest where it never does.
-double largest_with(double low, double high, const auto& is_allowed) {
+// What at(x) does more of the larger x is, between two limits: the least of it that leaves `wanted`, or, where that
+// is_allowed() no more, the most of it that is.
+auto least_that_leaves(double wanted, double low, double high, const auto& at, const auto& is_allowed) {
   low = std::log(low), high = std::log(high);
   for (int step = 0; step < 50; ++step) {
     const double middle = 0.5 * (low + high);
-    (is_allowed(std::exp(middle)) ? low : high) = middle;
+    const auto found = at(std::exp(middle));
+    (is_allowed(found) && found.squared_error > wanted ? low : high) = middle;
   }
-  return std::exp(low);
+  auto more = at(std::exp(high));
+  return is_allowed(more) ? more : at(std::exp(low));
 }
 
 // How often the patches of each parent are cut, what that takes, and what it leaves.
@@ -62,11 +64,8 @@ Cuts best_cuts(const NestedMesh& mesh, const Eigen::VectorXd& squares, double wa
   const double all = squares.sum();
   const auto cuts_at = [&](double x) { return cuts_down_to(1 / x, mesh, squares); };
   if (!(all > 0)) return {std::vector<std::uint8_t>(mesh.parents.size(), 0), 0, 0};
-  const double found = largest_with(1 / all, 1e15 / all, [&](double x) {
-    const Cuts cuts = cuts_at(x);
-    return cuts.new_patches <= most && cuts.squared_error >= wanted;
-  });
-  return cuts_at(found);
+  return least_that_leaves(wanted, 1 / all, 1e15 / all, cuts_at,
+                           [&](const Cuts& cuts) { return cuts.new_patches <= most; });
 }
 
 // Noise of the patches of a mesh.
@@ -153,18 +152,16 @@ Doublings best_doublings(Noise noise, const NoiseGoal& goal) {
   const double error = goal.error * goal.error;
   for (double& square : noise.squares) square = sum > 0 ? error / sum * square : 0;
   const auto doublings_at = [&](double x) { return doublings_down_to(1 / x, goal.most_doublings, noise); };
-  const double found = largest_with(1e-6 / goal.wanted, 1e15 / goal.wanted, [&](double x) {
-    const Doublings doublings = doublings_at(x);
-    return doublings.more_rays <= goal.more_rays && doublings.squared_error >= goal.wanted;
-  });
-  return doublings_at(found);
+  return least_that_leaves(goal.wanted, 1e-6 / goal.wanted, 1e15 / goal.wanted, doublings_at,
+                           [&](const Doublings& doublings) { return doublings.more_rays <= goal.more_rays; });
 }
 
-// Parents' parts in the squared error by the mesh that cuts mend; none of lamps, which are not cut for what they err.
-Eigen::VectorXd squares_of(const SolvedMesh& solved, double error) {
+// Parents' parts in the squared error by the mesh that cuts mend.
+Eigen::VectorXd squares_of(const SolvedMesh& solved, double error, bool of_lamps) {
   const double sum = solved.effects.cwiseMax(0).sum();
   if (!(sum > 0)) return Eigen::VectorXd::Zero(solved.effects.size());
   Eigen::VectorXd squares = error * error / sum * solved.effects.cwiseMax(0);
+  if (of_lamps) return squares;
   const Field& exitance = solved.simulation.problem.exitance;
   for (PatchIndex i = 0; i < solved.mesh.patches.size(); ++i)
     if ((exitance.row(i) > 0).any()) squares[solved.mesh.parent[i]] = 0;
@@ -183,20 +180,12 @@ double allowed_square(double error, double share, double others) {
 
 }  // namespace
 
-bool cuts_locally(const Plan& plan, PatchIndex patches) {
-  return makes_second_mesh(plan, patches) || (refines(plan.accuracy) && plan.assembly.storage == Storage::rays);
-}
-
-bool cuts_locally(const Run& run, PatchIndex patches) {
-  return makes_second_mesh(run, patches) || (refines(run.plan.accuracy) && cuts_locally(run.plan, patches));
-}
-
 LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const LocalGoal& goal) {
   const double by_lights = solved.light_bar * solved.light_bar;
   const double by_rows = solved.noise_bar * solved.noise_bar;
 
   // 1. Patches where their size errs.
-  const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh);
+  const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh, goal.cuts_lamps);
   const Cuts cuts = best_cuts(solved.mesh, squares, allowed_square(goal.error, share_to_mesh, by_lights + by_rows),
                               goal.new_patches * solved.mesh.patches.size());
   FinerMesh finer = cut_patches(solved.mesh, cuts.of_parent);
@@ -216,7 +205,7 @@ LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const
       doublings(solved.row_noise, solved.more_rays.of_rows, {solved.noise_bar, rows_may, goal.more_of_rows, most});
 
   // 3. What that takes and gains.
-  LocalCuts found{std::move(finer), {}, {}, of_rows.more_rays, 0, cuts.new_patches > 0 || to_lights.any || of_rows.any};
+  LocalCuts found{std::move(finer), {}, {}, 0, cuts.new_patches > 0 || to_lights.any || of_rows.any};
   found.gain =
       squares.sum() - cuts.squared_error + by_lights - to_lights.squared_error + by_rows - of_rows.squared_error;
   found.light_place = found.mesh.place;
@@ -224,6 +213,10 @@ LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const
     if (to_lights.is_doubled[i] != 0) found.light_place[i] = no_patch;
   found.more_rays = {std::move(to_lights.of_patch), std::move(of_rows.of_patch)};
   return found;
+}
+
+double times_the_rays(const LocalCuts& cuts) {
+  return multiples(cuts.more_rays.of_rows, static_cast<Eigen::Index>(cuts.light_place.size())).mean();
 }
 
 MeshToSolve mesh_with(LocalCuts cuts, SolvedMesh& solved) {

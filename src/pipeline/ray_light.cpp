@@ -9,9 +9,9 @@
 #include "mesh/means_around.h"
 #include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
-#include "pipeline/local_cuts.h"
 #include "pipeline/needed_light.h"
 #include "pipeline/problem_of.h"
+#include "pipeline/second_mesh.h"
 #include "solve/scattering.h"
 #include "transport/smoothing.h"
 #include "transport/weighed_rows.h"
@@ -204,13 +204,14 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
 
   // 2. What that scatters, and how far it is off where irradiance is not linear.
   const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
-  GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0),
-                      scaled(smooth.variance, 1 + bias) + by.needed.of_lamps};
+  GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0), scaled(smooth.variance, 1 + bias)};
   // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet. Variances are compared
-  // by as many rays.
+  // by as many rays; those to lamps are as many for all.
+  const Field& of_lamps = by.needed.of_lamps;
   const Eigen::ArrayXd times = multiples(by.facts.lost.doublings, by.mesh.size());
   const Field around = mean_around(by.mesh, problem.area, found.variance.colwise() * times);
-  found.variance = found.variance.max(around.colwise() / times).eval();
+  found.variance =
+      found.variance.max(around.colwise() / times) + of_lamps.max(mean_around(by.mesh, problem.area, of_lamps));
   if (!by.light.is_missed.empty())
     found.variance.rowwise() += variance_of_missed(by.light, sources, row_sum).transpose();
   SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), by.needed.of_lamps};

@@ -45,6 +45,8 @@ struct Known {
       {};  ///< that of luminaires, sun and sky over its whole patches; none: all is new
   std::vector<PatchIndex> light_place = {};  ///< per patch: that whose light is its own, or no_patch; with `light`
   MoreRays more_rays = {};
+  std::uint64_t meshes = 0;  ///< how many were solved before, by which rays are chosen anew where they have told how
+                             ///< many it takes; 0: as on the first one
 };
 
 /// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
@@ -60,7 +62,7 @@ struct SolvedMesh {
   NestedMesh mesh;
   std::optional<Assembly> raw = {};  ///< with parents: exchange areas before closure
   Eigen::VectorXd interest = {};     ///< with parents: 1 for each patch whose error counts, else 0
-  Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(), and of what light_bar is of
+  Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(); by pairs also of what light_bar is of
   Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
   Eigen::VectorXd row_noise = {};  ///< with rows of rays and parents: the part of each patch in the square of noise_bar
   Eigen::VectorXd light_noise = {};  ///< and in that of light_bar

@@ -11,7 +11,6 @@
 #include "mesh/refine.h"
 #include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
-#include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/second_mesh.h"
 #include "pipeline/with_error_bars.h"
@@ -38,7 +37,8 @@ constexpr double share_of_interest = 0.1;
 // So many meshes at most.
 constexpr int most_steps = 20;
 
-// Enough is what is so much lower than was asked for, as errors are estimates.
+// By pairs enough is what is so much lower than was asked for, as errors are estimates. By rays a mesh is made for an
+// error lower than that, and another one would cost as much again.
 constexpr double enough = 1.1;
 
 // Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
@@ -128,6 +128,15 @@ Plan with_samples(Plan plan, int samples) {
 Plan with_solver_part(Plan plan, const std::optional<double>& solver_part) {
   plan.accuracy.solver_part = solver_part;
   return plan;
+}
+
+// The plan of a mesh with so many rays of a patch in the mean, for its memory.
+Plan with_rays_of(const LocalCuts& cuts, const Plan& plan) {
+  return with_samples(plan, static_cast<int>(std::ceil(times_the_rays(cuts) * plan.assembly.rays)));
+}
+
+bool fits(const LocalCuts& cuts, const Plan& plan) {
+  return memory_needed(cuts.light_place.size(), with_rays_of(cuts, plan)) <= usable_memory(plan.resources);
 }
 
 AccuracyStep accuracy_of(const SolvedMesh& solved) {
@@ -264,40 +273,46 @@ Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Pla
   return next;
 }
 
-// What the next mesh takes over from the last one is kept in mind.
-MeshToSolve Search::noted(MeshToSolve next, bool keeps_known) {
+MeshToSolve Search::remembered(MeshToSolve next, bool keeps_known) {
   known_ = keeps_known ? number_kept(next.known.place) : 0;
   more_rays_ = next.known.more_rays;
+  next.known.meshes = steps_.size();
   return next;
 }
 
-// By rows of rays patches are cut, and rays doubled, where these err most. A mesh is no more than thrice as large as
-// the one before, as it is told from that where; what it takes is no more than is left of memory and time.
-std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accuracy) {
-  constexpr double most_growth = 2;
+// A mesh grows no further at once, as it is told from the one before where; and no further than time and memory reach.
+std::optional<LocalCuts> Search::cuts_that_fit(const SolvedMesh& solved, double accuracy) const {
+  constexpr double most_growth = 3;
+  constexpr double most_more_rays = 2;
   constexpr double least_growth = 0.1;
   const Plan& plan = solved.simulation.plan;
+  // Both patches and rays make a mesh dearer.
+  double growth = std::min(most_growth, std::sqrt(std::max(0.0, times_in_time())) - 1);
+  for (; growth > least_growth; growth /= 2) {
+    const double more_rays = std::min(most_more_rays, growth);
+    LocalCuts cuts = local_cuts(solved, steps_.back(), {accuracy / error_margin, growth, more_rays, more_rays, true});
+    if (!cuts.changes || fits(cuts, plan)) return cuts;
+  }
+  return std::nullopt;
+}
+
+std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accuracy) {
   const AccuracyStep& step = steps_.back();
   // What is left where more rays gain nothing they do not mend.
   constexpr double hardly = 0.95;
   if (step.new_patches == 0 && step.total > hardly * steps_[steps_.size() - 2].total) return std::nullopt;
-  // Patches and rays cost about alike.
-  const double in_time = 0.5 * (times_in_time() - 1);
-  if (in_time < least_growth) return std::nullopt;
-  const double in_memory = std::max(0.0, patches_that_fit(plan) / step.patches - 1);
-  const double more_rays = std::min(most_growth, in_time);
-  LocalCuts cuts = local_cuts(
-      solved, step, {accuracy / error_margin, std::min({most_growth, in_time, in_memory}), more_rays, more_rays});
-  if (!cuts.changes) return std::nullopt;
-  const std::size_t patches = cuts.mesh.mesh.patches.size();
-  if (!fits_as_next_mesh(patches, 1 + cuts.more_of_rows, plan)) {
+  std::optional<LocalCuts> cuts = cuts_that_fit(solved, accuracy);
+  if (!cuts) {
     if (run_.plan.accuracy.seconds) return std::nullopt;
-    const double needed = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-    refuse(plan, std::max<double>(static_cast<double>(patches), needed), step.total);
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const LocalCuts wanted = local_cuts(solved, step, {accuracy / error_margin, any, any, any, true});
+    const Plan& plan = solved.simulation.plan;
+    refuse(with_rays_of(wanted, plan), static_cast<double>(wanted.light_place.size()), step.total);
   }
-  MeshToSolve next = mesh_with(std::move(cuts), solved);
+  if (!cuts->changes) return std::nullopt;
+  MeshToSolve next = mesh_with(std::move(*cuts), solved);
   next.plan = with_solver_part(next.plan, part_of_solver(run_, accuracy));
-  return noted(std::move(next), true);
+  return remembered(std::move(next), true);
 }
 
 std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
@@ -305,7 +320,7 @@ std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
   std::optional<MeshToSolve> next = second_mesh(run_, solved, steps_.back());
   if (!next) return next;
   notes_.push_back(note_on_second_mesh(*next, steps_.back()));
-  return noted(std::move(*next), true);
+  return remembered(std::move(*next), true);
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
@@ -314,11 +329,11 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   const AccuracyStep& step = steps_.back();
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
-  if (enough * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
+  const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
+  if ((is_by_rays ? 1 : enough) * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
   // What a tolerance that was asked for leaves no mesh mends.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
   if (!std::isfinite(step.solver)) return std::nullopt;
-  const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
   return is_by_rays ? next_by_rays(solved, accuracy) : next_by_pairs(solved, accuracy);
 }
 
@@ -328,7 +343,7 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   // 1. More patches and samples, by rays where all pairs of them do not fit.
   Plan plan = stored_for(solved, accuracy);
   Finer more = finer(solved, accuracy, plan);
-  if (!more.fits && may_go_by_rays(plan)) more = finer(solved, accuracy, gone_by_rays(plan));
+  if (!more.fits && step.total > accuracy && may_go_by_rays(plan)) more = finer(solved, accuracy, gone_by_rays(plan));
   if (!more.fits) {
     if (run_.plan.accuracy.seconds || step.total <= accuracy) return std::nullopt;
     const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
@@ -346,7 +361,7 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   to_solve.known.place = std::move(more.mesh.place);
   to_solve.known.lost = solved.simulation.transport.lost;
   if (keeps_known) to_solve.known.exchange = std::move(solved.raw);
-  return noted(std::move(to_solve), keeps_known);
+  return remembered(std::move(to_solve), keeps_known);
 }
 
 }  // namespace patchlight

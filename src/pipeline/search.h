@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pipeline/local_cuts.h"
 #include "pipeline/run.h"
 
 #include <optional>
@@ -43,7 +44,8 @@ class Search {
   std::optional<MeshToSolve> next_by_pairs(SolvedMesh& solved, double accuracy);
   std::optional<MeshToSolve> next_by_rays(SolvedMesh& solved, double accuracy);
   std::optional<MeshToSolve> second(SolvedMesh& solved);
-  MeshToSolve noted(MeshToSolve next, bool keeps_known);
+  std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, double accuracy) const;
+  MeshToSolve remembered(MeshToSolve next, bool keeps_known);
   Plan stored_for(const SolvedMesh& solved, double accuracy);
   Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
   Refinement refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
@@ -55,7 +57,7 @@ class Search {
   std::vector<AccuracyStep> steps_;
   std::vector<std::string> notes_;
   std::optional<Simulation> kept_;
-  PatchIndex known_ = 0;  // patches of the last mesh that were in the one before
+  PatchIndex known_ = 0;  // patches of the last mesh of which something was known from the one before
   MoreRays more_rays_;    // of the last mesh
 };
 

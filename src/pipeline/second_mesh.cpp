@@ -40,12 +40,16 @@ bool makes_second_mesh(const Run& run, PatchIndex patches) {
   return makes_second_mesh(run.plan, patches) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
 }
 
+bool cuts_locally(const Run& run, PatchIndex patches) {
+  return refines(run.plan.accuracy) || makes_second_mesh(run, patches);
+}
+
 std::optional<MeshToSolve> second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
   if (!makes_second_mesh(run, errors.patches) || !(errors.total > usual_error)) return std::nullopt;
   LocalCuts cuts = local_cuts(solved, errors, usual);
   const bool pays = cuts.gain > (1 - worthwhile * worthwhile) * errors.total * errors.total;
   const std::size_t patches = cuts.mesh.mesh.patches.size();
-  if (!pays || !fits_as_next_mesh(patches, 1 + cuts.more_of_rows, solved.simulation.plan)) return std::nullopt;
+  if (!pays || !fits_as_next_mesh(patches, times_the_rays(cuts), solved.simulation.plan)) return std::nullopt;
   return mesh_with(std::move(cuts), solved);
 }
 

@@ -11,6 +11,10 @@ namespace patchlight {
 bool makes_second_mesh(const Plan& plan, PatchIndex patches);
 bool makes_second_mesh(const Run& run, PatchIndex patches);
 
+/// True where patches of a solution by rows of rays may be cut, and rays of some doubled: on the way to an accuracy,
+/// and where there may be a second mesh.
+bool cuts_locally(const Run& run, PatchIndex patches);
+
 /// The mesh after the first one of such a run, by local_cuts(). What is known of the light on other patches is taken
 /// from `solved`. None where the error is small, where that would not take a third of it away, or where it would not
 /// fit into the memory.

@@ -12,6 +12,7 @@
 #include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
+#include "pipeline/second_mesh.h"
 #include "pipeline/unseen_differences_of.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
@@ -162,7 +163,7 @@ int rays_of_quarters(const Simulation& simulation) {
 struct BarsOfRays {
   Field of_light;        // that differs inside patches and parents
   Field in_gaps;         // that are narrower than their patches
-  Field in_narrow_gaps;  // those narrower even than patches that are cut as often as on a second mesh; 0 where more
+  Field in_narrow_gaps;  // those narrower even than patches that are cut as often as on a second mesh; empty where more
                          // meshes may follow
 };
 
@@ -184,7 +185,9 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   const Eigen::VectorXd in_gaps = squares(of_gaps);
   const double all = result.effects.sum() + in_gaps.sum();
   // What so many cuts would not mend they need not begin with.
-  result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
+  result.effects += in_gaps;
+  if (bars.in_narrow_gaps.size() > 0)
+    result.effects = (result.effects - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
   result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   const auto of_each = [&](const Field& bar) { return squares_of_patches(solved, bar, weight); };
@@ -230,8 +233,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .solver = solver_errors(solved),
                            .display = unseen.display};
   if (!has_parents || !cuts_locally(run, simulation.mesh.size())) return result;
-  bars.in_narrow_gaps =
-      refines(run.plan.accuracy) ? Field::Zero(of_mesh.rows(), of_mesh.cols()) : in_gaps(most_local_cuts);
+  if (!refines(run.plan.accuracy)) bars.in_narrow_gaps = in_gaps(most_local_cuts);
   return with_effects(std::move(result), weight, unseen, bars);
 }
 

@@ -129,8 +129,7 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
   if (seconds > 0) facts.rays_per_second = static_cast<double>(transport.counts.shadow_rays) / seconds;
   facts.bare_rays_per_second = transport.bare_rays_per_second;
   facts.sampling = sampling_facts(transport.error);
-  facts.lost_share_rays =
-      static_cast<std::uint64_t>(transport.lost.rays_per_patch) * static_cast<std::uint64_t>(simulation.mesh.size());
+  facts.lost_share_rays = static_cast<std::uint64_t>(rays_of_patches(transport.lost, simulation.mesh.size()).sum());
   facts.ray_error = ray_error(simulation);
   facts.closure = transport.closure;
   facts.raw_row_sum = row_sum_facts(transport.raw_row_sum, simulation);

@@ -170,6 +170,17 @@ class SolveTest(ToolTest):
         solution = json.loads(self.read("out.json"))["solution"]
         self.assertEqual((solution["unfinished"], solution["converged"]), (True, False))
 
+    def test_interrupt_tells_of_no_sensor_that_was_not_read(self):
+        """The solution takes a moment, its 300,000 points take minutes."""
+        (self.folder / "many.txt").write_text("".join(f"{0.6 + k * 1e-6} 0.6 0.5 0 0 1\n" for k in range(300_000)))
+        options = ["--patches", "500", "--points", "many.txt", "--points-output", "read.csv", "--report", "out.json"]
+        shown, code = self.interrupt_in_stage(rb"gather [1-9]", signal.SIGINT, options)
+        self.assertEqual(code, INTERRUPTED, shown)
+        self.assertLessEqual({"out.vtp", "out.json"}, self.names())
+        self.assertNotIn("read.csv", self.names())
+        self.assertNotIn("sensors", json.loads(self.read("out.json")))
+        self.assertNotIn(b"inside walls", shown)
+
     def test_interrupt_discards_when_asked(self):
         for sent, more in ((signal.SIGINT, ["--discard"]), (signal.SIGTERM, [])):
             with self.subTest(sent.name):

@@ -178,6 +178,20 @@ TEST(LocalCuts, ReachAnAccuracy) {
   EXPECT_NEAR(fluxes(s)[underside], exact, 3 * 0.02 * exact);
 }
 
+// A run that begins by pairs goes on by rays where these no longer fit, as far as it takes.
+TEST(LocalCuts, GoOnWherePairsNoLongerFit) {
+  Request request;
+  request.accuracy.relative_error = 0.02;
+  AssemblyOptions pairs = request.assembly;
+  pairs.storage = Storage::tiles;
+  request.resources.memory = memory_needed(1000, pairs, request.accuracy);
+  const Simulation s = simulate(room_with_board(), request);
+  EXPECT_EQ(s.plan.assembly.storage, Storage::rays);
+  EXPECT_LE(s.accuracy.back().total, 0.02);
+  EXPECT_LT(s.accuracy.back().new_patches, s.accuracy.back().patches);
+  EXPECT_GT(s.accuracy.back().samples, s.plan.assembly.rays);
+}
+
 // On the way to an accuracy they stop where memory does.
 TEST(LocalCuts, OnTheWayToAnAccuracyKeepTheMemory) {
   Request request = by_rays(false);
