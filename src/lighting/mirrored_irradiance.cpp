@@ -280,19 +280,16 @@ MirroredEstimate estimate_from(const Field& replicates) {
 }
 
 // Receivers: what share of the replicates each takes, and how often the points of these are doubled.
-template <class ReceiverAt, class ShareAt, class DoublingsAt>
 struct MirrorReceivers {
   std::size_t count = 0;
-  ReceiverAt at;
-  ShareAt share_at;
-  DoublingsAt doublings_at;
+  std::function<Receiver(std::size_t)> at;
+  std::function<double(std::size_t)> share_at;
+  std::function<unsigned(std::size_t)> doublings_at;
   int most_doublings = 0;
 };
 
-template <class... At>
-DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps,
-                               const MirrorReceivers<At...>& all, const LightingOptions& options,
-                               const Observer& observer) {
+DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps, const MirrorReceivers& all,
+                               const LightingOptions& options, const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
   const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
@@ -353,8 +350,7 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
   };
   const auto doublings = [&](std::size_t k) -> unsigned { return more.empty() ? 0 : more[k]; };
   const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
-  return in_mirrors_at(lighting, lamps, MirrorReceivers{std::size_t{mesh.size()}, patch, share, doublings, most},
-                       options, observer);
+  return in_mirrors_at(lighting, lamps, {std::size_t{mesh.size()}, patch, share, doublings, most}, options, observer);
 }
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
@@ -363,8 +359,7 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
   const auto all = [](std::size_t) { return 1.0; };
   const auto doublings = [](std::size_t) -> unsigned { return doublings_at_points; };
-  return in_mirrors_at(lighting, lamps, MirrorReceivers{points.size(), point, all, doublings, doublings_at_points},
-                       options, observer);
+  return in_mirrors_at(lighting, lamps, {points.size(), point, all, doublings, doublings_at_points}, options, observer);
 }
 
 }  // namespace patchlight

@@ -155,7 +155,8 @@ int rays_of_quarters(const Simulation& simulation) {
   const int usual = usual_rays_of_quarters(simulation.mesh.size());
   const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
   const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
-  const double of_accuracy = asked ? std::min<double>(rays_from_quarters / usual, usual_accuracy / *asked) : 1;
+  const double of_accuracy =
+      asked ? std::min(static_cast<double>(rays_from_quarters) / usual, usual_accuracy / *asked) : 1;
   return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 
