@@ -146,7 +146,11 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
                                   : traced_lamps(run, with_rays_to_lamps(plan, known), mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
-  light.in_mirrors = lamps_in_mirrors(run, plan, mesh, exchange.lamps);
+  // What this errs counts with the rows.
+  LightingOptions over_mirrors = lighting_options(plan, mesh);
+  over_mirrors.seed = seed_on(known, over_mirrors.seed);
+  over_mirrors.doublings = known.more_rays.of_rows;
+  light.in_mirrors = lamps_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light, known);
     if (run.tracing->has_specular_faces())

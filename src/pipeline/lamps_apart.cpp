@@ -126,7 +126,7 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
 }
 
 // What lamps that are apart send over mirrors, which their factors do not have.
-DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh,
+DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
                                   const std::vector<PatchRange>& lamps) {
   if (lamps.empty() || run.tracing->reflections() == Reflections::kept) return {};
   Scene scene = run.scene;
@@ -140,7 +140,7 @@ DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchM
     const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
-  return mirrored_irradiance(lighting, faces, mesh, lighting_options(plan, mesh), run.observer);
+  return mirrored_irradiance(lighting, faces, mesh, options, run.observer);
 }
 
 }  // namespace patchlight

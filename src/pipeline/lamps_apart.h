@@ -36,7 +36,7 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
 
 /// The irradiance of patches by what lamps, the patches of a side each, send over mirrors and clear faces, which their
 /// factors do not have; empty where reflections are not followed. \throws Cancelled.
-DirectIrradiance lamps_in_mirrors(const Run& run, const Plan& plan, const PatchMesh& mesh,
+DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
                                   const std::vector<PatchRange>& lamps);
 
 }  // namespace patchlight

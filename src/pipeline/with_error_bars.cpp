@@ -186,9 +186,10 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   const Eigen::VectorXd in_gaps = squares(of_gaps);
   const double all = result.effects.sum() + in_gaps.sum();
   // What so many cuts would not mend they need not begin with.
-  result.effects += in_gaps;
   if (bars.in_narrow_gaps.size() > 0)
-    result.effects = (result.effects - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
+    result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
+  else
+    result.effects += in_gaps;
   result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   const auto of_each = [&](const Field& bar) { return squares_of_patches(solved, bar, weight); };
