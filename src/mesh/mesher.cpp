@@ -93,6 +93,7 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::s
     mesh.centroid[patch] = area_centroid(points);
     mesh.normal[patch] = normal;
     mesh.area[patch] = normal.dot(area_vector(points));
+    assert(mesh.area[patch] > 0);
     mesh.material[patch] = material_on(scene.polygons[p], side);
     mesh.polygon[patch] = static_cast<PolygonIndex>(p);
     mesh.side[patch] = side;

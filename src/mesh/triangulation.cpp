@@ -232,8 +232,8 @@ void Triangulation::split_long_edges() {
   }
 }
 
-// Is the triangle no more than a line but for rounding, by which it may be turned over? It then covers nothing: a
-// corner of the polygon that lies on an edge, or the end of a line beside one.
+// Is the triangle no more than a line but for rounding, or turned over? It then covers nothing, or what others do: at a
+// corner of the polygon that lies on an edge, at the end of a line beside one or, by rounding, beyond it.
 bool Triangulation::is_flat(FaceHandle face) const {
   constexpr double rounding = 1e-12;
   std::array<Workbench::Point, 3> corners;
@@ -241,7 +241,7 @@ bool Triangulation::is_flat(FaceHandle face) const {
   for (const auto vertex : mesh_.fv_range(face)) corners[k++] = mesh_.point(vertex);
   const auto& [a, b, c] = corners;
   const double squares = dot(a, b, b) + dot(b, c, c) + dot(c, a, a);
-  return std::abs(turn(a, b, c)) <= rounding * squares + rounding_ * std::sqrt(squares);
+  return turn(a, b, c) <= rounding * squares + rounding_ * std::sqrt(squares);
 }
 
 // The halfedges that begin at a vertex, counter-clockwise from the boundary or, inside, from a line on.

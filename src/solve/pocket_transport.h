@@ -6,6 +6,7 @@
 #include "solve/pockets.h"
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -34,18 +35,18 @@ class PocketTransport : public TransportOperator {
   Field irradiance_within(const FieldView& radiosity) const;
 
  private:
-  using Arriving = std::function<Eigen::VectorXd(const Pocket& pocket, Eigen::Index band)>;
+  using Arriving = std::function<Field(const Pocket& pocket)>;
 
   Field followed(const Arriving& arriving, Field irradiance) const;
-  Eigen::VectorXd followed_in_band(const Pocket& pocket, const PocketSystem& system,
-                                   const Eigen::VectorXd& irradiance) const;
+  Field followed_within(std::size_t pocket, const Field& irradiance) const;
 
   const TransportOperator& transport_;
   const Pockets& pockets_;
   bool closed_are_dark_;
   double accuracy_;
-  // Per pocket I - F_PP R of each band; where these are several, at last that of the highest R of all.
-  std::vector<std::vector<PocketSystem>> systems_;
+  // Per pocket I - F_PP R of all bands, and that of the highest R of each patch.
+  std::vector<PocketSystem> systems_;
+  std::vector<PocketSystem> of_highest_;
 };
 
 }  // namespace patchlight

@@ -4,9 +4,8 @@
 
 #include "transport/ray_transport.h"
 
-#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/Core>
 #include <Eigen/LU>
-#include <Eigen/SparseCore>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,12 +15,10 @@ namespace patchlight {
 /// Patches that keep light among themselves, as those of white boards 3 mm apart do: it takes hundreds of bounces to
 /// get out. Iterations over all patches hardly change what is there, and no bound on the error is found.
 struct Pocket {
-  std::vector<PatchIndex> patches;                              ///< in rising order; none sees one of another pocket
-  Eigen::SparseMatrix<double, Eigen::RowMajor> form_factors;    ///< F among them, numbered as they stand there
-  Eigen::VectorXd bounces;                                      ///< (I - F rho)^-1 1, rho the highest of all bands: how
-                                                                ///< often light is reflected before it gets out
-  std::unique_ptr<Eigen::IncompleteLUT<double>> nearly_solved;  ///< factors of about I - F rho (ILUT, Saad 1994); of
-                                                                ///< few patches null
+  std::vector<PatchIndex> patches;  ///< in rising order; none sees one of another pocket
+  RayTransport rays;                ///< F among them, numbered as they stand there
+  Eigen::VectorXd bounces;          ///< (I - F rho)^-1 1, rho the highest of all bands: how often light is reflected
+                                    ///< before it gets out
 };
 
 /// There are few pockets: where their patches are more than an eighth of all, it is the room that is white.
@@ -40,19 +37,22 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
 
 /// I - F R among the patches of a pocket.
 struct PocketSystem {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors;  ///< of up to 512 patches, up to 4 kB each; else of size 0
+  Field reflectance;                                          ///< R: patches x bands
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  ///< per band, of up to 512 patches, up to 2 MB each; of
+                                                              ///< more none
 
-  bool is_eliminated() const { return factors.rows() > 0; }
+  bool is_eliminated() const { return !factors.empty(); }
 };
 
 /// From the reflectances of its patches.
-PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance);
+PocketSystem system_within(const RayTransport& rays, Field reflectance);
 
-/// x of such a system: by its factors, or by BiCGSTAB until ||r||_2 is below `tolerance` times ||right||_2, or 200
-/// iterations are done.
-Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
-                                double tolerance);
+/// right - (I - F R) x, patches x bands.
+Field residual_within(const RayTransport& rays, const PocketSystem& system, const Field& right, const Field& x);
+
+/// x of (I - F R) x = right, patches x bands: by factors, or by BiCGSTAB of all bands at once until ||r||_2 of each is
+/// below `tolerance` times ||right||_2, or 200 iterations are done.
+Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right, double tolerance);
 
 /// Rows of rays whose pockets are known: solve() follows light within these apart.
 class RaysWithPockets : public TransportOperator {

@@ -235,12 +235,17 @@ TEST(Mesher, MeshesAnyStarShapedPolygon) {
 }
 
 TEST(Mesher, EndsForASelfIntersectingPolygon) {
-  // Two triangles of unequal size that touch crosswise: no mesh is right, but the net area is kept.
+  // Two triangles that touch crosswise, 3.375 and 0.375 m^2, turned against each other: no mesh is right, but no patch
+  // is turned over, and the area is between that of the larger one less the other and that of both.
   const Scene scene = tiny::polygon({{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 1, 0}});
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
   double sum = 0;
-  for (const double area : mesh.area) sum += area;
-  EXPECT_NEAR(sum, area_vector(corner_points(scene, 0)).norm(), 1e-12);
+  for (const double area : mesh.area) {
+    EXPECT_GT(area, 0);
+    sum += area;
+  }
+  EXPECT_GE(sum, area_vector(corner_points(scene, 0)).norm() - 1e-12);
+  EXPECT_LE(sum, 3.75 + 1e-12);
 }
 
 TEST(Mesher, DoesNotDependOnTheNumberOfThreads) {
