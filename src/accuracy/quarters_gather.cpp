@@ -1,5 +1,6 @@
 #include "accuracy/quarters_gather.h"
 
+#include "accuracy/choice_of_lamps.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
@@ -13,66 +14,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <span>
 
 namespace patchlight {
 namespace {
 
-// Emitting patches as another one sees them, to be chosen by about what they send there when nothing is in the way.
-struct ChoiceOfLamps {
-  std::vector<PatchIndex> lamps;
-  std::vector<double> before;  // of those before each; one more entry at the end
-
-  struct Chosen {
-    PatchIndex lamp;
-    double probability;
-    double u;  // what the choice leaves of the number, in [0, 1) again
-  };
-
-  // The one that belongs to this number of [0, 1).
-  Chosen at(double u) const {
-    const double place = u * before.back();
-    const auto next = std::upper_bound(before.begin(), before.end() - 1, place);
-    const auto k = static_cast<std::size_t>(next - before.begin()) - 1;
-    const double of_lamp = before[k + 1] - before[k];
-    return {lamps[k], of_lamp / before.back(), std::clamp((place - before[k]) / of_lamp, 0.0, 1.0)};
-  }
-};
-
-ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
-                              const Field& exitance) {
-  constexpr double least_cosine = 0.05;  // of a lamp whose centroid is below the horizon some may be above it
-  ChoiceOfLamps choice{lamps, {0}};
-  for (const PatchIndex lamp : lamps) {
-    const Vector toward = mesh.centroid[lamp] - mesh.centroid[patch];
-    const double squared = toward.squaredNorm() + mesh.area[lamp];
-    const double distance = std::sqrt(squared);
-    const double cosines = std::max(least_cosine, mesh.normal[patch].dot(toward) / distance) *
-                           std::max(least_cosine, -mesh.normal[lamp].dot(toward) / distance);
-    choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp] * cosines / squared);
-  }
-  return choice;
-}
-
-ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance) {
-  ChoiceOfLamps choice{lamps, {0}};
-  for (const PatchIndex lamp : lamps)
-    choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp]);
-  return choice;
-}
-
 // More evaluations of lamps at patches than this are not worth their time: lamps are chosen by their flux then.
 constexpr double most_evaluations = 2e7;
 
-// From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
-bool is_far_from(const PatchCorners& corners, double distance) {
-  constexpr double edges = 8;
+// Metres, squared.
+double longest_edge_squared(const PatchCorners& corners) {
   const auto count = static_cast<std::size_t>(corners.count);
   double longest = 0;
   for (std::size_t k = 0; k < count; ++k)
     longest = std::max(longest, (corners.points[(k + 1) % count] - corners.points[k]).squaredNorm());
-  return distance * distance > edges * edges * longest;
+  return longest;
+}
+
+// From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
+bool is_far_from(const PatchCorners& corners, double distance) {
+  constexpr double edges = 8;
+  return distance * distance > edges * edges * longest_edge_squared(corners);
 }
 
 // How many rays have met a patch that is far from where they start.
@@ -94,19 +57,22 @@ class Gather {
         covered_(patches.lost.covered),
         exitance_(patches.solved.problem.exitance),
         sent_(patches.solved.solution.radiosity),
+        irradiance_(patches.solved.solution.irradiance),
+        from_no_patch_(patches.solved.problem.direct_irradiance),
         rays_(rays) {
     for (PatchIndex i = 0; i < mesh_.size(); ++i)
       if ((exitance_.row(i) > 0).any()) lamps_.push_back(i);
     const auto lamps = static_cast<double>(lamps_.size());
     if (lamps > most_lamps * mesh_.size()) lamps_.clear();
     if (!lamps_.empty()) sent_ -= exitance_;
-    if (lamps * mesh_.size() > most_evaluations) by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
+    takes_by_flux_ = lamps * mesh_.size() > most_evaluations;
+    by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
 
  private:
-  enum class Purpose : std::uint64_t { hemisphere, lamps, clear };
+  enum class Purpose : std::uint64_t { hemisphere, lamps, clear, at_points };
   std::uint32_t seed_of(PatchIndex patch, Purpose purpose) const {
     return hash({rays_.seed, keys_[patch], static_cast<std::uint64_t>(purpose)});
   }
@@ -114,6 +80,9 @@ class Gather {
   std::vector<Seen> seen_along(PatchIndex patch, const std::vector<Ray>& rays) const;
   Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
+  bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
+  double from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const;
+  float more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
@@ -121,10 +90,13 @@ class Gather {
   PatchLookup lookup_;
   std::vector<std::uint32_t> keys_;
   std::vector<PatchIndex> lamps_;
-  std::optional<ChoiceOfLamps> by_flux_;
+  ChoiceOfLamps by_flux_;
+  bool takes_by_flux_ = false;  // everywhere
   const Eigen::VectorXd& covered_;
   const Field& exitance_;
   Field sent_;  // what rays over the hemisphere find of the radiosity
+  const Field& irradiance_;
+  const Field& from_no_patch_;
   RaysOfQuarters rays_;
 };
 
@@ -162,8 +134,8 @@ std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& r
 Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const {
   Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
   if (lamps_.empty()) return irradiance;
-  const ChoiceOfLamps for_patch = by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
-  const ChoiceOfLamps& choice = by_flux_ ? *by_flux_ : for_patch;
+  const ChoiceOfLamps for_patch = takes_by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
+  const ChoiceOfLamps& choice = takes_by_flux_ ? by_flux_ : for_patch;
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::lamps));
   std::vector<Segment> segments;
   segments.reserve(rays.size());
@@ -179,6 +151,50 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
+}
+
+// Does a dark patch meet a bright one close by?
+bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const {
+  constexpr double brighter = 1.5;
+  return hit.reflections == 0 && brighter * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
+         hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
+}
+
+// E h F V / p summed over the bands, for a lamp that is chosen with probability p, at a point of a patch.
+double Gather::from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const {
+  if (lamps_.empty()) return 0;
+  const auto [lamp, probability, u] = by_flux_.at(sample[2]);
+  const PatchCorners corners = mesh_.corner_points(lamp);
+  const double factor = point_to_polygon(point, mesh_.normal[patch], corners);
+  if (!(factor > 0)) return 0;
+  const Segment segment{point, square_to_quad(corners.points, u, sample[3]), mesh_.polygon[patch], mesh_.polygon[lamp]};
+  const double held = occluder_.held_share(mesh_.polygon[lamp], mesh_.side[lamp]);
+  return exitance_.row(lamp).sum() * factor * held / probability *
+         static_cast<double>(occluder_.transmittance({&segment, 1}).front());
+}
+
+// By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to go
+// with the rest.
+float Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
+  constexpr std::uint32_t rays_from_point = 2;
+  constexpr double most = 4;
+  const double from_none = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
+  const double in_mean = irradiance_.row(patch).sum() - from_none;
+  if (!(in_mean > 0)) return 0;
+  const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
+  double there = 0;
+  std::vector<Ray> rays;
+  for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
+    there += from_a_lamp(patch, point, sample) / rays_from_point;
+    rays.push_back(
+        {point, frame * occluder_.held_direction(mesh_.polygon[patch], sample[0], sample[1]), mesh_.polygon[patch]});
+  }
+  std::vector<SidePoint> points;
+  for (const Seen& seen : sights_.of_rays(patch, rays, key))
+    if (seen.sight == Sight::patch) points.push_back({seen.hit->polygon, seen.hit->side, seen.hit->point});
+  for (const PatchIndex sender : lookup_.patches_at(points))
+    if (sender != no_patch) there += sent_.row(sender).sum() / rays_from_point;
+  return static_cast<float>(std::min(most, there / in_mean) - 1);
 }
 
 // What the rays of all quarters find, those of the first one first.
@@ -203,6 +219,9 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
     const int of_met = quarter_at(corners, mesh_.normal[met[m]], hit.point);
     into.met[first * rays + k] = 4 * met[m] + static_cast<PatchIndex>(of_met);
     into.is_far[first * rays + k] = is_open && is_far_from(corners, hit.distance) ? 1 : 0;
+    if (may_be_darker_there(patch, met[m], hit))
+      into.more_there[first * rays + k] =
+          more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)}));
     into.irradiance.row(quarter) += sent_.row(met[m]);
     // No ray to a lamp goes over mirrors.
     if (!lamps_.empty() && hit.reflections > 0) into.irradiance.row(quarter) += exitance_.row(met[m]);
@@ -248,6 +267,7 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
                          .irradiance = Field::Zero(size, patches.solved.problem.exitance.cols()),
                          .met = std::vector<PatchIndex>(count, no_patch),
                          .is_far = std::vector<std::uint8_t>(count, 0),
+                         .more_there = std::vector<float>(count, std::numeric_limits<float>::quiet_NaN()),
                          .part_of_ray = Eigen::ArrayXd::Zero(size),
                          .exposed = Eigen::ArrayXd::Zero(size),
                          .seen = Eigen::ArrayXd::Zero(size),

@@ -28,6 +28,8 @@ struct GatheredQuarters {
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2
   std::vector<PatchIndex> met;       ///< per quarter and ray: the quarter that it meets, or no_patch
   std::vector<std::uint8_t> is_far;  ///< likewise: 1 where it meets a patch that is seen from afar
+  std::vector<float> more_there;     ///< likewise: where a dark patch meets a bright one close by, by what share of it
+                                     ///< more is reflected at that point, -1 where it is dark; else not a number
   Eigen::ArrayXd part_of_ray;        ///< per quarter: what part of the mean over its patch one of its rays is
   Eigen::ArrayXd exposed;            ///< per quarter: what of its area no solid covers, m^2
   Eigen::ArrayXd seen;               ///< per quarter: the share of its hemisphere in which there are patches
@@ -44,7 +46,9 @@ struct RaysOfQuarters {
 /// reflected, along as many shadow rays what lamps emit. The quarters of a patch take the same directions, so that
 /// little noise is in their differences. A patch is seen from afar where it is farther away than eight times its
 /// longest edge, so that its quarters look alike, from patches half of whose hemisphere at least is open: into a niche
-/// or a slit only a part of it may be seen. \throws Cancelled.
+/// or a slit only a part of it may be seen. Where a patch meets one of one and a half times its irradiance, closer than
+/// that one is long, light is gathered once more at the point that is met, by two rays and two to lamps: of a pipe that
+/// runs through a wall a patch may lie on both sides, its quarters alike. \throws Cancelled.
 GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays, const Observer& observer);
 
 }  // namespace patchlight

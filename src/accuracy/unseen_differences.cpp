@@ -27,15 +27,22 @@ struct Differences {
   Field of_quarters;      // of radiosity, the same
   SeenFromAfar from_afar;
   Field at_patches;  // what they change of the irradiance of each patch, W/m^2
+  Field by_points;   // W: the part of these by single points, which quarters do not send; one row
 
-  // Calls `visit` with each patch that is met from a quarter and the difference of radiosity there, one row.
-  void for_met_from(PatchIndex quarter, const auto& visit) const {
+  // Calls `visit` with each patch that is met from a quarter, the difference of radiosity there, one row, and whether
+  // it is that of the point.
+  void for_met_from(PatchIndex quarter, const Field& reflected, const auto& visit) const {
     const auto count = static_cast<std::size_t>(rays.rays);
     for (std::size_t ray = quarter * count; ray < (quarter + 1) * count; ++ray) {
       const PatchIndex met = rays.met[ray];
       if (met == no_patch) continue;
+      const float more = rays.more_there[ray];
+      if (!std::isnan(more)) {
+        visit(met / 4, static_cast<double>(more) * reflected.row(met / 4), true);
+        continue;
+      }
       const bool by_patch = rays.is_far[ray] != 0 && from_afar.is_known[met / 4] != 0;
-      visit(met / 4, by_patch ? from_afar.difference.row(met / 4) : of_quarters.row(met));
+      visit(met / 4, by_patch ? from_afar.difference.row(met / 4) : of_quarters.row(met), false);
     }
   }
 };
@@ -103,7 +110,7 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
     const double of_patch = differences.rays.exposed[q] / exposed;
     off += area[q / 4] * of_patch * other.seen[q] * differences.of_quarters.row(q);
   }
-  off -= (differences.at_patches.colwise() * area.array()).colwise().sum();
+  off -= (differences.at_patches.colwise() * area.array()).colwise().sum() - differences.by_points;
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
@@ -125,26 +132,34 @@ SeenFromAfar seen_from_afar(const Field& of_quarters, const GatheredQuarters& ra
 }
 
 Differences find_differences(GatheredQuarters rays, const Field& direct, const Eigen::ArrayXd& open,
-                             const PatchMesh& mesh, const Scattering& scattering) {
+                             const SolvedPatches& patches, const Field& reflected) {
   Field irradiance = std::exchange(rays.irradiance, {});
   if (direct.size() > 0) irradiance += direct;
-  Differences found{std::move(rays), {}, {}, {}, Field::Zero(irradiance.rows() / 4, irradiance.cols())};
+  const Scattering& scattering = patches.solved.problem.scattering;
+  Differences found{std::move(rays),
+                    {},
+                    {},
+                    {},
+                    Field::Zero(irradiance.rows() / 4, irradiance.cols()),
+                    Field::Zero(1, irradiance.cols())};
   found.of_irradiance = differences_of_irradiance(found.rays, irradiance);
-  found.of_quarters = reflected_at_quarters(mesh, scattering, found.of_irradiance);
+  found.of_quarters = reflected_at_quarters(patches.mesh, scattering, found.of_irradiance);
   found.from_afar = seen_from_afar(found.of_quarters, found.rays, open);
   for (PatchIndex q = 0; q < found.of_quarters.rows(); ++q) {
-    found.for_met_from(q, [&](PatchIndex, const auto& difference) {
-      found.at_patches.row(q / 4) += found.rays.part_of_ray[q] * difference;
+    found.for_met_from(q, reflected, [&](PatchIndex, const auto& difference, bool of_point) {
+      const auto part = found.rays.part_of_ray[q] * difference;
+      found.at_patches.row(q / 4) += part;
+      if (of_point) found.by_points += patches.solved.problem.area[q / 4] * part;
     });
   }
   return found;
 }
 
 // What the differences of each patch have in common with the changes that other rays find: sum_i w_i c_i dH_i.
-Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& differences) {
+Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& differences, const Field& reflected) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(weighted_changes.rows());
   for (PatchIndex q = 0; q < differences.rays.part_of_ray.size(); ++q) {
-    differences.for_met_from(q, [&](PatchIndex met, const auto& difference) {
+    differences.for_met_from(q, reflected, [&](PatchIndex met, const auto& difference, bool) {
       parts[met] += differences.rays.part_of_ray[q] * (weighted_changes.row(q / 4) * difference).sum();
     });
   }
@@ -163,9 +178,9 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   };
   std::array<GatheredQuarters, 2> rays{gathered(0), gathered(1)};
   const std::array<Eigen::ArrayXd, 2> open{std::exchange(rays[0].open, {}), std::exchange(rays[1].open, {})};
+  const Field reflected = solved.solution.radiosity - solved.problem.exitance;
   const auto found = [&](std::size_t half) {
-    return find_differences(std::move(rays[half]), look.direct[half], open[1 - half], patches.mesh,
-                            solved.problem.scattering);
+    return find_differences(std::move(rays[half]), look.direct[half], open[1 - half], patches, reflected);
   };
   Differences one = found(0);
   Differences other = found(1);
@@ -191,7 +206,8 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
 
   // 3. Where it comes from.
   const Field weights = weight_of_squares(solved, weight).colwise() * area.array().square();
-  unseen.effects = parts_in(weights * one.at_patches, other) + parts_in(weights * other.at_patches, one);
+  unseen.effects =
+      parts_in(weights * one.at_patches, other, reflected) + parts_in(weights * other.at_patches, one, reflected);
   return unseen;
 }
 
