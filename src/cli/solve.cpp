@@ -12,12 +12,14 @@
 #include "cli/checkpoint.h"
 #include "cli/interrupt.h"
 #include "cli/lightmap_options.h"
+#include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/sensors.h"
 #include "cli/solution_options.h"
 #include "cli/solve_input.h"
+#include "cli/step_in_words.h"
 #include "cli/summary.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
@@ -189,7 +191,18 @@ Results with_views(Results results, const SolveArguments& arguments, const Obser
   return results;
 }
 
-Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const Observer& observer) {
+// Tells of each mesh as soon as it is solved, unless the run is quiet.
+LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
+  if (arguments.verbosity == Verbosity::quiet) return {};
+  return [&line](const Simulation& simulation) {
+    line.hide();
+    const std::vector<AccuracyStep>& meshes = simulation.accuracy;
+    print_message(("mesh " + std::to_string(meshes.size())).c_str(), step_in_words(meshes.back()));
+  };
+}
+
+Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, ProgressLine& line) {
+  const Observer observer = observer_on(line);
   Results results;
   Simulation& simulation = results.simulation;
 
@@ -207,6 +220,7 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, const O
   };
   Steps with{.exchange = input.exchange, .ray_exchange = input.ray_exchange};
   if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
+  with.look = tell_of_meshes(arguments, line);
   with.row_blocks = checkpoint.blocks({results.scene, input.request.effects});
   simulation = simulate(results.scene, input.request, observed, with);
   // Who stops a run that comes to its end all the same wants what it has.
@@ -324,7 +338,7 @@ ExitCode solve(const SolveArguments& arguments) {
   if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
   const Results results = [&] {
     ProgressLine line(progress_shown(quiet));
-    return compute(arguments, checkpoint, observer_on(line));
+    return compute(arguments, checkpoint, line);
   }();
   const std::vector<std::filesystem::path> written = write(arguments, results);
   if (!results.report.solution.unfinished) checkpoint.remove();

@@ -3,6 +3,7 @@
 #include "base/rounded.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
+#include "cli/step_in_words.h"
 #include "cli/text_table.h"
 #include "light/colour.h"
 
@@ -38,33 +39,19 @@ std::string convergence(const Report& report) {
   return text.str();
 }
 
-// Of all that is known of it.
-double known_error(const AccuracyStep& step) {
-  return std::isfinite(step.solver) ? step.total : std::hypot(step.mesh, step.form_factor);
-}
-
-std::string parts(const AccuracyStep& step) {
-  const bool solver_known = std::isfinite(step.solver);
-  return percent(known_error(step), 2) + " %: mesh " + percent(step.mesh, 2) + ", form factors " +
-         percent(step.form_factor, 2) + ", solver " +
-         (solver_known ? percent(step.solver, 1) : "not known and not in it") +
-         "; points within a patch differ from its mean by " + percent(step.display, 2) +
-         " %, which shows where each patch is drawn in one even colour";
-}
-
 // How far off the patches' means may be, and what is drawn with them.
 std::string errors(const Report& report) {
   std::string on;
   for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
   const AccuracyStep& step = report.accuracy.back();
   if (step.inside) on = " inside";
-  std::string text = "error of the patches' means" + on + " about " + parts(step);
+  std::string text = "error of the patches' means" + on + " about " + errors_in_words(step);
   for (const auto& [space, part] : report.spaces) {
     if (step.inside && space == "inside") continue;
     const bool is_dark = part.mesh == 0 && part.form_factor == 0 && part.solver == 0 && part.display == 0;
     text += "\n  " + space + ", " + std::to_string(part.patches) + " patches, " +
             (is_dark ? "which reflect no light: none gets there, or all of it is absorbed"
-                     : "of the light that is reflected there: " + parts(part));
+                     : "of the light that is reflected there: " + errors_in_words(part));
   }
   return text;
 }

@@ -143,6 +143,21 @@ class AccuracyTest(ToolTest):
         self.assertTrue(done.stderr.startswith("patchlight: note: refining to 50 %: "), done.stderr)
         self.assertEqual(self.solve("-o", "a.ply", "--accuracy", "0.5", "--patches", "100", "-q").stderr, "")
 
+    def test_each_mesh_is_told_as_soon_as_it_is_solved(self):
+        report, done = self.report("--accuracy", "2%", "--patches", "100")
+        told = re.findall(r"^patchlight: mesh (\d+): (\d+) patches, (\S+) % \(mesh (\S+), form factors (\S+), solver \S+\), "
+                          r"(\S+) s$", done.stderr, re.MULTILINE)
+        self.assertGreater(len(told), 1)
+        self.assertEqual([int(line[0]) for line in told], list(range(1, len(report["accuracy"]) + 1)))
+        for line, mesh in zip(told, report["accuracy"]):
+            self.assertEqual(int(line[1]), mesh["patches"])
+            for text, error in zip(line[2:5], (mesh["total"], mesh["mesh"], mesh["form_factor"])):
+                self.assertAlmostEqual(float(text), 100 * error, delta=0.06 * 100 * error)
+        seconds = [float(line[5]) for line in told]
+        self.assertEqual(seconds, sorted(seconds))
+        one_mesh = self.solve("-o", "a.ply", "--patches", "100", "--error-bars")
+        self.assertNotIn("patchlight: mesh", one_mesh.stderr)
+
     def test_without_bars_it_is_said_what_is_not_known(self):
         for words, how in ((("--no-error-bars",), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
             done = self.solve("-o", "a.ply", "--patches", "100", *words)
