@@ -62,7 +62,9 @@ std::string further_costs(const Scene& scene, const Plan& plan, PatchIndex patch
   std::size_t sensors = 0;
   for (const SensorGroup& group : scene.sensors) sensors += group.sensors.size();
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (makes_second_mesh(plan, patches) ? "a second mesh where the first errs by more than 2 %, " : "") +
+         (makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan)
+              ? "a second mesh where the first errs by more than 2 %, "
+              : "") +
          (sensors > 0 ? counted(sensors, "sensor") + ", " : "") + "pictures and pages, where they are asked for\n";
 }
 
@@ -74,10 +76,11 @@ ExitCode plan(const PlanArguments& arguments) {
   const Scene scene = read_scene(arguments.models, arguments.read);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   check(arguments.request, scene);
-  const Plan plan = make_plan(scene, arguments.request);
-  require_memory(scene, arguments.request, plan);
-  const NestedMesh mesh = first_mesh(scene, plan);
-  require_memory(mesh.patches.size(), arguments.request, plan);
+  const Plan planned = make_plan(scene, arguments.request);
+  require_memory(scene, arguments.request, planned);
+  const NestedMesh mesh = first_mesh(scene, planned);
+  require_memory(mesh.patches.size(), arguments.request, planned);
+  const Plan plan = with_note_on_second_mesh(planned, mesh.patches.size());
   const ExpectedCost cost = expected_cost(scene, plan, mesh.patches);
 
   const WritingGuard guard;

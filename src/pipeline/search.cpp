@@ -317,10 +317,10 @@ std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accur
 
 std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
   if (steps_.size() > 1) return std::nullopt;
-  std::optional<MeshToSolve> next = second_mesh(run_, solved, steps_.back());
-  if (!next) return next;
-  notes_.push_back(note_on_second_mesh(*next, steps_.back()));
-  return remembered(std::move(*next), true);
+  SecondMesh next = second_mesh(run_, solved, steps_.back());
+  if (!next.note.empty()) (next.mesh ? notes_ : solved.simulation.notes).push_back(std::move(next.note));
+  if (!next.mesh) return std::nullopt;
+  return remembered(std::move(*next.mesh), true);
 }
 
 std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {

@@ -15,12 +15,19 @@ bool makes_second_mesh(const Run& run, PatchIndex patches);
 /// and where there may be a second mesh.
 bool cuts_locally(const Run& run, PatchIndex patches);
 
+/// What a run by rays does after its first mesh.
+struct SecondMesh {
+  std::optional<MeshToSolve> mesh;  ///< none: the first one is all
+  std::string note;                 ///< what is done, or why memory forbids it, for Simulation::notes; or empty
+};
+
 /// The mesh after the first one of such a run, by local_cuts(). What is known of the light on other patches is taken
 /// from `solved`. None where the error is small, where that would not take a third of it away, or where it would not
 /// fit into the memory.
-std::optional<MeshToSolve> second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors);
+SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors);
 
-/// What was done, for Simulation::notes.
-std::string note_on_second_mesh(const MeshToSolve& next, const AccuracyStep& errors);
+/// A plan with a note where a second mesh may be made after a first one of so many patches, but not even one with as
+/// many fits into the memory beside it.
+Plan with_note_on_second_mesh(Plan plan, PatchIndex patches);
 
 }  // namespace patchlight

@@ -71,6 +71,11 @@ std::string gigabytes(double bytes) {
   return text.str();
 }
 
+std::string memory_refused(double bytes, const Resources& resources) {
+  return "takes " + gigabytes(bytes) + ", and " + gigabytes(usable_memory(resources)) + " may be taken" +
+         (resources.memory ? " (resources.memory)" : " here");
+}
+
 double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy,
                      const LightInMemory& light) {
   const auto n = static_cast<double>(patches);
@@ -86,10 +91,13 @@ bool may_keep_solution(std::size_t patches, const Plan& plan) {
   return memory_needed(patches, plan) + bytes_kept * static_cast<double>(patches) <= usable_memory(plan.resources);
 }
 
-bool fits_as_next_mesh(std::size_t patches, double times_the_rays, Plan plan) {
+double memory_of_next_mesh(std::size_t patches, double times_the_rays, Plan plan) {
   plan.assembly.rays = static_cast<int>(std::ceil(times_the_rays * plan.assembly.rays));
-  return memory_needed(patches, plan) + bytes_of_next_mesh * static_cast<double>(patches) <=
-         usable_memory(plan.resources);
+  return memory_needed(patches, plan) + bytes_of_next_mesh * static_cast<double>(patches);
+}
+
+bool fits_as_next_mesh(std::size_t patches, double times_the_rays, const Plan& plan) {
+  return memory_of_next_mesh(patches, times_the_rays, plan) <= usable_memory(plan.resources);
 }
 
 double usable_memory(const Resources& resources) { return resources.memory.value_or(usable_share * installed_bytes()); }

@@ -25,9 +25,11 @@ double memory_needed(std::size_t patches, const Plan& plan);
 /// True when a solution may be copied as well before its errors are known.
 bool may_keep_solution(std::size_t patches, const Plan& plan);
 
-/// True when a mesh of so many patches may be solved by rows of rays, with so many times the plan's rays, while the one
-/// before it is still there.
-bool fits_as_next_mesh(std::size_t patches, double times_the_rays, Plan plan);
+/// The same by rows of rays, with so many times the plan's rays, while the mesh before is still there.
+double memory_of_next_mesh(std::size_t patches, double times_the_rays, Plan plan);
+
+/// True when that is usable.
+bool fits_as_next_mesh(std::size_t patches, double times_the_rays, const Plan& plan);
 
 /// Bytes that the run may take.
 double usable_memory(const Resources& resources);
@@ -41,6 +43,9 @@ std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, doubl
 
 /// A number of bytes as messages have it: "1.25 GB".
 std::string gigabytes(double bytes);
+
+/// "takes 1.25 GB, and 1 GB may be taken (resources.memory)", as messages have what is not usable.
+std::string memory_refused(double bytes, const Resources& resources);
 
 /// Refuses what cannot fit before anything is meshed: by the number of patches asked for, or by the least number that
 /// an edge allows, as a patch is never larger than the square of the longest edge. \throws MemoryError.

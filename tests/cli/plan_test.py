@@ -1,5 +1,6 @@
 """patchlight plan: what is simulated, why and at what cost; --force and --skip, and what results say about them."""
 import json
+import math
 import unittest
 
 from support import MATERIALS, ROOM, ToolTest, content
@@ -46,6 +47,20 @@ class PlanTest(ToolTest):
         expected = json.loads((self.folder / "plan.json").read_text())["expected"]
         self.assertTrue(expected["of_first_mesh"])
         self.assertLess(abs(expected["patches"] - 1000), 200)
+
+    def test_a_second_mesh_that_does_not_fit_is_noted(self):
+        options = ("plan", "room.obj", "--storage", "rays", "--patches", "30000", "--json", "plan.json")
+        said = "a second mesh, which is made where the first errs by more than 2 %, does not fit into the memory"
+        done = self.run_tool(*options)
+        self.assertIn("a second mesh where the first errs by more than 2 %, ", done.stdout)
+        self.assertNotIn(said, done.stderr)
+        needed = json.loads((self.folder / "plan.json").read_text())["expected"]["memory_bytes"]
+        done = self.run_tool(*options, "--memory", f"{math.ceil(needed / 1e6) + 1}MB")
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        self.assertIn(f"note: {said}", done.stderr)
+        self.assertIn("may be taken (--memory)", done.stderr)
+        self.assertNotIn("a second mesh", done.stdout)
+        self.assertIn(said, json.loads((self.folder / "plan.json").read_text())["notes"][-1])
 
     def test_facts_decide(self):
         plan = self.plan("--patches", "1000")

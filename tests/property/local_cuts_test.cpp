@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -146,13 +147,18 @@ TEST(LocalCuts, AreLeftOutWhereTheErrorIsSmall) {
   EXPECT_GT(s.accuracy[0].total, 0.005);
 }
 
-// A mesh that does not fit beside the first one is not made.
+// A mesh that does not fit beside the first one is not made, and a note says so.
 TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   Request request = by_rays(true);
   const Simulation first = simulate(room_with_board(), request);
   ASSERT_EQ(first.accuracy.size(), 2U);
   request.resources.memory = memory_needed(*request.mesh.patches, first.plan);
-  EXPECT_EQ(simulate(room_with_board(), request).accuracy.size(), 1U);
+  const Simulation s = simulate(room_with_board(), request);
+  EXPECT_EQ(s.accuracy.size(), 1U);
+  ASSERT_FALSE(s.notes.empty());
+  const std::string& note = s.notes.back();
+  EXPECT_NE(note.find("patches, would err less and is not made, as it takes "), std::string::npos) << note;
+  EXPECT_NE(note.find("may be taken (resources.memory)"), std::string::npos) << note;
 }
 
 // An accuracy is reached by as many of them as it takes, each mesh with at most four times the patches of the one
