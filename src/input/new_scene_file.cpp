@@ -3,9 +3,12 @@
 #include "base/rounded.h"
 #include "base/shortest.h"
 #include "input/materials.h"
+#include "input/new_cameras.h"
+#include "input/toml_text.h"
 #include "input/toml_value.h"
 #include "scene/sealed_room.h"
 #include "scene/sensor_grid.h"
+#include "scene/window_areas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,33 +17,14 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace patchlight {
 namespace {
 
-constexpr std::size_t most_cameras = 3;
 constexpr std::size_t most_named = 12;
-constexpr double eye_height = 1.6;     // metres
-constexpr double target_height = 1.3;  // metres
-constexpr double from_walls = 0.5;     // metres
-constexpr double smallest_room = 2;    // m^2
-constexpr double lowest_room = 1.8;    // metres: so much is free over a floor
-
-// Where sensors and cameras belong.
-struct NamedFloor {
-  std::string name;
-  Floor floor;
-};
-
-std::string toml_text(const std::string& text) {
-  std::string result = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') result += '\\';
-    const bool is_control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
-    result += is_control ? '?' : letter;
-  }
-  return result + "\"";
-}
+constexpr double smallest_room = 2;  // m^2
+constexpr double lowest_room = 1.8;  // metres: so much is free over a floor
 
 std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
   std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < smallest_room; });
@@ -63,10 +47,11 @@ bool is_under_something(const Floor& floor, double top) {
 
 std::vector<NamedFloor> rooms_of(const Scene& scene) {
   const double top = top_of(scene);
+  const std::vector<double> windows = window_areas(scene);
   std::vector<NamedFloor> places;
-  for (const NamedRoom& room : scene.rooms) {
-    Floor floor = floor_of(room.faces, scene.up);
-    if (is_under_something(floor, top)) places.push_back({room.name, std::move(floor)});
+  for (std::size_t k = 0; k < scene.rooms.size(); ++k) {
+    Floor floor = floor_of(scene.rooms[k].faces, scene.up);
+    if (is_under_something(floor, top)) places.push_back({scene.rooms[k].name, std::move(floor), windows[k]});
   }
   return largest_first(std::move(places));
 }
@@ -80,38 +65,9 @@ std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
   for (std::uint32_t group = 0; group < of_group.size(); ++group) {
     if (group_name(scene, group).empty()) continue;
     Floor floor = floor_of(outlines_of(scene, of_group[group]), scene.up);
-    if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor)});
+    if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor), 0});
   }
   return largest_first(std::move(places));
-}
-
-std::string place_text(const Point& point) {
-  std::string text = "[";
-  for (const double value : point)
-    text += (text.size() > 1 ? ", " : "") + shortest(std::round(1000 * value) / 1000 + 0.0);
-  return text + "]";
-}
-
-// From one of the two places of a floor that are farthest apart, away from walls, to the other.
-std::optional<Camera> camera_in(const NamedFloor& place) {
-  const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
-  constexpr double most_cells = 5000;
-  const auto [corner, x, y] = rectangle_over(place.floor, 0);
-  if (!(cells_along(x.norm(), spacing) * cells_along(y.norm(), spacing) <= most_cells)) return std::nullopt;
-  const SensorGroup grid = floor_grid(place.floor, 0, spacing, from_walls);
-  Camera camera{Point::Zero(), Point::Zero(), 70, place.name};
-  double farthest = 0;
-  for (const Sensor& from : grid.sensors) {
-    for (const Sensor& to : grid.sensors) {
-      const double distance = (to.point - from.point).norm();
-      if (!(distance > (1 + 1e-9) * farthest)) continue;
-      farthest = distance;
-      camera.eye = from.point + eye_height * place.floor.up;
-      camera.target = to.point + target_height * place.floor.up;
-    }
-  }
-  if (!(farthest > 0)) return std::nullopt;
-  return camera;
 }
 
 std::string unit_name(double metres_per_unit) {
@@ -218,7 +174,7 @@ std::string unlit_line(const std::vector<std::string>& rooms) {
 std::string luminaire_table(const Scene& scene, const Solid& hull, const std::vector<NamedFloor>& places) {
   const LampPlaces lamps = places_of_lamps(scene, hull, places);
   std::string positions;
-  for (const Point& lamp : lamps.points) positions += (positions.empty() ? "" : ", ") + place_text(lamp);
+  for (const Point& lamp : lamps.points) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
   const bool is_known = !positions.empty();
   const std::string mark = is_known ? "" : "# ";
   return std::string("# Nothing in the model shines, and no daylight gets in: a lamp that shines all around") +
@@ -264,39 +220,6 @@ std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& pla
     text << "# A grid over the largest floor.\n[[sensors]]\nname = \"work plane\"\nfloor = "
          << toml_text(places[0].name) << '\n'
          << rest;
-  }
-  return text.str();
-}
-
-// Of how much glass is near, m^2 / m^2.
-double glass_near(const Scene& scene, const Point& point) {
-  double sum = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (!is_opening(scene, p)) continue;
-    const std::vector<Point> corners = corner_points(scene, p);
-    const double area = area_vector(corners).norm();
-    sum += area / ((corners[0] - point).squaredNorm() + area);
-  }
-  return sum;
-}
-
-// From one end of the largest rooms to the other, towards the glass. A model with views of its own needs none.
-std::string camera_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
-  if (scene.rooms.empty() || !scene.cameras.empty()) return {};
-  std::ostringstream text;
-  std::set<std::string> names;
-  for (const NamedFloor& place : places) {
-    std::optional<Camera> camera = names.size() < most_cameras ? camera_in(place) : std::nullopt;
-    if (!camera || !names.insert(camera->name).second) continue;
-    if (glass_near(scene, camera->eye) > glass_near(scene, camera->target)) {
-      const Vector lower = (eye_height - target_height) * place.floor.up;
-      const Point eye = camera->target + lower;
-      camera->target = camera->eye - lower;
-      camera->eye = eye;
-    }
-    if (names.size() == 1) text << "# Views for --view NAME, from inside the largest rooms towards their glass.\n";
-    text << "[[camera]]\nname = " << toml_text(camera->name) << "\neye = " << place_text(camera->eye)
-         << "\ntarget = " << place_text(camera->target) << "\nfield_of_view = 70  # degrees, upright\n\n";
   }
   return text.str();
 }

@@ -5,6 +5,7 @@
 #include "support/scenes.h"
 
 #include <numbers>
+#include <utility>
 
 namespace patchlight::rooms_test {
 namespace {
@@ -107,6 +108,33 @@ TEST_F(Rooms, AreInANewSceneFile) {
   const Point& eye = again.cameras[0].eye;
   EXPECT_TRUE(eye.x() >= 0.5 && eye.x() <= 3.5 && eye.y() >= 0.5 && eye.y() <= 2.5);
   EXPECT_NEAR(eye.z(), 1.6, 1e-9);
+}
+
+// Of two rooms of one size that with a window comes first; a larger pane between both is no window, as little daylight
+// gets in by it.
+TEST_F(Rooms, WithTheLargestWindowsAreViewedFirst) {
+  Scene scene = read_scene(folder_ / "house.ifc");
+  scene.materials.push_back(test::grey(0));
+  scene.materials.back().transmittance = Spectrum::Constant(scene.materials[0].reflectance.size(), 0.8);
+  const auto pane = static_cast<MaterialIndex>(scene.materials.size() - 1);
+  const auto first_view = [&] {
+    return read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")))
+        .cameras.at(0)
+        .name;
+  };
+  const auto pane_at = [&](double x, double size) {
+    return test::Quad{Point(x, 1, 0.5), Point(x, 1 + size, 0.5), Point(x, 1 + size, 0.5 + size),
+                      Point(x, 1, 0.5 + size)};
+  };
+  for (std::vector<Point>& face : scene.rooms[0].faces)
+    for (Point& corner : face) corner.x() += 0.4;  // a wall of 0.6 m is left between both
+  EXPECT_EQ(first_view(), "Living");
+  scene = test::with_quad(std::move(scene), pane_at(9.2, 1), pane);
+  EXPECT_EQ(first_view(), "Kitchen");
+  scene = test::with_quad(std::move(scene), pane_at(4.7, 1.5), pane);
+  EXPECT_EQ(first_view(), "Kitchen");
+  scene = test::with_quad(std::move(scene), pane_at(0.2, 1.5), pane);
+  EXPECT_EQ(first_view(), "Living");
 }
 
 // In a box around both, which is closed, a lamp over the middle of each floor, within half a cell of sqrt(12) / 10 m.
