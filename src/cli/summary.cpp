@@ -166,6 +166,11 @@ std::string assembly(const FormFactorFacts& facts) {
   return text.str();
 }
 
+// Of a patch in the mean, doubled ones included.
+int rays_of_rows(const Report& report) {
+  return report.accuracy.empty() ? report.plan.assembly.rays : report.accuracy.back().samples;
+}
+
 std::string details(const Report& report) {
   std::ostringstream text;
   for (const Decision& decision : report.plan.decisions) {
@@ -174,7 +179,7 @@ std::string details(const Report& report) {
   text << "estimator of form factors: " << name_of(report.plan.assembly.estimator) << '\n';
   if (report.form_factors.counts) return text.str() + assembly(report.form_factors);
   if (report.plan.assembly.storage == Storage::rays)
-    return text.str() + "form factors: sparse rows of " + std::to_string(report.plan.assembly.rays) +
+    return text.str() + "form factors: sparse rows of " + std::to_string(rays_of_rows(report)) +
            " rays of a patch in the mean\n";
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }

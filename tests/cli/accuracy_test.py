@@ -158,6 +158,12 @@ class AccuracyTest(ToolTest):
         one_mesh = self.solve("-o", "a.ply", "--patches", "100", "--error-bars")
         self.assertNotIn("patchlight: mesh", one_mesh.stderr)
 
+    def test_rays_are_told_with_those_that_are_doubled(self):
+        report, done = self.report("--storage", "rays", "--rays", "16", "--accuracy", "2%", "--patches", "300", "-v")
+        rays = report["accuracy"][-1]["samples"]
+        self.assertGreater(rays, 16)
+        self.assertIn(f"form factors: sparse rows of {rays} rays of a patch in the mean\n", done.stdout)
+
     def test_without_bars_it_is_said_what_is_not_known(self):
         for words, how in ((("--no-error-bars",), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
             done = self.solve("-o", "a.ply", "--patches", "100", *words)
