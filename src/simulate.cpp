@@ -40,9 +40,9 @@ SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, Stag
   MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
   clock.finish(Stage::closure);
 
-  // 6. Materials, and the light of luminaires, sun and sky where it first arrives.
+  // 6. Materials, and the light of luminaires, sun and sky where it first arrives: by rays it is found with these.
   LitProblem problem = transport.light ? transport.light->lit : lit_problem(run, meshed, transport);
-  if (has_point_or_daylight(run.scene)) clock.finish(Stage::direct_light);
+  if (has_point_or_daylight(run.scene) && !transport.light) clock.finish(Stage::direct_light);
 
   // 7. Solve B = E + rho o (F B + H_direct), and see where the light went.
   Simulation simulation = solved(run, meshed, transport, std::move(problem));

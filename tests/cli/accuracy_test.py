@@ -158,6 +158,16 @@ class AccuracyTest(ToolTest):
         one_mesh = self.solve("-o", "a.ply", "--patches", "100", "--error-bars")
         self.assertNotIn("patchlight: mesh", one_mesh.stderr)
 
+    def test_light_that_comes_with_rows_of_rays_is_no_stage_of_its_own(self):
+        self.write("office.toml", OFFICE)
+        self.write("office.obj", OFFICE_MODEL)
+        self.write("office.mtl", OFFICE_MATERIALS)
+        for storage in ("tiles", "rays"):
+            done = self.run_tool("solve", "office.toml", "--patches", 300, "--storage", storage, "--report", "report.json")
+            self.assertEqual(done.returncode, GOOD, done.stderr)
+            costs = json.loads((self.folder / "report.json").read_text())["costs"]
+            self.assertEqual("direct light" in [cost["stage"] for cost in costs], storage == "tiles", costs)
+
     def test_rays_are_told_with_those_that_are_doubled(self):
         report, done = self.report("--storage", "rays", "--rays", "16", "--accuracy", "2%", "--patches", "300", "-v")
         rays = report["accuracy"][-1]["samples"]
