@@ -132,27 +132,64 @@ RoomSurface surface_facing(const Vector& normal, const Vector& up) {
   return upward > steepest ? RoomSurface::floor : upward < -steepest ? RoomSurface::ceiling : RoomSurface::walls;
 }
 
-void add_patch(SurfaceLight& surface, double area, double value) {
-  surface.min = surface.area > 0 ? std::min(surface.min, value) : value;
-  surface.mean += area * value;
-  surface.area += area;
+// A patch of a surface of a room.
+struct LitPatch {
+  double area = 0;     // m^2
+  double value = 0;    // illuminance
+  double differs = 0;  // how far it is from that at points, root mean square; 0 without error bars
+};
+
+// EN 12464-1: cells of a grid over an area with d metres along it are p = 0.2 x 5^log10(d) metres wide at most. Here d
+// is the root of the area, of walls that of a quarter of it, as a room has four.
+double cell_of_grid(const SurfaceLight& surface) {
+  const double area = surface.surface == RoomSurface::walls ? surface.area / 4 : surface.area;
+  return 0.2 * std::pow(5, std::log10(std::sqrt(area)));
+}
+
+// May the illuminance be much lower at some points than the patches tell?
+bool is_coarse(const SurfaceLight& surface, const std::vector<LitPatch>& patches) {
+  constexpr double much_lower = 0.9;
+  constexpr double about_as_low = 2;
+  const double cell = cell_of_grid(surface);
+  return std::any_of(patches.begin(), patches.end(), [&](const LitPatch& patch) {
+    if (!(patch.value < about_as_low * surface.min)) return false;
+    return std::sqrt(patch.area) > cell || patch.value - patch.differs < much_lower * surface.min;
+  });
+}
+
+SurfaceLight light_on(RoomSurface kind, const std::vector<LitPatch>& patches) {
+  SurfaceLight surface{kind};
+  if (patches.empty()) return surface;
+  surface.min = patches[0].value;
+  for (const LitPatch& patch : patches) {
+    surface.area += patch.area;
+    surface.mean += patch.area * patch.value;
+    surface.min = std::min(surface.min, patch.value);
+  }
+  surface.mean /= surface.area;
+  if (surface.mean > 0) surface.uniformity = surface.min / surface.mean;
+  surface.is_coarse = is_coarse(surface, patches);
+  return surface;
 }
 
 RoomLight light_of(const RoomBounds& bounds, const Scene& scene, const Simulation& simulation) {
   const double in_unit = scene.photometric ? 1 : 1 / luminous_efficacy;
   const Bands bands = bands_of(scene);
-  RoomLight light{bounds.room, {{{RoomSurface::floor}, {RoomSurface::walls}, {RoomSurface::ceiling}}}};
+  const auto illuminance = [&](const Spectrum& irradiance) { return in_unit * luminance(irradiance, bands); };
+  std::array<std::vector<LitPatch>, 3> surfaces;
   for (const PatchIndex i : bounds.patches) {
     const double area = simulation.problem.area[i];
     if (!(area > 0) || is_opening(scene, simulation.mesh.polygon[i])) continue;
     // Where no light at all comes nobody sees a surface: within a hollow wall that stands on the floor.
     if ((simulation.solution.irradiance.row(i) == 0).all()) continue;
     const auto surface = static_cast<std::size_t>(surface_facing(simulation.mesh.normal[i], scene.up));
-    add_patch(light.surfaces[surface], area, in_unit * luminance(simulation.solution.irradiance.row(i), bands));
+    const double differs = simulation.error_bars ? illuminance(simulation.error_bars->display.row(i)) : 0;
+    surfaces[surface].push_back({area, illuminance(simulation.solution.irradiance.row(i)), differs});
   }
-  for (SurfaceLight& surface : light.surfaces) {
-    if (surface.area > 0) surface.mean /= surface.area;
-    if (surface.mean > 0) surface.uniformity = surface.min / surface.mean;
+  RoomLight light{bounds.room};
+  for (const RoomSurface kind : {RoomSurface::floor, RoomSurface::walls, RoomSurface::ceiling}) {
+    const auto k = static_cast<std::size_t>(kind);
+    light.surfaces[k] = light_on(kind, surfaces[k]);
   }
   return light;
 }

@@ -26,6 +26,13 @@ class PageTest(ToolTest):
         self.assertEqual(len(data["pictures"]), 1)
         self.assertIn("--html page.html", data["command_line"])
 
+    def test_light_of_rooms_is_marked_where_the_mesh_is_coarse(self):
+        for patches, is_coarse in ((30, True), (2500, False)):
+            room = self.made("solve", "room.obj", "--patches", patches, "--no-error-bars")["report"]["room_surfaces"]
+            self.assertEqual(room["rooms"][0]["floor"]["coarse"], is_coarse)
+            if is_coarse:
+                self.assertIn("Sensors on a grid", room["note"])
+
     def test_page_alone_is_enough_to_write(self):
         self.assertEqual(self.made("solve", "room.obj", "--patches", 100, "--accuracy", "20%")["report"]["accuracy"][0]["samples"] > 0, True)
 

@@ -57,10 +57,13 @@ const char* name_of(RoomSurface surface);
 /// Illuminance of one of them, as EN 12464-1 has it, in Report::unit.
 struct SurfaceLight {
   RoomSurface surface = RoomSurface::floor;
-  double area = 0;        ///< of its patches, m^2; 0: there is none
-  double min = 0;         ///< of the patches' means
-  double mean = 0;        ///< by area
-  double uniformity = 0;  ///< U0 = min / mean; 0 in the dark
+  double area = 0;         ///< of its patches, m^2; 0: there is none
+  double min = 0;          ///< of the patches' means
+  double mean = 0;         ///< by area
+  double uniformity = 0;   ///< U0 = min / mean; 0 in the dark
+  bool is_coarse = false;  ///< smaller patches may find a lower `min`, and so U0: a patch that is less than twice as
+                           ///< bright is larger than a cell of the grid that EN 12464-1 asks for, or points of it
+                           ///< are, by its display error, darker than `min` by more than a tenth
 };
 
 /// What the surfaces of a room get.

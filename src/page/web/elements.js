@@ -10,7 +10,7 @@ const byId = (id) => document.getElementById(id);
 
 // A table with a caption; cells are texts, numbers or elements.
 function table(caption, heads, rows) {
-  const reads = (cell) => typeof cell === "number" || cell === null || /^(-?[\d.,]+(e[+-]?\d+)?(\u00a0%)?|not known|no bound)$/.test(cell);
+  const reads = (cell) => typeof cell === "number" || cell === null || /^((~ )?-?[\d.,]+(e[+-]?\d+)?(\u00a0%)?|not known|no bound)$/.test(cell);
   const isNumber = heads.map((_, column) => rows.length > 0 && rows.every((row) => reads(row[column])));
   const cell = (content, column) => {
     const made = element("td", isNumber[column] ? {class: "number"} : {});

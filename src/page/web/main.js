@@ -48,7 +48,7 @@ async function writeTables(show) {
   if (report) {
     section("accuracy", "What accuracy cost", ...accuracyParts(report));
     if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch((fault) => [element("p", {}, "The maps cannot be drawn: " + fault.message)]) : []));
-    if (report.room_surfaces && report.room_surfaces.rooms.length > 0) section("rooms", "Rooms", roomTable(report.room_surfaces));
+    if (report.room_surfaces && report.room_surfaces.rooms.length > 0) section("rooms", "Rooms", ...roomParts(report.room_surfaces));
     section("materials", "Materials", materialsTable(report));
     section("energy", "Energy balance", energyTable(report.energy_balance));
     section("convergence", "Convergence", ...convergenceParts(report.solution));

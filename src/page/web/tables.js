@@ -35,9 +35,12 @@ function accuracyParts(report) {
     report.accuracy.length > 1 ? chart("What accuracy cost", [curve("total", "total"), curve("mesh", "mesh"), curve("form factors", "form_factor"), curve("solver", "solver")], {label: "patches", logarithmic: true}, {label: "relative error", logarithmic: true}) : null];
 }
 
-function roomTable(light) {
-  const rows = light.rooms.flatMap((room) => ["floor", "walls", "ceiling"].filter((surface) => room[surface]).map((surface) => [room.name, surface, room[surface].area_m2, room[surface].min, room[surface].mean, room[surface].uniformity]));
-  return table("Illuminance of what bounds each room, in " + light.unit, ["room", "surface", "area, m²", "min", "mean", "uniformity"], rows);
+function roomParts(light) {
+  const marked = (surface, value) => surface.coarse ? "~ " + shown(value) : value;
+  const row = (room, name) => [room.name, name, room[name].area_m2, marked(room[name], room[name].min), room[name].mean, marked(room[name], room[name].uniformity)];
+  const rows = light.rooms.flatMap((room) => ["floor", "walls", "ceiling"].filter((name) => room[name]).map((name) => row(room, name)));
+  return [table("Illuminance of what bounds each room, in " + light.unit, ["room", "surface", "area, m²", "min", "mean", "uniformity"], rows),
+    light.note ? element("p", {}, "~ marks what is coarse: " + light.note) : null];
 }
 
 function sensorTable(sensors) {

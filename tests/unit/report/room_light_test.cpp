@@ -47,6 +47,35 @@ TEST(RoomLight, OfARoomWithOneLampIsItsFluxOverWhatAbsorbs) {
   EXPECT_NEAR(in_lux.rooms.at(0).surfaces[0].mean, 179 * report.rooms[0].surfaces[0].mean, 1e-9);
 }
 
+// By EN 12464-1 the floor of 1 m^2 takes a grid with cells of 0.2 x 5^0 = 0.2 m, and the walls, 4 m^2 together, of 0.2
+// x 5^log10(2) = 0.325 m.
+TEST(RoomLight, IsCoarseOnPatchesLargerThanTheStandardsGrid) {
+  const Scene scene = test::cube_room(0.5, 3);
+  const auto is_coarse = [&](double edge) {
+    Request request;
+    request.mesh.max_edge = edge;
+    const auto surfaces = report_of(scene, request, simulate(scene, request)).rooms.at(0).surfaces;
+    EXPECT_EQ(surfaces[floor_of_room].is_coarse, surfaces[walls_of_room].is_coarse);
+    return surfaces[floor_of_room].is_coarse;
+  };
+  EXPECT_TRUE(is_coarse(0.25));
+  EXPECT_FALSE(is_coarse(0.18));
+}
+
+// Or where points of a patch are darker than the least mean by more than a tenth.
+TEST(RoomLight, IsCoarseOnPatchesWithinWhichItDiffers) {
+  Request request;
+  request.mesh.max_edge = 0.1;
+  const Scene scene = test::cube_room(0.5, 3);
+  Simulation simulation = simulate(scene, request);
+  simulation.error_bars.emplace();
+  for (const double differs : {0.09, 0.11}) {
+    simulation.error_bars->display = differs * simulation.solution.irradiance;
+    for (const SurfaceLight& surface : report_of(scene, request, simulation).rooms.at(0).surfaces)
+      EXPECT_EQ(surface.is_coarse, differs > 0.1);
+  }
+}
+
 // Neither the box in the room nor the lamp below its ceiling bounds it, whether the room has a name or is a shell.
 TEST(RoomLight, LeavesOutWhatStandsInTheRoom) {
   Scene scene = test::furnished_room(0.5);
