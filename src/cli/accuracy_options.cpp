@@ -17,7 +17,8 @@ void add_refinement_options(CLI::App& command, Request& request) {
           std::to_string(first_patches) + " unless given, and\n--samples; default: one mesh",
       [&request](const std::string& text) { request.accuracy.relative_error = relative_error("--accuracy", text); });
   add(command, "--time", "TIME",
-      "refines for about so long, e.g. 30s or 2min, or less when\n--accuracy is reached; default: no limit",
+      "refines for about so long, e.g. 30s or 2min, or less when\n--accuracy is reached; sensors and pictures come on "
+      "top; default:\nno limit",
       [&request](const std::string& text) { request.accuracy.seconds = seconds("--time", text); });
   command
       .add_option(

@@ -58,14 +58,20 @@ std::string cost_lines(const ExpectedCost& cost) {
 }
 
 // What the estimate does not hold.
-std::string further_costs(const Scene& scene, const Plan& plan, PatchIndex patches) {
-  std::size_t sensors = 0;
-  for (const SensorGroup& group : scene.sensors) sensors += group.sensors.size();
+std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
+  const auto patches = static_cast<PatchIndex>(cost.patches);
+  const bool has_second_mesh = makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan);
+  const std::string sensors = cost.sensors == 0
+                                  ? ""
+                                  : counted(cost.sensors, "sensor") + " of some " + rounded(cost.sensor_seconds, 2) +
+                                        (cost.of_first_mesh ? " processor seconds or more, " : " processor seconds, ");
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan)
-              ? "a second mesh where the first errs by more than 2 %, "
-              : "") +
-         (sensors > 0 ? counted(sensors, "sensor") + ", " : "") + "pictures and pages, where they are asked for\n";
+         (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
+         "pictures and pages, where they are asked for" +
+         (plan.accuracy.seconds ? "; --time is that of the meshes: it does not have what looks at the last one, as "
+                                  "sensors and pictures do"
+                                : "") +
+         "\n";
 }
 
 }  // namespace
@@ -91,8 +97,7 @@ ExitCode plan(const PlanArguments& arguments) {
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
-            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(scene, plan, mesh.patches.size())
-            << std::flush;
+            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(plan, cost) << std::flush;
   return good;
 }
 

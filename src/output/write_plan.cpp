@@ -26,7 +26,9 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
                       {"seconds", cost.seconds()},
                       {"form_factor_cpu_seconds", cost.form_factor_seconds},
                       {"direct_light_cpu_seconds", cost.direct_light_seconds},
-                      {"solve_cpu_seconds", cost.solve_seconds}};
+                      {"solve_cpu_seconds", cost.solve_seconds},
+                      {"sensors", cost.sensors},
+                      {"sensor_cpu_seconds", cost.sensor_seconds}};
   json["sides_notes"] = plan.sides.notes;
   json["notes"] = plan.notes;
   json["scene_notes"] = scene.notes;

@@ -26,6 +26,13 @@ constexpr double products_of_closure = 100;
 constexpr double products_of_solver = 15;
 constexpr double seconds_per_entry = 1.1e-10;
 
+// A sensor sends four rays to each patch before it, some thousands more to all together, and by daylight, which comes
+// through few openings, many more: of 500 to 1,600 sensors in the Cornell box and two rooms (1,900 to 19,000 patches),
+// a duplex and a house (docs/models.md; 2,900 to 41,000).
+constexpr double seconds_per_sensor = 1.2e-3;
+constexpr double seconds_per_patch_of_sensor = 3.4e-7;
+constexpr double seconds_per_sensor_by_daylight = 1.4e-2;
+
 // The share of all rows that are those of lamps, by area.
 double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   double lamps = 0;
@@ -55,12 +62,19 @@ double rays_per_patch(const Scene& scene, const Plan& plan, PatchIndex patches) 
   return rays;
 }
 
+double seconds_of_a_sensor(const Scene& scene, const Plan& plan, double patches) {
+  const bool by_day = (scene.sky && simulates(plan, Effect::sky)) || (scene.sun && simulates(plan, Effect::sun));
+  return seconds_per_sensor + seconds_per_patch_of_sensor * patches + (by_day ? seconds_per_sensor_by_daylight : 0);
+}
+
 }  // namespace
 
 ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
   const auto n = static_cast<double>(mesh.size());
   ExpectedCost cost{
       .patches = mesh.size(), .bytes = memory_needed(mesh.size(), plan), .of_first_mesh = refines(plan.accuracy)};
+  for (const SensorGroup& group : scene.sensors) cost.sensors += group.sensors.size();
+  cost.sensor_seconds = seconds_of_a_sensor(scene, plan, n) * static_cast<double>(cost.sensors);
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
 

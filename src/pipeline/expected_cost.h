@@ -15,10 +15,12 @@ struct ExpectedCost {
   double form_factor_seconds = 0;   ///< processor seconds, as the next two
   double direct_light_seconds = 0;  ///< by luminaires, sun and sky
   double solve_seconds = 0;         ///< with closure
+  std::size_t sensors = 0;          ///< of the scene
+  double sensor_seconds = 0;        ///< of these; not in seconds(), as nothing else that looks at the solution is
   int threads = 1;
   bool of_first_mesh = false;  ///< patches are refined: the mesh to begin with alone
 
-  /// Wall-clock seconds with all threads busy.
+  /// Wall-clock seconds with all threads busy, until the solution.
   double seconds() const { return (form_factor_seconds + direct_light_seconds + solve_seconds) / threads; }
 };
 

@@ -48,6 +48,21 @@ class PlanTest(ToolTest):
         self.assertTrue(expected["of_first_mesh"])
         self.assertLess(abs(expected["patches"] - 1000), 200)
 
+    def test_tells_what_sensors_take(self):
+        self.write("sensors.toml", '[[model]]\nfile = "room.obj"\n[[sensors]]\nname = "plane"\ncorner = [0.1, 0.1, 0.8]\n'
+                                   'edges = [[0.8, 0, 0], [0, 0.8, 0]]\nspacing = 0.02\n')
+        options = ("plan", "sensors.toml", "--patches", "1000", "--json", "plan.json")
+        done = self.run_tool(*options)
+        self.assertEqual(done.returncode, GOOD, done.stderr)
+        self.assertRegex(done.stdout, r"\non top of that: .*1600 sensors of some \S+ processor seconds, pictures")
+        expected = json.loads((self.folder / "plan.json").read_text())["expected"]
+        self.assertEqual(expected["sensors"], 1600)
+        self.assertGreater(expected["sensor_cpu_seconds"], 1)
+        self.assertNotIn("--time", done.stdout)
+        done = self.run_tool(*options, "--time", "60s")
+        self.assertIn("; --time is that of the meshes: it does not have what looks at the last one, as sensors and "
+                      "pictures do\n", done.stdout)
+
     def test_a_second_mesh_that_does_not_fit_is_noted(self):
         options = ("plan", "room.obj", "--storage", "rays", "--patches", "30000", "--json", "plan.json")
         said = "a second mesh, which is made where the first errs by more than 2 %, does not fit into the memory"
