@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 namespace patchlight {
@@ -82,7 +81,7 @@ class Gather {
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
   double from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const;
-  float more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
+  double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
@@ -175,9 +174,8 @@ double Gather::from_a_lamp(PatchIndex patch, const Point& point, const std::arra
 
 // By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to go
 // with the rest.
-float Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
+double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
-  constexpr double most = 4;
   const double from_none = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
   const double in_mean = irradiance_.row(patch).sum() - from_none;
   if (!(in_mean > 0)) return 0;
@@ -194,7 +192,7 @@ float Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) c
     if (seen.sight == Sight::patch) points.push_back({seen.hit->polygon, seen.hit->side, seen.hit->point});
   for (const PatchIndex sender : lookup_.patches_at(points))
     if (sender != no_patch) there += sent_.row(sender).sum() / rays_from_point;
-  return static_cast<float>(std::min(most, there / in_mean) - 1);
+  return there / in_mean - 1;
 }
 
 // What the rays of all quarters find, those of the first one first.
@@ -218,10 +216,10 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
     const PatchCorners corners = mesh_.corner_points(met[m]);
     const int of_met = quarter_at(corners, mesh_.normal[met[m]], hit.point);
     into.met[first * rays + k] = 4 * met[m] + static_cast<PatchIndex>(of_met);
-    into.is_far[first * rays + k] = is_open && is_far_from(corners, hit.distance) ? 1 : 0;
+    into.seen_as[first * rays + k] = is_open && is_far_from(corners, hit.distance) ? seen_as_whole : seen_as_quarter;
     if (may_be_darker_there(patch, met[m], hit))
-      into.more_there[first * rays + k] =
-          more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)}));
+      into.seen_as[first * rays + k] = as_point(
+          more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)})));
     into.irradiance.row(quarter) += sent_.row(met[m]);
     // No ray to a lamp goes over mirrors.
     if (!lamps_.empty() && hit.reflections > 0) into.irradiance.row(quarter) += exitance_.row(met[m]);
@@ -255,7 +253,20 @@ void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   into.part_of_ray.segment<4>(4 * Eigen::Index{patch}) *= exposed > 0 ? 1 / exposed : 0;
 }
 
+constexpr double steps_of_share = 50;
+constexpr int first_code = 2;
+
 }  // namespace
+
+std::uint8_t as_point(double more) {
+  constexpr double most = 4;
+  return static_cast<std::uint8_t>(first_code + std::lround(steps_of_share * (1 + std::clamp(more, -1.0, most))));
+}
+
+std::optional<double> more_at_point(std::uint8_t seen_as) {
+  if (seen_as < first_code) return std::nullopt;
+  return (seen_as - first_code) / steps_of_share - 1;
+}
 
 GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays,
                                     const Observer& observer) {
@@ -266,8 +277,7 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
   GatheredQuarters found{.rays = rays.rays,
                          .irradiance = Field::Zero(size, patches.solved.problem.exitance.cols()),
                          .met = std::vector<PatchIndex>(count, no_patch),
-                         .is_far = std::vector<std::uint8_t>(count, 0),
-                         .more_there = std::vector<float>(count, std::numeric_limits<float>::quiet_NaN()),
+                         .seen_as = std::vector<std::uint8_t>(count, seen_as_quarter),
                          .part_of_ray = Eigen::ArrayXd::Zero(size),
                          .exposed = Eigen::ArrayXd::Zero(size),
                          .seen = Eigen::ArrayXd::Zero(size),

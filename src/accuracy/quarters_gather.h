@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -22,18 +23,24 @@ struct SolvedPatches {
   const SolvedProblem& solved;
 };
 
+/// What stands for a patch that a ray meets: the quarter that is met, the patch as it is seen from afar, or the point
+/// itself, of which a byte says how much more is reflected there, as a share of the mean over the patch: -1 where it is
+/// dark.
+inline constexpr std::uint8_t seen_as_quarter = 0;
+inline constexpr std::uint8_t seen_as_whole = 1;
+std::uint8_t as_point(double more);                         ///< `more` up to 4, in steps of 0.02
+std::optional<double> more_at_point(std::uint8_t seen_as);  ///< nothing where it is no point that counts
+
 /// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/quarters.h).
 struct GatheredQuarters {
   int rays = 0;      ///< from each quarter
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2
-  std::vector<PatchIndex> met;       ///< per quarter and ray: the quarter that it meets, or no_patch
-  std::vector<std::uint8_t> is_far;  ///< likewise: 1 where it meets a patch that is seen from afar
-  std::vector<float> more_there;     ///< likewise: where a dark patch meets a bright one close by, by what share of it
-                                     ///< more is reflected at that point, -1 where it is dark; else not a number
-  Eigen::ArrayXd part_of_ray;        ///< per quarter: what part of the mean over its patch one of its rays is
-  Eigen::ArrayXd exposed;            ///< per quarter: what of its area no solid covers, m^2
-  Eigen::ArrayXd seen;               ///< per quarter: the share of its hemisphere in which there are patches
-  Eigen::ArrayXd open;               ///< per quarter: the share of it in which there are patches, but none near
+  std::vector<PatchIndex> met;        ///< per quarter and ray: the quarter that it meets, or no_patch
+  std::vector<std::uint8_t> seen_as;  ///< likewise: seen_as_quarter, seen_as_whole, or as_point() says
+  Eigen::ArrayXd part_of_ray;         ///< per quarter: what part of the mean over its patch one of its rays is
+  Eigen::ArrayXd exposed;             ///< per quarter: what of its area no solid covers, m^2
+  Eigen::ArrayXd seen;                ///< per quarter: the share of its hemisphere in which there are patches
+  Eigen::ArrayXd open;                ///< per quarter: the share of it in which there are patches, but none near
 };
 
 /// How many rays start at each quarter, a power of two, and what chooses them.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -36,12 +37,11 @@ struct Differences {
     for (std::size_t ray = quarter * count; ray < (quarter + 1) * count; ++ray) {
       const PatchIndex met = rays.met[ray];
       if (met == no_patch) continue;
-      const float more = rays.more_there[ray];
-      if (!std::isnan(more)) {
-        visit(met / 4, static_cast<double>(more) * reflected.row(met / 4), true);
+      if (const std::optional<double> more = more_at_point(rays.seen_as[ray])) {
+        visit(met / 4, *more * reflected.row(met / 4), true);
         continue;
       }
-      const bool by_patch = rays.is_far[ray] != 0 && from_afar.is_known[met / 4] != 0;
+      const bool by_patch = rays.seen_as[ray] == seen_as_whole && from_afar.is_known[met / 4] != 0;
       visit(met / 4, by_patch ? from_afar.difference.row(met / 4) : of_quarters.row(met), false);
     }
   }

@@ -29,7 +29,7 @@ Gathered gathered(const Scene& scene, double max_edge, int rays) {
   RadiosityProblem problem;
   problem.exitance = Field::Zero(size, 1);
   Solution solution;
-  solution.radiosity = Field::Ones(size, 1);
+  solution.radiosity = solution.irradiance = Field::Ones(size, 1);
   found.rays = gather_at_quarters({found.mesh, occluder, lost, {problem, solution}}, {.rays = rays, .seed = 1}, {});
   return found;
 }
@@ -64,12 +64,20 @@ TEST(QuartersGather, IsOpenWhereNothingIsNear) {
   EXPECT_GT(under, 100);
 }
 
+// The byte that says how much more is reflected at a point keeps it to half of its steps.
+TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
+  EXPECT_FALSE(more_at_point(seen_as_quarter));
+  EXPECT_FALSE(more_at_point(seen_as_whole));
+  for (double more = -1; more <= 4; more += 0.1) EXPECT_NEAR(more_at_point(as_point(more)).value(), more, 0.0101);
+  EXPECT_EQ(more_at_point(as_point(40)).value(), 4);
+}
+
 // A ray counts as from afar where it comes from a patch that is open, and the one it meets is not near.
 TEST(QuartersGather, SeesPatchesFromAfarOnlyFromWhereIsOpen) {
   const auto [mesh, rays] = gathered(board_over_half_a_floor(), 0.2, 16);
   int from_afar = 0;
   for (std::size_t ray = 0; ray < rays.met.size(); ++ray) {
-    if (rays.is_far[ray] == 0) continue;
+    if (rays.seen_as[ray] != seen_as_whole) continue;
     ++from_afar;
     const auto patch = static_cast<PatchIndex>(ray / (4 * static_cast<std::size_t>(rays.rays)));
     EXPECT_GE(rays.open.segment<4>(4 * Eigen::Index{patch}).sum(), 4 * 0.5 - 1e-12);
