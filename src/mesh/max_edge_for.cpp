@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "mesh/cut_outlines.h"
+#include "mesh/cut_polygons.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/polygon_mesh.h"

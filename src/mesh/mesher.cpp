@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "mesh/boundary_vertices.h"
 #include "mesh/cut_outlines.h"
+#include "mesh/cut_polygons.h"
 #include "mesh/graded_edges.h"
 #include "mesh/outline.h"
 #include "mesh/polygon_mesh.h"

@@ -63,6 +63,11 @@ class Triangulation {
     }
   };
 
+  struct CornerNumbers {
+    std::vector<std::uint32_t> of_halfedge;  // the number of the vertex that it begins at, for its face
+    std::vector<VertexHandle> copies;        // the vertices of the numbers after those of the mesh
+  };
+
   double squared_length(EdgeHandle edge) const;
   std::int64_t rounded_length(EdgeHandle edge) const;
   void remember_if_long(EdgeHandle edge);
@@ -82,7 +87,7 @@ class Triangulation {
   std::vector<EdgeHandle> edges_in_quadrilaterals() const;
   std::vector<HalfedgeHandle> halfedges_around(VertexHandle vertex) const;
   bool first_keeps(const std::vector<HalfedgeHandle>& around, const OutlinePlane& plane) const;
-  std::vector<std::uint32_t> number_corners(const OutlinePlane& plane, std::vector<VertexHandle>& copies) const;
+  CornerNumbers corner_numbers(const OutlinePlane& plane) const;
 
   Workbench mesh_;
   double max_square_;

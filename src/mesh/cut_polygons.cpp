@@ -1,0 +1,276 @@
+#include "mesh/cut_polygons.h"
+
+#include "base/parallel.h"
+#include "mesh/noded_lines.h"
+#include "mesh/outline.h"
+#include "scene/extent.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Of the detail that is followed, the longest patch edge or less:
+constexpr double line_tolerance = 0.01;
+constexpr double largest_gap_of_detail = 0.25;
+constexpr double farthest_beside = 0.075;
+constexpr double least_beside = 0.0075;  // length times gap, of its square
+constexpr double least_width = 5e-4;     // narrower strips along edges come from rounding
+
+constexpr double least_size_of_lines = 16;  // in tolerances; smaller ones are left out
+constexpr double least_size_over_gap = 4;   // farther from what is smaller its shadow has no edge
+
+constexpr double grid_of_extent = 2e-7;  // the width of the grid on which lines meet
+
+struct Plane {
+  Point origin;
+  Eigen::Matrix<double, 3, 2> axes;
+
+  FlatPoint flat(const Point& point) const { return axes.transpose() * (point - origin); }
+  Point lifted(const FlatPoint& point) const { return origin + axes * point; }
+};
+
+Plane plane_along(const Point& origin, const Vector& along, const Vector& normal) {
+  Plane plane{origin, {}};
+  plane.axes.col(0) = (along - along.dot(normal) * normal).normalized();
+  plane.axes.col(1) = normal.cross(plane.axes.col(0));
+  return plane;
+}
+
+// Where on the edge from one point to another, from 0 to 1.
+double place_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point) {
+  return (point - from).dot(to - from) / (to - from).squaredNorm();
+}
+
+bool is_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point, double near) {
+  const double t = std::clamp(place_on(from, to, point), 0.0, 1.0);
+  return (from + t * (to - from) - point).norm() <= near;
+}
+
+// Does a ray along x cross the outline an odd number of times? A seam counts twice.
+bool is_inside(std::span<const FlatPoint> outline, const FlatPoint& point) {
+  bool inside = false;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const FlatPoint& from = outline[k];
+    const FlatPoint& to = outline[(k + 1) % outline.size()];
+    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
+    if (from.x() + (point.y() - from.y()) / (to.y() - from.y()) * (to.x() - from.x()) > point.x()) inside = !inside;
+  }
+  return inside;
+}
+
+// The outline of one polygon in its plane.
+class FlatOutline {
+ public:
+  FlatOutline(const std::vector<Point>& corners, const Vector& normal, double grid)
+      : corners_(corners), plane_(plane_along(corners[0], corners[1] - corners[0], normal)), grid_(grid) {
+    for (const Point& corner : corners) flat_.push_back(plane_.flat(corner));
+  }
+
+  std::vector<FlatLine> flat(const std::vector<ContactLine>& lines, double least_gap, double largest_gap) const {
+    std::vector<FlatLine> result;
+    for (const ContactLine& line : lines) {
+      if (line.gap >= least_gap && line.gap <= largest_gap)
+        result.push_back({snapped(plane_.flat(line.from)), snapped(plane_.flat(line.to))});
+    }
+    return result;
+  }
+
+  // The parts of the lines that lie inside, cut where they meet, without those that run along an edge in less than this
+  // width.
+  std::vector<FlatLine> parts_inside(std::vector<FlatLine> lines, double narrow) const {
+    const std::size_t n = flat_.size();
+    for (std::size_t k = 0; k < n; ++k) lines.push_back({flat_[k], flat_[(k + 1) % n]});
+    std::vector<FlatLine> parts = noded_lines(lines, grid_);
+    std::erase_if(parts, [&](const FlatLine& part) {
+      const FlatPoint middle = (part[0] + part[1]) / 2;
+      return edge_at(middle).has_value() || runs_along(part, narrow) || !is_inside(flat_, middle);
+    });
+    return parts;
+  }
+
+  // Is the line a part of an edge?
+  bool runs_along(const FlatLine& line) const { return runs_along(line, near()); }
+
+  bool runs_along(const FlatLine& line, double width) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
+      if (is_on(flat_[k], to, line[0], width) && is_on(flat_[k], to, line[1], width)) return true;
+    }
+    return false;
+  }
+
+  LineEnd end_at(const FlatPoint& point) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if ((flat_[k] - point).norm() <= near()) return {{}, corners_[k]};
+    }
+    const std::optional<std::size_t> edge = edge_at(point);
+    if (!edge) return {{}, plane_.lifted(point)};
+    return {mark_on(*edge, point), {}};
+  }
+
+  // On every edge that goes through a point: both of a seam.
+  std::vector<Mark> marks_at(const FlatPoint& point) const {
+    std::vector<Mark> marks;
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) marks.push_back(mark_on(k, point));
+    }
+    return marks;
+  }
+
+ private:
+  double near() const { return 2 * grid_; }
+
+  std::optional<std::size_t> edge_at(const FlatPoint& point) const {
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) return k;
+    }
+    return std::nullopt;
+  }
+
+  Mark mark_on(std::size_t edge, const FlatPoint& point) const {
+    const std::size_t next = (edge + 1) % flat_.size();
+    const double t = place_on(flat_[edge], flat_[next], point);
+    return {edge, comes_before(corners_[next], corners_[edge]) ? 1 - t : t};
+  }
+
+  // What is as near to the outline as faces that touch are is on it.
+  FlatPoint snapped(const FlatPoint& point) const {
+    constexpr double grids = 10;
+    for (const FlatPoint& corner : flat_) {
+      if ((corner - point).norm() <= grids * grid_) return corner;
+    }
+    for (std::size_t k = 0; k < flat_.size(); ++k) {
+      const FlatPoint& from = flat_[k];
+      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
+      if (is_on(from, to, point, grids * grid_)) return from + place_on(from, to, point) * (to - from);
+    }
+    return point;
+  }
+
+  const std::vector<Point>& corners_;
+  Plane plane_;
+  double grid_;
+  std::vector<FlatPoint> flat_;
+};
+
+// The diagonal of all of them together.
+double size_of(const std::vector<FlatLine>& lines) {
+  Eigen::AlignedBox2d box;
+  for (const FlatLine& line : lines) box.extend(line[0]).extend(line[1]);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+// Contact lines whose gaps are of about one width.
+struct GapClass {
+  std::vector<FlatLine> lines;
+  double widest;  // metres; 0: they touch
+};
+
+// The ones with a gap that patches of this detail are wider than.
+std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<ContactLine>& contacts, double detail) {
+  std::vector<double> gaps;
+  for (const ContactLine& line : contacts) {
+    if (line.gap <= largest_gap_of_detail * detail) gaps.push_back(line.gap);
+  }
+  std::sort(gaps.begin(), gaps.end(), std::greater());
+  std::vector<GapClass> classes;
+  for (std::size_t k = 0; k < gaps.size();) {
+    const double widest = gaps[k];
+    while (k < gaps.size() && (4 * gaps[k] > widest || widest == 0)) ++k;
+    classes.push_back({outline.flat(contacts, gaps[k - 1], widest), widest});
+  }
+  return classes;
+}
+
+// Light that gets under an edge fades over some widths of the gap: one and three of them from the edge there are lines
+// as well, where patches would be wider and the edge is long enough for it to matter.
+std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double grid, double gap, double detail) {
+  double length = 0;
+  for (const FlatLine& line : edges) length += (line[1] - line[0]).norm();
+  if (length * gap < least_beside * detail * detail) return {};
+  std::vector<FlatLine> beside;
+  for (const double widths : {1.0, 3.0}) {
+    if (widths * gap > farthest_beside * detail) continue;
+    const std::vector<FlatLine> some = lines_beside(edges, grid, widths * gap);
+    beside.insert(beside.end(), some.begin(), some.end());
+  }
+  return beside;
+}
+
+// Not those of lines along the outline, unless they are worth lines beside them.
+bool matters(const FlatOutline& outline, const GapClass& gap, double detail) {
+  double length = 0;
+  for (const FlatLine& line : gap.lines) {
+    if (!outline.runs_along(line)) return true;
+    length += (line[1] - line[0]).norm();
+  }
+  return length * gap.widest >= least_beside * detail * detail;
+}
+
+CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const std::vector<ContactLine>& contacts,
+                       double detail, double grid) {
+  CutPolygon cut{std::move(corners), normal, 4 * grid, {}, {}};
+  if (contacts.empty()) return cut;
+  const FlatOutline outline(cut.corners, normal, grid);
+  std::vector<FlatLine> lines;
+  for (const GapClass& gap : by_gap(outline, contacts, detail)) {
+    const double tolerance = line_tolerance * detail;
+    const double least_size = std::max(least_size_of_lines * tolerance, least_size_over_gap * gap.widest);
+    if (size_of(gap.lines) < least_size || !matters(outline, gap, detail)) continue;
+    const std::vector<FlatLine> edges = simplified_lines(gap.lines, grid, tolerance, least_size);
+    const std::vector<FlatLine> beside = lines_beside_gap(edges, grid, gap.widest, detail);
+    lines.insert(lines.end(), edges.begin(), edges.end());
+    lines.insert(lines.end(), beside.begin(), beside.end());
+  }
+  if (lines.empty()) return cut;
+  for (const FlatLine& part : outline.parts_inside(std::move(lines), least_width * detail)) {
+    cut.lines.push_back({outline.end_at(part[0]), outline.end_at(part[1])});
+    for (const FlatPoint& end : part) {
+      if (!outline.end_at(end).mark) continue;
+      for (const Mark& mark : outline.marks_at(end)) cut.marks.push_back(mark);
+    }
+  }
+  return cut;
+}
+
+}  // namespace
+
+double followed_detail(const ContactLines& contacts, double max_edge) {
+  constexpr double rounding = 1e-9;
+  const double detail = std::min(contacts.of_edge * max_edge, contacts.detail);
+  return std::ldexp(contacts.size, static_cast<int>(std::floor(std::log2(detail / contacts.size) + rounding)));
+}
+
+std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
+                                     double max_edge) {
+  return cut_again({}, scene, loose, contacts, max_edge, false);
+}
+
+std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
+                                  const ContactLines& contacts, double max_edge, bool same_detail) {
+  const bool any = !contacts.on.empty();
+  const double grid = any ? grid_of_extent * extent_of(scene) : 0;
+  const double detail = any ? followed_detail(contacts, max_edge) : 0;
+  static const std::vector<ContactLine> none;
+  const bool all = polygons.empty();
+  polygons.resize(scene.polygons.size());
+  parallel_for(polygons.size(), [&](std::size_t p) {
+    const std::vector<ContactLine>& lines = any ? contacts.on[p] : none;
+    const bool is_loose = !loose.empty() && !loose[p].empty();
+    if (!all && !is_loose && (same_detail || lines.empty())) return;
+    const auto polygon = static_cast<PolygonIndex>(p);
+    polygons[p] =
+        cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon), lines, detail, grid);
+  });
+  return polygons;
+}
+
+}  // namespace patchlight
