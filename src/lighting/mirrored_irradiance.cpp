@@ -2,18 +2,21 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "lighting/mirrored_sources.h"
 #include "lighting/receiver.h"
 #include "lighting/receivers.h"
 #include "lighting/shifted_points.h"
 #include "mesh/small_patches.h"
-#include "scene/triangulate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <numbers>
-#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,66 +28,6 @@ namespace {
 constexpr std::uint32_t most_replicates = 8;
 constexpr std::size_t most_mirrors_of_sky = 16;
 constexpr int doublings_at_points = 4;
-
-// What one sample of a source gives a place if nothing is in the way.
-struct MirroredArrival {
-  Segment segment;  // from the place to the source
-  Spectrum irradiance;
-};
-
-// Light that arrives at the image of a place from one direction, for each sample of a source.
-using ArrivalAtImage = std::function<std::optional<MirroredArrival>(const SurfacePoint& at, const SurfacePoint& image,
-                                                                    const Eigen::Vector2d& uv)>;
-
-std::optional<MirroredArrival> arrived(const SurfacePoint& at, const Arrival& arrival) {
-  if (!(arrival.irradiance > 0)) return {};
-  return MirroredArrival{{at.point, arrival.from, at.polygon, no_polygon}, arrival.irradiance * *arrival.colour};
-}
-
-// E G A: one point of the lamp.
-std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const Point& y, const SurfacePoint& at,
-                                         const SurfacePoint& image) {
-  const Vector toward = y - image.point;
-  const double cosine = image.normal.dot(toward);
-  const double cosine_there = -lamp.normal.dot(toward);
-  if (!(cosine > 0 && cosine_there > 0)) return {};
-  const double geometry = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
-  return MirroredArrival{{at.point, y, at.polygon, lamp.polygon}, geometry * lamp.area * lamp.exitance};
-}
-
-// Where a source is: in a ball, or in a direction.
-struct SourceExtent {
-  std::optional<Vector> direction;
-  Ball ball;
-};
-
-struct MirroredSource {
-  ArrivalAtImage arrival;
-  SourceExtent extent;
-};
-
-std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
-  std::vector<MirroredSource> sources;
-  for (const Luminaire& luminaire : lighting.luminaires) {
-    const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
-    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
-                         return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
-                       },
-                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}}});
-  }
-  if (lighting.sun)
-    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
-                         return arrived(at, from_sun(lighting, image));
-                       },
-                       {lighting.sun->direction, {}}});
-  for (const LampFace& lamp : lamps)
-    sources.push_back({[&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
-                                                                  const Eigen::Vector2d& uv) {
-                         return from_lamp(lamp, points.at(uv.x(), uv.y()), at, image);
-                       },
-                       {{}, ball_around(lamp.corners)}});
-  return sources;
-}
 
 Ball ball_of(const Receiver& receiver) {
   return receiver.is_point() ? Ball{receiver.place(0, 0).point, 0} : ball_around(receiver.corners);
@@ -323,21 +266,6 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
 }  // namespace
 
 Mirrors::Mirrors(const Scene& scene, const Tracing& tracing) : paths(scene), view(scene, paths.sides(), tracing) {}
-
-std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side side) {
-  const std::vector<Point> corners = corner_points(scene, polygon);
-  const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
-  const Vector normal = (side == Side::front ? 1 : -1) * front_normal(scene, polygon);
-  std::vector<LampFace> faces;
-  if (corners.size() == 4 && is_convex(corners)) {
-    faces.push_back(
-        {{corners[0], corners[1], corners[2], corners[3]}, normal, area_vector(corners).norm(), polygon, exitance});
-    return faces;
-  }
-  for (const auto& [a, b, c] : triangles_of(corners))
-    faces.push_back({{a, b, c, c}, normal, (b - a).cross(c - a).norm() / 2, polygon, exitance});
-  return faces;
-}
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {

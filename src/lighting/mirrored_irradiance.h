@@ -4,11 +4,11 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include "lighting/direct_irradiance.h"
+#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
 #include "lighting/mirror_paths.h"
 #include "lighting/mirror_rays.h"
 
-#include <array>
 #include <span>
 
 namespace patchlight {
@@ -21,18 +21,6 @@ struct Mirrors {
   Mirrors(const Scene& scene, const Tracing& tracing);
   Mirrors(const Mirrors&) = delete;  // the view refers to the paths
 };
-
-/// A triangle, whose last corner comes twice, or a convex quadrilateral that emits from its front.
-struct LampFace {
-  std::array<Point, 4> corners;
-  Vector normal;  ///< unit
-  double area = 0;
-  PolygonIndex polygon = no_polygon;
-  Spectrum exitance;  ///< W/m^2
-};
-
-/// The triangles and convex quadrilaterals of a side of a polygon that emits.
-std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side side);
 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
 /// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to 16.

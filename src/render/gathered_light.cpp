@@ -2,6 +2,7 @@
 
 #include "base/sampling.h"
 #include "light/texture.h"
+#include "lighting/mirrored_irradiance.h"
 #include "render/hemisphere.h"
 #include "render/pixel_samples.h"
 #include "render/sky_samples.h"

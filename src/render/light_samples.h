@@ -2,8 +2,8 @@
 
 #include "patchlight/base/field.h"
 
+#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
-#include "lighting/mirrored_irradiance.h"
 #include "lighting/sky_irradiance.h"
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include "patchlight/views/picture.h"
 
 #include "light/photometry.h"
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/lamp_faces.h"
 #include "pipeline/lamps_apart.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
