@@ -1,16 +1,15 @@
 #include "pipeline/search.h"
 
-#include "patchlight/base/error.h"
-
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/doublings.h"
 #include "base/parallel.h"
-#include "base/rounded.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/refine.h"
 #include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
+#include "pipeline/next_mesh_by_rays.h"
+#include "pipeline/out_of_reach.h"
 #include "pipeline/relative_errors.h"
 #include "pipeline/second_mesh.h"
 #include "pipeline/with_error_bars.h"
@@ -77,37 +76,6 @@ double patches_with(double times, const AccuracyStep& step) {
   return std::sqrt(static_cast<double>(step.patches) * step.patches + std::max(0.0, times) * new_pairs(step));
 }
 
-// What the usable memory allows is told, as far as it can be known.
-[[noreturn]] void refuse(const Plan& plan, double patches, double reachable) {
-  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) +
-                    "%: found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
-                    gigabytes(memory_needed(static_cast<std::size_t>(patches), plan)) + ", and " +
-                    gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
-                    percent(reachable, 2) + "% or more: ask for that, or for an accuracy.interest");
-}
-
-// What an accuracy takes.
-struct Needed {
-  double patches = 0;
-  double reachable = 0;  // the error with as many patches as fit
-};
-
-// Once three meshes have told how the error falls with the number of patches: set where far more are needed than fit.
-// Rows of rays err by their rays as well.
-std::optional<Needed> out_of_reach(const Plan& plan, const std::vector<AccuracyStep>& steps) {
-  constexpr double far_more = 2;
-  if (steps.size() < 3 || plan.assembly.storage == Storage::rays) return std::nullopt;
-  const AccuracyStep& before = steps[steps.size() - 3];
-  const AccuracyStep& last = steps.back();
-  const double finer = static_cast<double>(last.patches) / before.patches;
-  const double order = finer > 1 ? std::log(before.total / last.total) / std::log(finer) : 1;
-  const double at_least = std::max(order, mesh_order / 2);
-  const double most = patches_that_fit(plan);
-  const double needed = last.patches * std::pow(last.total / *plan.accuracy.relative_error, 1 / at_least);
-  if (needed <= far_more * most) return std::nullopt;
-  return Needed{needed, last.total * std::pow(last.patches / most, at_least)};
-}
-
 // How many parents can be cut, each into sixteen new patches, before there are so many.
 std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
@@ -128,15 +96,6 @@ Plan with_samples(Plan plan, int samples) {
 Plan with_solver_part(Plan plan, const std::optional<double>& solver_part) {
   plan.accuracy.solver_part = solver_part;
   return plan;
-}
-
-// The plan of a mesh with so many rays of a patch in the mean, for its memory.
-Plan with_rays_of(const LocalCuts& cuts, const Plan& plan) {
-  return with_samples(plan, static_cast<int>(std::ceil(times_the_rays(cuts) * plan.assembly.rays)));
-}
-
-bool fits(const LocalCuts& cuts, const Plan& plan) {
-  return memory_needed(cuts.light_place.size(), with_rays_of(cuts, plan)) <= usable_memory(plan.resources);
 }
 
 AccuracyStep accuracy_of(const SolvedMesh& solved) {
@@ -259,7 +218,7 @@ Plan Search::stored_for(const SolvedMesh& solved, double accuracy) {
   const std::optional<Needed> needed = out_of_reach(plan, steps_);
   if (!needed) return plan;
   if (may_go_by_rays(plan)) return gone_by_rays(plan);
-  refuse(plan, needed->patches, needed->reachable);
+  refuse(plan, *needed);
 }
 
 Search::Finer Search::finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const {
@@ -280,39 +239,11 @@ MeshToSolve Search::remembered(MeshToSolve next, bool keeps_known) {
   return next;
 }
 
-// A mesh grows no further at once, as it is told from the one before where; and no further than time and memory reach.
-std::optional<LocalCuts> Search::cuts_that_fit(const SolvedMesh& solved, double accuracy) const {
-  constexpr double most_growth = 3;
-  constexpr double most_more_rays = 2;
-  constexpr double least_growth = 0.1;
-  const Plan& plan = solved.simulation.plan;
-  // Both patches and rays make a mesh dearer.
-  double growth = std::min(most_growth, std::sqrt(std::max(0.0, times_in_time())) - 1);
-  for (; growth > least_growth; growth /= 2) {
-    const double more_rays = std::min(most_more_rays, growth);
-    LocalCuts cuts = local_cuts(solved, steps_.back(), {accuracy / error_margin, growth, more_rays, more_rays, true});
-    if (!cuts.changes || fits(cuts, plan)) return cuts;
-  }
-  return std::nullopt;
-}
-
 std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accuracy) {
-  const AccuracyStep& step = steps_.back();
-  // What is left where more rays gain nothing they do not mend.
-  constexpr double hardly = 0.95;
-  if (step.new_patches == 0 && step.total > hardly * steps_[steps_.size() - 2].total) return std::nullopt;
-  std::optional<LocalCuts> cuts = cuts_that_fit(solved, accuracy);
-  if (!cuts) {
-    if (run_.plan.accuracy.seconds) return std::nullopt;
-    constexpr double any = std::numeric_limits<double>::infinity();
-    const LocalCuts wanted = local_cuts(solved, step, {accuracy / error_margin, any, any, any, true});
-    const Plan& plan = solved.simulation.plan;
-    refuse(with_rays_of(wanted, plan), static_cast<double>(wanted.light_place.size()), step.total);
-  }
-  if (!cuts->changes) return std::nullopt;
-  MeshToSolve next = mesh_with(std::move(*cuts), solved);
-  next.plan = with_solver_part(next.plan, part_of_solver(run_, accuracy));
-  return remembered(std::move(next), true);
+  std::optional<MeshToSolve> next = next_mesh_by_rays(solved, steps_, {accuracy, times_in_time()});
+  if (!next) return next;
+  next->plan = with_solver_part(next->plan, part_of_solver(run_, accuracy));
+  return remembered(std::move(*next), true);
 }
 
 std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
@@ -347,7 +278,7 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   if (!more.fits) {
     if (run_.plan.accuracy.seconds || step.total <= accuracy) return std::nullopt;
     const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-    refuse(more.plan, std::max<double>(more.mesh.mesh.patches.size(), patches), step.total);
+    refuse(more.plan, {std::max<double>(more.mesh.mesh.patches.size(), patches), step.total});
   }
   const AssemblyOptions& before = solved.simulation.plan.assembly;
   const AssemblyOptions& after = more.plan.assembly;

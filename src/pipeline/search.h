@@ -1,6 +1,5 @@
 #pragma once
 
-#include "pipeline/local_cuts.h"
 #include "pipeline/run.h"
 
 #include <optional>
@@ -44,7 +43,6 @@ class Search {
   std::optional<MeshToSolve> next_by_pairs(SolvedMesh& solved, double accuracy);
   std::optional<MeshToSolve> next_by_rays(SolvedMesh& solved, double accuracy);
   std::optional<MeshToSolve> second(SolvedMesh& solved);
-  std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, double accuracy) const;
   MeshToSolve remembered(MeshToSolve next, bool keeps_known);
   Plan stored_for(const SolvedMesh& solved, double accuracy);
   Finer finer(const SolvedMesh& solved, double accuracy, const Plan& plan) const;
