@@ -38,6 +38,15 @@ Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point&
   return reflectance_at(texture, map->linear * point + map->offset).min(1);
 }
 
+bool is_plain(const SolvedLight& light, PatchIndex patch) {
+  return light.occluder.specular_faces().at(light.mesh.polygon[patch]) == nullptr;
+}
+
+std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
+  if (light.other_side.empty() || light.other_side[patch] == patch) return std::nullopt;
+  return light.other_side[patch];
+}
+
 // Where a ray ends on a patch; none where it finds nothing.
 struct GatheredLight::Stop {
   std::optional<PatchIndex> patch;

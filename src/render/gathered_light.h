@@ -9,6 +9,7 @@
 #include "visibility/occluder.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -29,6 +30,12 @@ struct SolvedLight {
 
 /// The reflectance at a point of a patch: that of the texel where a picture is on it, else the patch's.
 Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point);
+
+/// False where only the solution knows what is scattered: at clear faces and mirrors.
+bool is_plain(const SolvedLight& light, PatchIndex patch);
+
+/// The patch on the other side of a sheet.
+std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch);
 
 /// A place of a patch.
 struct PatchPoint {
