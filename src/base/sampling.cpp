@@ -1,6 +1,7 @@
 #include "base/sampling.h"
 
 #include <algorithm>
+#include <bit>
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <numbers>
@@ -23,6 +24,24 @@ std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0xc7afe638U;
   x ^= x * 0x8d22f6e6U;
   return x;
+}
+
+constexpr std::size_t sobol_dimensions = 4;
+
+// Sobol's direction numbers with their bits reversed: those of bit b lead from point k - 1 to point k where k has b
+// trailing zeros (Antonov and Saleev 1979).
+using SobolDirections = std::array<std::array<std::uint32_t, sobol_dimensions>, 32>;
+
+SobolDirections reversed_directions() {
+  SobolDirections directions{};
+  for (std::size_t bit = 0; bit < directions.size(); ++bit) {
+    // Point 2^b is v_b ^ v_(b - 1). Boost's engine leaves out the zero point.
+    boost::random::sobol_engine<std::uint32_t, 32> engine(sobol_dimensions);
+    engine.discard(sobol_dimensions * ((std::uintmax_t{1} << bit) - 1));
+    for (std::size_t d = 0; d < sobol_dimensions; ++d)
+      directions[bit][d] = reverse_bits(engine()) ^ (bit > 0 ? directions[bit - 1][d] : 0);
+  }
+  return directions;
 }
 
 // The centre of the interval of width 2^-32 that the integer stands for.
@@ -54,16 +73,17 @@ std::uint32_t owen_scramble(std::uint32_t coordinate, std::uint32_t seed) {
 }
 
 std::vector<std::array<double, 4>> scrambled_sobol(std::uint32_t count, std::uint32_t seed) {
-  std::array<std::uint32_t, 4> seeds{};
-  for (std::uint32_t d = 0; d < 4; ++d) seeds[d] = hash({seed, d});
+  static const SobolDirections directions = reversed_directions();
+  std::array<std::uint32_t, sobol_dimensions> seeds{};
+  for (std::uint32_t d = 0; d < sobol_dimensions; ++d) seeds[d] = hash({seed, d});
 
-  // Boost's engine leaves out the zero point; without it a power of two of points is not stratified.
-  boost::random::sobol_engine<std::uint32_t, 32> engine(4);
-  std::vector<std::array<double, 4>> points(count);
+  // Without the zero point a power of two of points would not be stratified.
+  std::array<std::uint32_t, sobol_dimensions> reversed{};
+  std::vector<std::array<double, sobol_dimensions>> points(count);
   for (std::uint32_t k = 0; k < count; ++k) {
-    for (std::size_t d = 0; d < 4; ++d) {
-      const std::uint32_t coordinate = k == 0 ? 0 : engine();
-      points[k][d] = to_unit_interval(owen_scramble(coordinate, seeds[d]));
+    for (std::size_t d = 0; d < sobol_dimensions; ++d) {
+      if (k > 0) reversed[d] ^= directions[static_cast<std::size_t>(std::countr_zero(k))][d];
+      points[k][d] = to_unit_interval(reverse_bits(laine_karras_permutation(reversed[d], seeds[d])));
     }
   }
   return points;

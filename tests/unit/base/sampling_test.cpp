@@ -1,6 +1,9 @@
 #include "base/sampling.h"
 
+#include <boost/random/sobol.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <set>
@@ -28,6 +31,22 @@ TEST(ScrambledSobol, FirstTwoDimensionsFormANet) {
     std::set<std::pair<int, int>> cells;
     for (const auto& point : points) cells.insert({std::ldexp(point[0], a), std::ldexp(point[1], 4 - a)});
     EXPECT_EQ(cells.size(), 16U);
+  }
+}
+
+// Boost's engine leaves out the zero point.
+TEST(ScrambledSobol, IsSobolsSequenceScrambled) {
+  for (const std::uint32_t seed : {1U, 7U}) {
+    const auto points = scrambled_sobol(1U << 16U, seed);
+    boost::random::sobol_engine<std::uint32_t, 32> engine(4);
+    std::size_t differing = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (std::uint32_t d = 0; d < 4; ++d) {
+        const std::uint32_t coordinate = k == 0 ? 0 : engine();
+        differing += points[k][d] != (owen_scramble(coordinate, hash({seed, d})) + 0.5) * 0x1p-32 ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(differing, 0U);
   }
 }
 
