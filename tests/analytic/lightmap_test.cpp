@@ -129,7 +129,7 @@ double bar_at_seam(const Simulation& simulation) {
 TEST(Lightmap, HasNoSeamBetweenCoplanarCharts) {
   const Scene scene = room_with_two_floors();
   const Simulation simulation = solved_with_edge(scene, 0.25, true);
-  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.05});
+  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.1});
   const LightmapChart left = chart_on_floor(map, simulation.mesh, 0), right = chart_on_floor(map, simulation.mesh, 2);
   double mean_square = 0, worst = 0;
   constexpr int places = 200;

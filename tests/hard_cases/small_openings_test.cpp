@@ -114,10 +114,11 @@ INSTANTIATE_TEST_SUITE_P(All, SmallOpenings,
                                          Opening{"holes_98", perforated(8, 0.98)}),
                          [](const auto& one) { return one.param.name; });
 
-// Ten seeds of the slits: what each patch's irradiance scatters by, and what is stated.
+// Four seeds of the slits: what each patch's irradiance scatters by, and what is stated. Patches err by pairs of their
+// own: those of the far wall alone, 64, know the ratio to 1 / sqrt(2 x 3 x 64) = 5 %.
 TEST(SlitsSeeds, ScatterAsStated) {
   const Scene scene = divided(slits(20, 0.02));
-  constexpr int seeds = 10;
+  constexpr int seeds = 4;
   Field sum, squares, bars;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = simulated(scene, 1, static_cast<std::uint64_t>(seed));

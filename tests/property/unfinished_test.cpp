@@ -98,7 +98,7 @@ TEST(Unfinished, IsTheFirstSolutionWithoutErrorsWhileTheseAreWorkedOut) {
 // Progressive refinement falls short of the whole light from below.
 TEST(Unfinished, IsTheLastIterateOfTheSolver) {
   Request request;
-  request.mesh.patches = 300;
+  request.mesh.patches = 100;
   request.assembly.storage = Storage::on_demand;
   request.solver.solver = Solver::progressive;
   const auto fifth_shot = [](const Progress& p, int) { return p.iteration != nullptr && p.iteration->number >= 5; };
