@@ -64,12 +64,17 @@ def replace_numbers(data, chance):
 
 
 def exchange_corners(data, chance):
-    """Other vertices for some faces: bent, crossing, doubled and empty ones."""
+    """Other vertices for some faces: bent, crossing, doubled and empty ones.
+
+    Those with very many corners are cut into thousands of patches where there are many of them: at most five at once.
+    """
     lines = data.split(b"\n")
     faces = [k for k, line in enumerate(lines) if line.startswith(b"f ")]
     vertices = sum(line.startswith(b"v ") for line in lines)
-    for k in chance.sample(faces, min(len(faces), chance.choice((1, 5, 20)))):
-        lines[k] = b"f " + b" ".join(b"%d" % chance.randrange(1, vertices + 1) for _ in range(chance.choice((3, 4, 5, 8, 30))))
+    count = min(len(faces), chance.choice((1, 5, 20)))
+    corners = (3, 4, 5, 8, 30) if count <= 5 else (3, 4, 5, 8)
+    for k in chance.sample(faces, count):
+        lines[k] = b"f " + b" ".join(b"%d" % chance.randrange(1, vertices + 1) for _ in range(chance.choice(corners)))
     return b"\n".join(lines)
 
 
