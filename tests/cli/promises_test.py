@@ -179,7 +179,7 @@ class PromisesTest(ToolTest):
                 vtp, ply, glb, pvd, png, report, csv = outputs
                 done = subprocess.run(
                     [TOOL, "solve", model, "--patches", "60", "-o", vtp, "-o", ply, "-o", glb, "--series", pvd, "--report",
-                     report, "--picture", png, "--points", "spots.txt", "--points-output", csv],
+                     report, "--picture", png, "--size", "80x60", "--points", "spots.txt", "--points-output", csv],
                     cwd=self.folder, capture_output=True, check=False)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 for output in outputs:

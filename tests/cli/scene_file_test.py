@@ -160,7 +160,7 @@ class SceneFileTest(ToolTest):
         cameras = "".join(f'[[camera]]\nname = "{name}"\neye = [{x}, -0.5, 1]\ntarget = [0, 0.5, 0.5]\n'
                           for name, x in (("left", -0.8), ("right", 0.8)))
         self.write("scene.toml", '[[model]]\nfile = "room.obj"\n' + cameras)
-        common = ("scene.toml", "--patches", 100, "-q", "--picture")
+        common = ("scene.toml", "--patches", 100, "-q", "--size", "80x60", "--picture")
         self.solve(*common, "first.png")
         self.solve(*common, "left.png", "--view", "left")
         self.solve(*common, "right.png", "--view", "right")

@@ -16,15 +16,19 @@ COLUMNS = ["sweep", "patches", "estimator", "samples", "tolerance", "seconds", "
 
 
 class StudyTest(ToolTest):
-    def study(self, *words):
-        done = self.run_tool("study", "room.obj", "--patches", 300, "-o", "out", *words)
+    def study(self, patches, *words):
+        done = self.run_tool("study", "room.obj", "--patches", patches, "-o", "out", "--no-adaptive", *words)
         self.assertEqual(done.returncode, GOOD, done.stderr)
         with (self.folder / "out" / "study.csv").open(newline="") as lines:
             rows = list(csv.DictReader(lines))
         return done, rows, json.loads((self.folder / "out" / "study.json").read_text())
 
     def test_folder_and_table(self):
-        done, rows, facts = self.study("--no-adaptive")
+        done, rows, facts = self.study(300)
+        self.check_table(done, rows, facts)
+        self.check_errors(rows, facts)
+
+    def check_table(self, done, rows, facts):
         self.assertEqual(sorted(path.name for path in (self.folder / "out").iterdir()), FILES)
         self.assertEqual(list(rows[0]), COLUMNS)
         sweeps = {row["sweep"] for row in rows}
@@ -40,8 +44,8 @@ class StudyTest(ToolTest):
         self.assertEqual(done.stdout.splitlines()[-2], facts["conclusion"])
         self.assertIn("what limits you is", facts["conclusion"])
 
-    def test_errors_fall_with_the_patches(self):
-        _, rows, facts = self.study("--no-adaptive", "--no-estimators")
+    def check_errors(self, rows, facts):
+        """They fall with the patches."""
         fine = [row for row in rows if row["sweep"] == "patch size at 32 samples"]
         self.assertGreater(len(fine), 1)
         for before, after in zip(fine, fine[1:]):
@@ -51,11 +55,11 @@ class StudyTest(ToolTest):
         self.assertGreater(facts["reference"]["bar"], 0)
 
     def test_an_earlier_result_is_replaced_and_nothing_else(self):
-        self.study("--no-adaptive", "--no-estimators")
-        self.study("--no-adaptive", "--no-estimators", "--sizes", 2)
+        self.study(100, "--no-estimators")
+        self.study(100, "--no-estimators", "--sizes", 2)
         (self.folder / "out" / "thesis.tex").write_text("mine")
         before = content(self.folder)
-        done = self.run_tool("study", "room.obj", "--patches", 300, "-o", "out")
+        done = self.run_tool("study", "room.obj", "--patches", 100, "-o", "out")
         self.assertEqual(done.returncode, OUTPUT)
         self.assertEqual(content(self.folder), before)
 
