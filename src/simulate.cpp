@@ -40,7 +40,8 @@ SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, Stag
   MeshTransport transport = closed_transport(run, meshed.plan, meshed.mesh, std::move(raw));
   clock.finish(Stage::closure);
 
-  // 6. Materials, and the light of luminaires, sun and sky where it first arrives: by rays it is found with these.
+  // 6. Materials, and the light of luminaires, sun and sky where it first arrives: with rows of rays it comes with the
+  // form factors.
   LitProblem problem = transport.light ? transport.light->lit : lit_problem(run, meshed, transport);
   if (has_point_or_daylight(run.scene) && !transport.light) clock.finish(Stage::direct_light);
 

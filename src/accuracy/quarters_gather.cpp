@@ -65,7 +65,7 @@ class Gather {
     if (lamps > most_lamps * mesh_.size()) lamps_.clear();
     if (!lamps_.empty()) sent_ -= exitance_;
     takes_by_flux_ = lamps * mesh_.size() > most_evaluations;
-    by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
+    if (takes_by_flux_) by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
@@ -80,7 +80,9 @@ class Gather {
   Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
-  double from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const;
+  Field sent_along(const Hit& hit, PatchIndex met) const;
+  double from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+                     const std::array<double, 4>& sample) const;
   double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
   const PatchMesh& mesh_;
@@ -159,10 +161,17 @@ bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hi
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
 
+// What a ray over the hemisphere finds: as no ray to a lamp goes over mirrors, what lamps send over these with it. One
+// row.
+Field Gather::sent_along(const Hit& hit, PatchIndex met) const {
+  if (lamps_.empty() || hit.reflections == 0) return sent_.row(met);
+  return sent_.row(met) + exitance_.row(met);
+}
+
 // E h F V / p summed over the bands, for a lamp that is chosen with probability p, at a point of a patch.
-double Gather::from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const {
-  if (lamps_.empty()) return 0;
-  const auto [lamp, probability, u] = by_flux_.at(sample[2]);
+double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+                           const std::array<double, 4>& sample) const {
+  const auto [lamp, probability, u] = choice.at(sample[2]);
   const PatchCorners corners = mesh_.corner_points(lamp);
   const double factor = point_to_polygon(point, mesh_.normal[patch], corners);
   if (!(factor > 0)) return 0;
@@ -172,27 +181,31 @@ double Gather::from_a_lamp(PatchIndex patch, const Point& point, const std::arra
          static_cast<double>(occluder_.transmittance({&segment, 1}).front());
 }
 
-// By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to go
-// with the rest.
+// By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to be
+// even.
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
-  const double from_none = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
-  const double in_mean = irradiance_.row(patch).sum() - from_none;
-  if (!(in_mean > 0)) return 0;
+  const double whole = irradiance_.row(patch).sum();
+  const bool looks_at_lamps = !lamps_.empty();
+  const ChoiceOfLamps for_patch =
+      looks_at_lamps && !takes_by_flux_ ? choice_of_lamps(mesh_, patch, lamps_, exitance_) : ChoiceOfLamps{};
+  const ChoiceOfLamps& choice = takes_by_flux_ ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   double there = 0;
   std::vector<Ray> rays;
   for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
-    there += from_a_lamp(patch, point, sample) / rays_from_point;
+    if (looks_at_lamps) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
     rays.push_back(
         {point, frame * occluder_.held_direction(mesh_.polygon[patch], sample[0], sample[1]), mesh_.polygon[patch]});
   }
-  std::vector<SidePoint> points;
-  for (const Seen& seen : sights_.of_rays(patch, rays, key))
-    if (seen.sight == Sight::patch) points.push_back({seen.hit->polygon, seen.hit->side, seen.hit->point});
-  for (const PatchIndex sender : lookup_.patches_at(points))
-    if (sender != no_patch) there += sent_.row(sender).sum() / rays_from_point;
-  return there / in_mean - 1;
+  for (const Seen& seen : sights_.of_rays(patch, rays, key)) {
+    if (seen.sight != Sight::patch) continue;
+    const SidePoint at{seen.hit->polygon, seen.hit->side, seen.hit->point};
+    const PatchIndex sender = lookup_.patches_at({&at, 1}).front();
+    if (sender != no_patch) there += sent_along(*seen.hit, sender).sum() / rays_from_point;
+  }
+  const double from_no_patch = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
+  return (there + from_no_patch) / whole - 1;
 }
 
 // What the rays of all quarters find, those of the first one first.
@@ -220,9 +233,7 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
     if (may_be_darker_there(patch, met[m], hit))
       into.seen_as[first * rays + k] = as_point(
           more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)})));
-    into.irradiance.row(quarter) += sent_.row(met[m]);
-    // No ray to a lamp goes over mirrors.
-    if (!lamps_.empty() && hit.reflections > 0) into.irradiance.row(quarter) += exitance_.row(met[m]);
+    into.irradiance.row(quarter) += sent_along(hit, met[m]);
   }
 }
 
@@ -253,8 +264,9 @@ void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   into.part_of_ray.segment<4>(4 * Eigen::Index{patch}) *= exposed > 0 ? 1 / exposed : 0;
 }
 
-constexpr double steps_of_share = 50;
+// 2 + 50 (1 + 4) fits into a byte.
 constexpr int first_code = 2;
+constexpr double steps_of_share = 50;
 
 }  // namespace
 

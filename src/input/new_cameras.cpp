@@ -1,6 +1,5 @@
 #include "input/new_cameras.h"
 
-#include "base/shortest.h"
 #include "input/toml_text.h"
 
 #include <algorithm>

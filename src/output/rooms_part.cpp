@@ -4,8 +4,9 @@ namespace patchlight {
 namespace {
 
 constexpr auto note_on_coarse =
-    "min and uniformity of a surface that is coarse are too high, as dark patches of it are larger than the cells of a "
-    "grid by EN 12464-1, or points of them are darker than their means. Sensors on a grid, which patchlight new writes "
+    "min and uniformity of a surface that is coarse may be too high, as dark patches of it are larger than the cells "
+    "of a "
+    "grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight new writes "
     "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
 
 }  // namespace

@@ -86,7 +86,7 @@ SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& e
 Plan with_note_on_second_mesh(Plan plan, PatchIndex patches) {
   if (!makes_second_mesh(plan, patches) || fits_as_next_mesh(patches, 1, plan)) return plan;
   plan.notes.push_back("a second mesh, which is made where the first errs by more than " + percent(usual_error) +
-                       " %, does not fit into the memory beside it: it " +
+                       " %, does not fit into the memory beside the first: it " +
                        memory_refused(memory_of_next_mesh(patches, 1, plan), plan.resources));
   return plan;
 }

@@ -25,7 +25,8 @@ double memory_needed(std::size_t patches, const Plan& plan);
 /// True when a solution may be copied as well before its errors are known.
 bool may_keep_solution(std::size_t patches, const Plan& plan);
 
-/// The same by rows of rays, with so many times the plan's rays, while the mesh before is still there.
+/// Bytes that solving on a mesh of so many patches takes by rows of rays, with so many times the plan's rays, while the
+/// mesh before is still there.
 double memory_of_next_mesh(std::size_t patches, double times_the_rays, Plan plan);
 
 /// True when that is usable.

@@ -146,7 +146,8 @@ double cell_of_grid(const SurfaceLight& surface) {
   return 0.2 * std::pow(5, std::log10(std::sqrt(area)));
 }
 
-// May the illuminance be much lower at some points than the patches tell?
+// May the illuminance be much lower at some points than the patches tell? The size of a patch is the root of its area:
+// how light differs along a strip its display error tells.
 bool is_coarse(const SurfaceLight& surface, const std::vector<LitPatch>& patches) {
   constexpr double much_lower = 0.9;
   constexpr double about_as_low = 2;

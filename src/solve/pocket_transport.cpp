@@ -4,9 +4,8 @@
 #include "base/vectors.h"
 
 #include <cassert>
-#include <cmath>
 #include <cstddef>
-#include <utility>
+#include <limits>
 
 namespace patchlight {
 namespace {
@@ -14,6 +13,12 @@ namespace {
 // F_PP B_P.
 Field sent_within(const Pocket& pocket, const FieldView& radiosity) {
   return pocket.rays.apply(chosen_rows(radiosity, pocket.patches));
+}
+
+void raise_to(std::atomic<double>& highest, double value) {
+  double before = highest;
+  while (before < value && !highest.compare_exchange_weak(before, value)) {
+  }
 }
 
 }  // namespace
@@ -37,17 +42,22 @@ Field PocketTransport::followed_within(std::size_t pocket, const Field& irradian
   assert(of_all || irradiance.cols() == 1);  // one column of several bands: that of the highest R
   const PocketSystem& system = of_all ? systems_[pocket] : of_highest_[pocket];
   const double highest_bound = 2 * pockets_.each[pocket].bounces.maxCoeff();  // of the error, where max |r| is 1
+  Eigen::ArrayXd goal = dot(irradiance, irradiance).sqrt() * (accuracy_ / highest_bound);
   Field found = Field::Zero(irradiance.rows(), irradiance.cols());
   Field residual = irradiance;
+  Eigen::ArrayXd largest_off, largest;
   // What the recurrences of the iterations leave is followed once more.
   for (int tries = 0; tries < 2; ++tries) {
-    found += solution_within(rays, system, residual, accuracy_ / highest_bound);
+    found += solution_within(rays, system, residual, goal);
     residual = residual_within(rays, system, irradiance, found);
-    const Eigen::ArrayXd largest_off = highest(residual.abs()) * highest_bound;
-    // Iterations find zeros from a right side that is not finite.
-    if (!largest_off.isFinite().all()) found.rowwise() += (largest_off - largest_off).transpose();
-    if (system.is_eliminated() || (largest_off <= accuracy_ * highest(found.abs())).all()) break;
+    for (Eigen::Index band = 0; band < found.cols(); ++band)
+      if (!residual.col(band).isFinite().all()) found.col(band) = std::numeric_limits<double>::quiet_NaN();
+    largest_off = highest(residual.abs()) * highest_bound;
+    largest = highest(found.abs());
+    if (system.is_eliminated() || (largest_off <= accuracy_ * largest).all()) break;
+    goal = accuracy_ / highest_bound * largest;
   }
+  raise_to(farthest_off_, quotient(largest_off, largest).maxCoeff());
   return found;
 }
 

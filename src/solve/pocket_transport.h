@@ -6,6 +6,7 @@
 #include "solve/pockets.h"
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -22,8 +23,8 @@ class PocketTransport : public TransportOperator {
  public:
   /// Refers to all three but the last. R is diagonal and has the bands of all fields; one of a single column, where
   /// there are more, goes with the highest R of each patch in any band. `closed_are_dark` says that no light starts on
-  /// closed patches, so that H is 0 there. H_P is within `accuracy` times its highest value of each band, as far as
-  /// rounding lets it, and not finite where what arrives is not.
+  /// closed patches, so that H is 0 there. H_P is within `accuracy` times its highest value of each band, or what
+  /// farthest_off() says, and not finite where what arrives is not.
   PocketTransport(const TransportOperator& transport, const Pockets& pockets, const Scattering& scattering,
                   bool closed_are_dark, double accuracy);
 
@@ -33,6 +34,10 @@ class PocketTransport : public TransportOperator {
 
   /// The irradiance within pockets by what their own patches send out, (I - F_PP R)^-1 F_PP B_P, W/m^2; elsewhere 0.
   Field irradiance_within(const FieldView& radiosity) const;
+
+  /// How far off H_P may have been so far, relative to its highest value of a band; rounding may keep it from being as
+  /// near as was wanted, or the iterations end before.
+  double farthest_off() const { return farthest_off_; }
 
  private:
   using Arriving = std::function<Field(const Pocket& pocket)>;
@@ -47,6 +52,7 @@ class PocketTransport : public TransportOperator {
   // Per pocket I - F_PP R of all bands, and that of the highest R of each patch.
   std::vector<PocketSystem> systems_;
   std::vector<PocketSystem> of_highest_;
+  mutable std::atomic<double> farthest_off_ = 0;  // of all calls: in whatever order these come it is the same
 };
 
 }  // namespace patchlight

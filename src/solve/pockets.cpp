@@ -3,8 +3,8 @@
 #include "base/vectors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -38,18 +38,15 @@ std::vector<PatchIndex> keeping_enough(const std::vector<PatchIndex>& patches, c
   return those;
 }
 
-// No place among some patches.
-constexpr PatchIndex none = std::numeric_limits<PatchIndex>::max();
-
-// The rows of some patches, of what these meet among them: `place` is that of every patch there, or none.
+// The rows of some patches, of what these meet among them: `place` is that of every patch there, or no_patch.
 RayRows rows_among(const RayRows& rows, std::span<const PatchIndex> patches, const std::vector<PatchIndex>& place) {
   RayRows among{.first_hit = {0}, .hits = {}, .hit_weight = {}, .first_entry = {0}, .entries = {}};
   for (const PatchIndex i : patches) {
     for (std::uint64_t hit = rows.first_hit[i]; hit < rows.first_hit[i + 1]; ++hit)
-      if (place[rows.hits[hit]] != none) among.hits.push_back(place[rows.hits[hit]]);
+      if (place[rows.hits[hit]] != no_patch) among.hits.push_back(place[rows.hits[hit]]);
     for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k) {
       const RayEntry& entry = rows.entries[k];
-      if (place[entry.patch] != none) among.entries.push_back({place[entry.patch], entry.form_factor});
+      if (place[entry.patch] != no_patch) among.entries.push_back({place[entry.patch], entry.form_factor});
     }
     among.first_hit.push_back(among.hits.size());
     among.hit_weight.push_back(rows.hit_weight[i]);
@@ -64,7 +61,7 @@ RayTransport rays_among(const RayTransport& rays, std::span<const PatchIndex> pa
 }
 
 RayTransport rays_among(const RayTransport& rays, const std::vector<PatchIndex>& patches) {
-  std::vector<PatchIndex> place(rays.size(), none);
+  std::vector<PatchIndex> place(rays.size(), no_patch);
   for (std::size_t k = 0; k < patches.size(); ++k) place[patches[k]] = static_cast<PatchIndex>(k);
   return rays_among(rays, patches, place);
 }
@@ -141,7 +138,7 @@ std::vector<PatchIndex> lowest_of_groups(const RayTransport& among, const Eigen:
 // Without patches that lose no light: these are of no group.
 Groups groups_of(const RayTransport& among, const Eigen::ArrayXd& loses) {
   const std::vector<PatchIndex> lowest = lowest_of_groups(among, loses);
-  Groups groups{{}, std::vector<PatchIndex>(lowest.size(), none)};
+  Groups groups{{}, std::vector<PatchIndex>(lowest.size(), no_patch)};
   std::vector<std::size_t> group(lowest.size());
   for (PatchIndex k = 0; k < among.size(); ++k) {
     if (loses[k] == 0) continue;
@@ -156,6 +153,16 @@ Groups groups_of(const RayTransport& among, const Eigen::ArrayXd& loses) {
   return groups;
 }
 
+// Is light that starts at one patch followed to a thousandth? From all patches alike it is found at once where these
+// keep it alike; from one it has to get to the others.
+bool follows_light_of_one(const RayTransport& rays, const PocketSystem& system, double highest_bound) {
+  constexpr double wanted = 1e-3;
+  Field one = Field::Zero(rays.size(), 1);
+  one(0, 0) = 1;
+  const Field found = solution_within(rays, system, one, Eigen::ArrayXd::Constant(1, wanted / highest_bound));
+  return residual_within(rays, system, one, found).abs().maxCoeff() * highest_bound <= wanted * found.maxCoeff();
+}
+
 // Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
 // what is followed is. (I - F rho) bounces >= 1/2 says that light is reflected at most twice as often.
 std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, RayTransport rays,
@@ -163,31 +170,27 @@ std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, RayTransport ra
   const PocketSystem system = system_within(rays, values_at(patches, reflectance).array());
   constexpr double loosely = 1e-6;
   const Field once = Field::Ones(rays.size(), 1);
-  const Field bounces = solution_within(rays, system, once, loosely);
+  const Field bounces = solution_within(
+      rays, system, once, Eigen::ArrayXd::Constant(1, loosely * std::sqrt(static_cast<double>(rays.size()))));
   const bool hold = (bounces > 0).all() && (residual_within(rays, system, once, bounces) < 0.5).all();
   const double most = system.is_eliminated() ? most_bounces : most_bounces_by_iterations;
   if (!hold || bounces.maxCoeff() > most) return std::nullopt;
+  if (!system.is_eliminated() && !follows_light_of_one(rays, system, 2 * bounces.maxCoeff())) return std::nullopt;
   return Pocket{std::move(patches), std::move(rays), bounces.col(0).matrix()};
-}
-
-// I - F R of one band.
-Eigen::MatrixXd matrix_of(const RayTransport& rays, const Eigen::ArrayXd& reflectance) {
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(rays.size(), rays.size());
-  return one - rays.apply(one.array()).matrix() * reflectance.matrix().asDiagonal();
 }
 
 // BiCGSTAB (van der Vorst 1992) from 0, all bands at once with scalars of their own: each entry of F is read once for
 // all. A band that is found takes no further step.
-Field by_iterations(const RayTransport& rays, const PocketSystem& system, const Field& right, double tolerance) {
-  constexpr int most_iterations = 200;
+Field by_iterations(const RayTransport& rays, const PocketSystem& system, const Field& right,
+                    const Eigen::ArrayXd& goal) {
+  constexpr int most_iterations = 400;
   const auto apply = [&](const Field& x) -> Field { return x - rays.apply(system.reflectance * x); };
-  const Eigen::ArrayXd goal = dot(right, right) * (tolerance * tolerance);
   Field x = Field::Zero(right.rows(), right.cols());
   Field r = right;
   Field p = r;
   Eigen::ArrayXd rho = dot(right, r);
   for (int k = 0; k < most_iterations; ++k) {
-    const Eigen::ArrayXd goes_on = (dot(r, r) > goal).cast<double>();
+    const Eigen::ArrayXd goes_on = (dot(r, r) > goal.square()).cast<double>();
     if (!(goes_on > 0).any()) break;
     const Field v = apply(p);
     const Eigen::ArrayXd alpha = goes_on * quotient(rho, dot(right, v));
@@ -230,8 +233,10 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
 PocketSystem system_within(const RayTransport& rays, Field reflectance) {
   PocketSystem system{std::move(reflectance), {}};
   if (rays.size() > few_patches) return system;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(rays.size(), rays.size());
+  const Eigen::MatrixXd F = rays.apply(one.array()).matrix();
   for (Eigen::Index band = 0; band < system.reflectance.cols(); ++band)
-    system.factors.emplace_back(matrix_of(rays, system.reflectance.col(band)));
+    system.factors.emplace_back(one - F * system.reflectance.col(band).matrix().asDiagonal());
   return system;
 }
 
@@ -239,8 +244,9 @@ Field residual_within(const RayTransport& rays, const PocketSystem& system, cons
   return right - x + rays.apply(system.reflectance * x);
 }
 
-Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right, double tolerance) {
-  if (!system.is_eliminated()) return by_iterations(rays, system, right, tolerance);
+Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right,
+                      const Eigen::ArrayXd& goal) {
+  if (!system.is_eliminated()) return by_iterations(rays, system, right, goal);
   Field x(right.rows(), right.cols());
   for (std::size_t band = 0; band < system.factors.size(); ++band) {
     const auto column = static_cast<Eigen::Index>(band);

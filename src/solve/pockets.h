@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "transport/ray_transport.h"
@@ -31,8 +32,9 @@ struct Pockets {
 /// Half of the light of each of the patches is still among all patches after 4 bounces, and half of what starts on them
 /// is among those that this is true of after 8; `reflectance` is the highest of each patch in any band. Left out are
 /// pockets whose bounces are not found to a factor of two, as when rounding of F hides what gets out, or are more than
-/// 1e8, 1e5 of more than 512 patches. Null where nothing is left. Costs some five applications of
-/// one band; nothing where no reflectance is above .917.
+/// 1e8; of more than 512 patches those with more than 1e5, or in which light that starts at one patch is not followed
+/// to a thousandth. Null where nothing is left. Costs some five applications of one band; nothing where no reflectance
+/// is above .917.
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance);
 
 /// I - F R among the patches of a pocket.
@@ -51,8 +53,9 @@ PocketSystem system_within(const RayTransport& rays, Field reflectance);
 Field residual_within(const RayTransport& rays, const PocketSystem& system, const Field& right, const Field& x);
 
 /// x of (I - F R) x = right, patches x bands: by factors, or by BiCGSTAB of all bands at once until ||r||_2 of each is
-/// below `tolerance` times ||right||_2, or 200 iterations are done.
-Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right, double tolerance);
+/// no more than its `goal`, or 400 iterations are done, which residual_within() tells.
+Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right,
+                      const Eigen::ArrayXd& goal);
 
 /// Rows of rays whose pockets are known: solve() follows light within these apart.
 class RaysWithPockets : public TransportOperator {

@@ -141,6 +141,11 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   Solution solution = solution_by(options.solver, Iterations(around, problem, options, of_all), nullptr);
   solution.irradiance += within;
   solution.direct_irradiance = by_lamps;
+  // No bound has more than what was wanted.
+  if (around.farthest_off() > tolerance_of(options)) {
+    solution.error.resize(0, 0);
+    solution.patch_bound = std::numeric_limits<double>::infinity();
+  }
   return solution;
 }
 

@@ -93,13 +93,13 @@ TEST(AskedAccuracyOf, MoreRaysErrLess) {
   EXPECT_LE(of_rays(256), 0.6 * of_rays(64));
 }
 
-// All pairs of some 870 patches fit into the memory, and the accuracy takes more where patches do not end at the feet
+// All pairs of some 850 patches fit into the memory, and the accuracy takes more where patches do not end at the feet
 // of the blocks.
 TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   const Scene scene = varied_room("blocks");
   Request request = asked(0.02);
   request.mesh.contact_lines = false;
-  request.resources.memory = 57e6;
+  request.resources.memory = 54e6;
   const Simulation simulation = simulate(scene, request);
   EXPECT_EQ(simulation.plan.assembly.storage, Storage::rays);
   EXPECT_EQ(simulation.plan.solver.solver, Solver::gmres);

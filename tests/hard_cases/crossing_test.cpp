@@ -4,6 +4,7 @@
 #include "support/scenes.h"
 
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <utility>
 
@@ -26,32 +27,50 @@ Scene room_with_pipe() {
   return scene;
 }
 
-// No light at all gets into the boxes: what is found there is the error.
-TEST(Crossing, IsInTheBarsOfWhatItLights) {
+// What is found in the boxes, where no light at all gets in, and what is stated there, relative to the brightest patch
+// of the room: mean squares.
+struct InBoxes {
+  double found = 0;
+  double stated = 0;
+};
+
+InBoxes in_boxes(std::uint64_t seed) {
   Request request;
   request.mesh.max_edge = 1.5;
   request.mesh.sides = Sides::both;
   request.mesh.contact_lines = false;
   request.assembly.storage = Storage::rays;
+  request.assembly.seed = seed;
   request.solver.solver = Solver::gmres;
   request.accuracy.local_cuts = false;
   const Simulation simulation = simulate(room_with_pipe(), request);
   const PatchMesh& mesh = simulation.mesh;
   const Field bar = simulation.error_bars->total();
-  double in_room = 0;
-  double found = 0;
-  double stated = 0;
+  const double brightest = simulation.solution.irradiance.maxCoeff();
+  double area = 0;
+  InBoxes squares;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const double irradiance = simulation.solution.irradiance(i, 0);
-    if (mesh.polygon[i] < 6) in_room = std::max(in_room, irradiance);
     // Backs of boxes look inwards.
     if (mesh.polygon[i] < of_room_and_pipe || mesh.side[i] != Side::back) continue;
-    found += mesh.area[i] * irradiance * irradiance;
-    stated += mesh.area[i] * bar(i, 0) * bar(i, 0);
+    area += mesh.area[i];
+    squares.found += mesh.area[i] * std::pow(simulation.solution.irradiance(i, 0) / brightest, 2);
+    squares.stated += mesh.area[i] * std::pow(bar(i, 0) / brightest, 2);
   }
-  EXPECT_GT(std::sqrt(found), 0.01 * in_room) << "nothing gets in";
-  EXPECT_GT(std::sqrt(stated), 0.5 * std::sqrt(found));
-  EXPECT_LT(std::sqrt(stated), 2 * std::sqrt(found));
+  return {squares.found / area, squares.stated / area};
+}
+
+// What is found there is the error. The bars follow light as patches carry it, which leaves a part of what gets further
+// into the boxes as it is: so that they are within a factor of two is asked for, in the mean of four seeds.
+TEST(Crossing, IsInTheBarsOfWhatItLights) {
+  InBoxes mean;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    const auto [found, stated] = in_boxes(seed);
+    EXPECT_GT(found, 1e-4) << "nothing gets in";
+    mean.found += found / 4;
+    mean.stated += stated / 4;
+  }
+  EXPECT_GT(mean.stated, mean.found / 4);
+  EXPECT_LT(mean.stated, mean.found * 4);
 }
 
 }  // namespace

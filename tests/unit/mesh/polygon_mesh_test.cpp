@@ -2,6 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <vector>
 

@@ -47,8 +47,8 @@ TEST(RoomLight, OfARoomWithOneLampIsItsFluxOverWhatAbsorbs) {
   EXPECT_NEAR(in_lux.rooms.at(0).surfaces[0].mean, 179 * report.rooms[0].surfaces[0].mean, 1e-9);
 }
 
-// By EN 12464-1 the floor of 1 m^2 takes a grid with cells of 0.2 x 5^0 = 0.2 m, and the walls, 4 m^2 together, of 0.2
-// x 5^log10(2) = 0.325 m.
+// By EN 12464-1 the floor of 1 m^2 takes a grid with cells of 0.2 x 5^0 = 0.2 m, and the walls, of which each has
+// 1 m^2, the same.
 TEST(RoomLight, IsCoarseOnPatchesLargerThanTheStandardsGrid) {
   const Scene scene = test::cube_room(0.5, 3);
   const auto is_coarse = [&](double edge) {

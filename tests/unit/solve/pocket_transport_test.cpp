@@ -218,25 +218,40 @@ TEST(PocketTransport, FollowsEachPocketByItself) {
   EXPECT_LE(((found.radiosity - exact).abs() - found.error).maxCoeff(), 1e-6 * exact.maxCoeff());
 }
 
+// A room, and a ring of more patches than are eliminated, in which light goes to and fro a thousand times.
+constexpr PatchIndex in_large_room = 5000;
+constexpr PatchIndex in_ring = 600;
+
+RayTransport room_with_ring() {
+  Rows rows(in_large_room + in_ring);
+  for (PatchIndex i = 0; i < in_large_room; ++i)
+    rows[i] = {{hash({i, 1}) % in_large_room, 0.5F}, {(i + 1) % (in_large_room + in_ring), 0.5F}};
+  for (PatchIndex k = 0; k < in_ring; ++k)
+    rows[in_large_room + k] = {{in_large_room + (k + 1) % in_ring, static_cast<float>((1 - leak) / 2)},
+                               {in_large_room + (k + in_ring - 1) % in_ring, static_cast<float>((1 - leak) / 2)},
+                               {k, static_cast<float>(leak)}};
+  return RayTransport({of(rows), of(rows)});
+}
+
+// Of one band with white in the ring, others with less of it, the last without light.
+RadiosityProblem lit_ring(Eigen::Index bands) {
+  const Eigen::Index size = in_large_room + in_ring;
+  RadiosityProblem problem{{Field::Constant(size, bands, 0.5)}, Field::Zero(size, bands), Eigen::VectorXd::Ones(size)};
+  for (Eigen::Index band = 0; band < bands; ++band) {
+    problem.scattering.reflectance.col(band).tail(in_ring) = 1 - 0.1 * static_cast<double>(band);
+    if (band == 0 || band + 1 < bands) problem.exitance.col(band).head(in_large_room / 10) = 1;
+  }
+  return problem;
+}
+
 // In a pocket of too many patches for elimination what is left is B - E - R F B, times the bounces at most.
 TEST(PocketTransport, SolvesLargePocketsByIterations) {
-  constexpr PatchIndex room = 5000;
-  constexpr PatchIndex ring = 600;
-  Rows rows(room + ring);
-  for (PatchIndex i = 0; i < room; ++i) rows[i] = {{hash({i, 1}) % room, 0.5F}, {(i + 1) % (room + ring), 0.5F}};
-  for (PatchIndex k = 0; k < ring; ++k)
-    rows[room + k] = {{room + (k + 1) % ring, static_cast<float>((1 - leak) / 2)},
-                      {room + (k + ring - 1) % ring, static_cast<float>((1 - leak) / 2)},
-                      {k, static_cast<float>(leak)}};
-  RadiosityProblem problem{
-      {Field::Constant(room + ring, 1, 0.5)}, Field::Zero(room + ring, 1), Eigen::VectorXd::Ones(room + ring)};
-  problem.scattering.reflectance.bottomRows(ring) = 1;
-  problem.exitance.topRows(room / 10) = 1;
-  const RaysWithPockets transport(RayTransport({of(rows), of(rows)}), highest_of(problem));
+  const RadiosityProblem problem = lit_ring(1);
+  const RaysWithPockets transport(room_with_ring(), highest_of(problem));
   const Pockets* const pockets = transport.pockets(highest_of(problem));
   ASSERT_NE(pockets, nullptr);
   ASSERT_EQ(pockets->each.size(), 1);
-  ASSERT_EQ(pockets->each[0].patches.size(), ring);
+  ASSERT_EQ(pockets->each[0].patches.size(), in_ring);
   EXPECT_LT((pockets->each[0].bounces.array() * leak - 1).abs().maxCoeff(), 1e-3);
   const Solution found = solve(transport, problem, {.solver = Solver::gmres, .relative_error = 1e-5});
   EXPECT_TRUE(found.converged);
@@ -245,7 +260,28 @@ TEST(PocketTransport, SolvesLargePocketsByIterations) {
   // What is followed is so to a hundredth of the tolerance, and times the bounces (1 / leak) the rest is an error, too.
   ASSERT_EQ(found.error.rows(), found.radiosity.rows());
   const double followed = 0.01 * 1e-5 * found.irradiance.maxCoeff();
-  EXPECT_LE(residual.bottomRows(ring).abs().maxCoeff() / leak, 2 * found.error.maxCoeff() + followed);
+  EXPECT_LE(residual.bottomRows(in_ring).abs().maxCoeff() / leak, 2 * found.error.maxCoeff() + followed);
+}
+
+// Bands are followed together, each as it would be by itself, also one that is dark; on one thread as on two.
+TEST(PocketTransport, FollowsBandsAsEachByItself) {
+  constexpr Eigen::Index bands = 3;
+  constexpr double accuracy = 1e-6;
+  const RadiosityProblem problem = lit_ring(bands);
+  const RaysWithPockets transport(room_with_ring(), highest_of(problem));
+  const Pockets& pockets = *transport.pockets(highest_of(problem));
+  const PocketTransport together(transport, pockets, problem.scattering, true, accuracy);
+  const Field found = together.apply(problem.exitance);
+  EXPECT_LE(together.farthest_off(), accuracy);
+  EXPECT_EQ(found.col(bands - 1).abs().maxCoeff(), 0);
+  for (Eigen::Index band = 0; band < bands; ++band) {
+    const Scattering of_band{problem.scattering.reflectance.col(band)};
+    const PocketTransport alone(transport, pockets, of_band, true, accuracy);
+    const Field by_itself = alone.apply(problem.exitance.col(band));
+    EXPECT_LE((found.col(band) - by_itself.col(0)).abs().maxCoeff(), 2 * accuracy * by_itself.maxCoeff());
+  }
+  const ThreadLimit limit(1);
+  EXPECT_TRUE((together.apply(problem.exitance) == found).all());
 }
 
 // Where patches reflect more than was known when the pockets were looked for, these say nothing.
@@ -279,6 +315,34 @@ TEST(PocketTransport, HandsOnWhatIsNoNumber) {
   Field radiosity = Field::Ones(patches, 1);
   radiosity(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(around.apply(radiosity)(in_room, 0)));
+
+  // The ring is reached by its last patch alone, and followed by iterations.
+  const RadiosityProblem large = lit_ring(2);
+  const RaysWithPockets with_ring(room_with_ring(), highest_of(large));
+  const PocketTransport around_ring(with_ring, *with_ring.pockets(highest_of(large)), large.scattering, true, 1e-6);
+  radiosity = Field::Ones(in_large_room + in_ring, 2);
+  radiosity(in_ring - 1, 0) = std::numeric_limits<double>::quiet_NaN();
+  const Field found = around_ring.apply(radiosity);
+  EXPECT_TRUE(std::isnan(found(in_large_room, 0)));
+  EXPECT_TRUE(found.col(1).tail(in_ring).isFinite().all()) << "the other band";
+}
+
+// What iterations cannot follow is no pocket: in this ring light goes around 100,000 times, and patches are up to
+// 1,500 steps apart, more than are made.
+TEST(PocketTransport, LeavesOutWhatIterationsCannotFollow) {
+  constexpr PatchIndex large_ring = 3000;
+  constexpr PatchIndex large_room = 10 * large_ring;
+  constexpr double small_leak = 1.1e-5;
+  Rows rows(large_room + large_ring);
+  for (PatchIndex i = 0; i < large_room; ++i)
+    rows[i] = {{hash({i, 1}) % large_room, 0.5F}, {(i + 1) % (large_room + large_ring), 0.5F}};
+  for (PatchIndex k = 0; k < large_ring; ++k)
+    rows[large_room + k] = {{large_room + (k + 1) % large_ring, static_cast<float>((1 - small_leak) / 2)},
+                            {large_room + (k + large_ring - 1) % large_ring, static_cast<float>((1 - small_leak) / 2)},
+                            {k, static_cast<float>(small_leak)}};
+  Eigen::VectorXd reflectance = Eigen::VectorXd::Constant(large_room + large_ring, 0.5);
+  reflectance.tail(large_ring).setOnes();
+  EXPECT_EQ(pockets_of(RayTransport({of(rows), of(rows)}), reflectance), nullptr);
 }
 
 // What an observer gets is H of the iterate, in the pockets as elsewhere.
