@@ -65,7 +65,7 @@ class Gather {
     if (lamps > most_lamps * mesh_.size()) lamps_.clear();
     if (!lamps_.empty()) sent_ -= exitance_;
     takes_by_flux_ = lamps * mesh_.size() > most_evaluations;
-    if (takes_by_flux_) by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
+    by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
@@ -156,7 +156,7 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
 
 // Does a dark patch meet a bright one close by?
 bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const {
-  constexpr double brighter = 1.5;
+  constexpr double brighter = 2;
   return hit.reflections == 0 && brighter * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
@@ -185,16 +185,16 @@ double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const 
 // even.
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
+  constexpr std::size_t few_lamps = 16;
   const double whole = irradiance_.row(patch).sum();
-  const bool looks_at_lamps = !lamps_.empty();
-  const ChoiceOfLamps for_patch =
-      looks_at_lamps && !takes_by_flux_ ? choice_of_lamps(mesh_, patch, lamps_, exitance_) : ChoiceOfLamps{};
-  const ChoiceOfLamps& choice = takes_by_flux_ ? by_flux_ : for_patch;
+  const bool takes_by_flux = lamps_.empty() || lamps_.size() > few_lamps;
+  const ChoiceOfLamps for_patch = takes_by_flux ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
+  const ChoiceOfLamps& choice = takes_by_flux ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   double there = 0;
   std::vector<Ray> rays;
   for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
-    if (looks_at_lamps) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
+    if (!lamps_.empty()) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
     rays.push_back(
         {point, frame * occluder_.held_direction(mesh_.polygon[patch], sample[0], sample[1]), mesh_.polygon[patch]});
   }

@@ -5,14 +5,14 @@
 
 #include <cassert>
 #include <cstddef>
-#include <limits>
+#include <utility>
 
 namespace patchlight {
 namespace {
 
-// F_PP B_P.
-Field sent_within(const Pocket& pocket, const FieldView& radiosity) {
-  return pocket.rays.apply(chosen_rows(radiosity, pocket.patches));
+// F_PP B_P of one band.
+Eigen::VectorXd sent_within(const Pocket& pocket, const FieldView& radiosity, Eigen::Index band) {
+  return pocket.form_factors * radiosity(pocket.patches, band).matrix();
 }
 
 void raise_to(std::atomic<double>& highest, double value) {
@@ -29,53 +29,53 @@ PocketTransport::PocketTransport(const TransportOperator& transport, const Pocke
   assert(scattering.is_diagonal());
   for (const Pocket& pocket : pockets.each) {
     const Field reflectance = chosen_rows(scattering.reflectance, pocket.patches);
-    systems_.push_back(system_within(pocket.rays, reflectance));
-    if (reflectance.cols() > 1) of_highest_.push_back(system_within(pocket.rays, reflectance.rowwise().maxCoeff()));
+    std::vector<PocketSystem>& systems = systems_.emplace_back();
+    for (Eigen::Index band = 0; band < reflectance.cols(); ++band)
+      systems.push_back(system_within(pocket, reflectance.col(band).matrix()));
+    if (reflectance.cols() > 1) systems.push_back(system_within(pocket, reflectance.rowwise().maxCoeff().matrix()));
   }
 }
 
 // (I - F_PP R)^-1 H. No entry of the inverse is negative: so |error| <= max |r| y of any y with (I - F_PP R) y >= 1,
 // and twice the bounces are such a one.
-Field PocketTransport::followed_within(std::size_t pocket, const Field& irradiance) const {
-  const RayTransport& rays = pockets_.each[pocket].rays;
-  const bool of_all = irradiance.cols() == systems_[pocket].reflectance.cols();
-  assert(of_all || irradiance.cols() == 1);  // one column of several bands: that of the highest R
-  const PocketSystem& system = of_all ? systems_[pocket] : of_highest_[pocket];
-  const double highest_bound = 2 * pockets_.each[pocket].bounces.maxCoeff();  // of the error, where max |r| is 1
-  Eigen::ArrayXd goal = dot(irradiance, irradiance).sqrt() * (accuracy_ / highest_bound);
-  Field found = Field::Zero(irradiance.rows(), irradiance.cols());
-  Field residual = irradiance;
-  Eigen::ArrayXd largest_off, largest;
-  // What the recurrences of the iterations leave is followed once more.
-  for (int tries = 0; tries < 2; ++tries) {
-    found += solution_within(rays, system, residual, goal);
-    residual = residual_within(rays, system, irradiance, found);
-    for (Eigen::Index band = 0; band < found.cols(); ++band)
-      if (!residual.col(band).isFinite().all()) found.col(band) = std::numeric_limits<double>::quiet_NaN();
-    largest_off = highest(residual.abs()) * highest_bound;
-    largest = highest(found.abs());
-    if (system.is_eliminated() || (largest_off <= accuracy_ * largest).all()) break;
-    goal = accuracy_ / highest_bound * largest;
+Eigen::VectorXd PocketTransport::followed_in_band(const Pocket& pocket, const PocketSystem& system,
+                                                  const Eigen::VectorXd& irradiance) const {
+  constexpr int most_tries = 2;
+  const double highest_bound = 2 * pocket.bounces.maxCoeff();  // of the error, where max |r| is 1
+  double tolerance = accuracy_ / highest_bound;
+  for (int tries = 1;; ++tries) {
+    Eigen::VectorXd found = solution_within(pocket, system, irradiance, tolerance);
+    const Eigen::VectorXd residual = irradiance - system.matrix * found;
+    // From a right side that is not finite zeros are found.
+    if (!residual.allFinite()) return Eigen::VectorXd::Constant(irradiance.size(), residual.sum());
+    const double largest_off = residual.cwiseAbs().maxCoeff() * highest_bound;
+    const double largest = found.cwiseAbs().maxCoeff();
+    if (largest_off <= accuracy_ * largest || system.is_eliminated() || tries == most_tries) {
+      if (largest > 0) raise_to(farthest_off_, largest_off / largest);
+      return found;
+    }
+    tolerance /= 10;
   }
-  raise_to(farthest_off_, quotient(largest_off, largest).maxCoeff());
-  return found;
 }
 
-// An irradiance with (I - F_PP R)^-1 H in its pockets, where H arrives at each of these.
+// An irradiance with (I - F_PP R)^-1 H in its pockets, where H arrives at each of these in each band.
 Field PocketTransport::followed(const Arriving& arriving, Field irradiance) const {
-  parallel_for(pockets_.each.size(), [&](std::size_t k) {
-    const Field found = followed_within(k, arriving(pockets_.each[k]));
-    const std::vector<PatchIndex>& patches = pockets_.each[k].patches;
-    for (std::size_t i = 0; i < patches.size(); ++i)
-      irradiance.row(patches[i]) = found.row(static_cast<Eigen::Index>(i));
+  const auto bands = static_cast<std::size_t>(irradiance.cols());
+  parallel_for(pockets_.each.size() * bands, [&](std::size_t index) {
+    const Pocket& pocket = pockets_.each[index / bands];
+    const std::vector<PocketSystem>& systems = systems_[index / bands];
+    assert(bands == 1 || bands + 1 == systems.size());  // one column of several bands: that of the highest R
+    const PocketSystem& system = bands == 1 ? systems.back() : systems[index % bands];
+    const auto band = static_cast<Eigen::Index>(index % bands);
+    irradiance(pocket.patches, band) = followed_in_band(pocket, system, arriving(pocket, band)).array();
   });
   return irradiance;
 }
 
 Field PocketTransport::apply(const FieldView& radiosity) const {
   const Field irradiance = transport_.apply(radiosity);
-  const auto from_others = [&](const Pocket& pocket) -> Field {
-    return chosen_rows(irradiance, pocket.patches) - sent_within(pocket, radiosity);
+  const auto from_others = [&](const Pocket& pocket, Eigen::Index band) -> Eigen::VectorXd {
+    return irradiance(pocket.patches, band).matrix() - sent_within(pocket, radiosity, band);
   };
   Field found = followed(from_others, irradiance);
   if (closed_are_dark_)
@@ -84,7 +84,7 @@ Field PocketTransport::apply(const FieldView& radiosity) const {
 }
 
 Field PocketTransport::irradiance_within(const FieldView& radiosity) const {
-  const auto from_own = [&](const Pocket& pocket) { return sent_within(pocket, radiosity); };
+  const auto from_own = [&](const Pocket& pocket, Eigen::Index band) { return sent_within(pocket, radiosity, band); };
   return followed(from_own, Field::Zero(radiosity.rows(), radiosity.cols()));
 }
 

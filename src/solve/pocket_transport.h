@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <atomic>
-#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -35,23 +34,23 @@ class PocketTransport : public TransportOperator {
   /// The irradiance within pockets by what their own patches send out, (I - F_PP R)^-1 F_PP B_P, W/m^2; elsewhere 0.
   Field irradiance_within(const FieldView& radiosity) const;
 
-  /// How far off H_P may have been so far, relative to its highest value of a band; rounding may keep it from being as
+  /// How far off H_P may have been so far, relative to its highest value of a band: rounding may keep it from being as
   /// near as was wanted, or the iterations end before.
   double farthest_off() const { return farthest_off_; }
 
  private:
-  using Arriving = std::function<Field(const Pocket& pocket)>;
+  using Arriving = std::function<Eigen::VectorXd(const Pocket& pocket, Eigen::Index band)>;
 
   Field followed(const Arriving& arriving, Field irradiance) const;
-  Field followed_within(std::size_t pocket, const Field& irradiance) const;
+  Eigen::VectorXd followed_in_band(const Pocket& pocket, const PocketSystem& system,
+                                   const Eigen::VectorXd& irradiance) const;
 
   const TransportOperator& transport_;
   const Pockets& pockets_;
   bool closed_are_dark_;
   double accuracy_;
-  // Per pocket I - F_PP R of all bands, and that of the highest R of each patch.
-  std::vector<PocketSystem> systems_;
-  std::vector<PocketSystem> of_highest_;
+  // Per pocket I - F_PP R of each band; where these are several, at last that of the highest R of all.
+  std::vector<std::vector<PocketSystem>> systems_;
   mutable std::atomic<double> farthest_off_ = 0;  // of all calls: in whatever order these come it is the same
 };
 

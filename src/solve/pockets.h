@@ -1,12 +1,12 @@
 #pragma once
 
-#include "patchlight/base/field.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "transport/ray_transport.h"
 
-#include <Eigen/Core>
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/LU>
+#include <Eigen/SparseCore>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,10 +16,12 @@ namespace patchlight {
 /// Patches that keep light among themselves, as those of white boards 3 mm apart do: it takes hundreds of bounces to
 /// get out. Iterations over all patches hardly change what is there, and no bound on the error is found.
 struct Pocket {
-  std::vector<PatchIndex> patches;  ///< in rising order; none sees one of another pocket
-  RayTransport rays;                ///< F among them, numbered as they stand there
-  Eigen::VectorXd bounces;          ///< (I - F rho)^-1 1, rho the highest of all bands: how often light is reflected
-                                    ///< before it gets out
+  std::vector<PatchIndex> patches;                              ///< in rising order; none sees one of another pocket
+  Eigen::SparseMatrix<double, Eigen::RowMajor> form_factors;    ///< F among them, numbered as they stand there
+  Eigen::VectorXd bounces;                                      ///< (I - F rho)^-1 1, rho the highest of all bands: how
+                                                                ///< often light is reflected before it gets out
+  std::unique_ptr<Eigen::IncompleteLUT<double>> nearly_solved;  ///< factors of about I - F rho (ILUT, Saad 1994); of
+                                                                ///< few patches null
 };
 
 /// There are few pockets: where their patches are more than an eighth of all, it is the room that is white.
@@ -32,30 +34,25 @@ struct Pockets {
 /// Half of the light of each of the patches is still among all patches after 4 bounces, and half of what starts on them
 /// is among those that this is true of after 8; `reflectance` is the highest of each patch in any band. Left out are
 /// pockets whose bounces are not found to a factor of two, as when rounding of F hides what gets out, or are more than
-/// 1e8; of more than 512 patches those with more than 1e5, or in which light that starts at one patch is not followed
-/// to a thousandth. Null where nothing is left. Costs some five applications of one band; nothing where no reflectance
-/// is above .917.
+/// 1e8, 1e5 of more than 512 patches. Null where nothing is left. Costs some five applications of
+/// one band; nothing where no reflectance is above .917.
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance);
 
 /// I - F R among the patches of a pocket.
 struct PocketSystem {
-  Field reflectance;                                          ///< R: patches x bands
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  ///< per band, of up to 512 patches, up to 2 MB each; of
-                                                              ///< more none
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors;  ///< of up to 512 patches, up to 4 kB each; else of size 0
 
-  bool is_eliminated() const { return !factors.empty(); }
+  bool is_eliminated() const { return factors.rows() > 0; }
 };
 
 /// From the reflectances of its patches.
-PocketSystem system_within(const RayTransport& rays, Field reflectance);
+PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance);
 
-/// right - (I - F R) x, patches x bands.
-Field residual_within(const RayTransport& rays, const PocketSystem& system, const Field& right, const Field& x);
-
-/// x of (I - F R) x = right, patches x bands: by factors, or by BiCGSTAB of all bands at once until ||r||_2 of each is
-/// no more than its `goal`, or 400 iterations are done, which residual_within() tells.
-Field solution_within(const RayTransport& rays, const PocketSystem& system, const Field& right,
-                      const Eigen::ArrayXd& goal);
+/// x of such a system: by its factors, or by BiCGSTAB until ||r||_2 is below `tolerance` times ||right||_2, or 200
+/// iterations are done.
+Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
+                                double tolerance);
 
 /// Rows of rays whose pockets are known: solve() follows light within these apart.
 class RaysWithPockets : public TransportOperator {
