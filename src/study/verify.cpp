@@ -170,11 +170,13 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
 constexpr std::uint32_t enough_paths = 8192;
 
 // Light that few paths meet, as by a door left ajar, is spread unevenly: most batches miss some of it, and their spread
-// tells too little of that. True where most of chi-square is of patches whose paths scatter more than their bars are.
+// tells too little of that. True where most of chi-square is of patches whose paths scatter by a fifth of their bars or
+// more.
 bool is_by_noise(const Verification& verification) {
   if (!(verification.probability < least_probability)) return false;
   const Field squares = deviations(verification).square();
-  const Field of_noise = (verification.paths.standard_error > verification.bar).select(squares, 0);
+  constexpr double share = 0.2;
+  const Field of_noise = (verification.paths.standard_error > share * verification.bar).select(squares, 0);
   return of_noise.sum() > squares.sum() / 2;
 }
 

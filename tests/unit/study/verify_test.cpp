@@ -104,8 +104,7 @@ TEST(Verify, FewPathsThatMissAGapAreNotBelieved) {
   Request request = with_error_bars(600);
   request.mesh.sides = Sides::automatic;
   const Simulation simulation = simulate(scene, request);
-  // Bars are wide behind the gap: with four fifths of them some seeds refuse it at first.
-  const Field bar = 0.8 * simulation.error_bars->total();
+  const Field bar = simulation.error_bars->total();
   Scene brighter = scene;
   brighter.materials[0].reflectance *= 1.1;
   int looked_at_again = 0;
