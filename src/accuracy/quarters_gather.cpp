@@ -80,7 +80,7 @@ class Gather {
   Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
-  Field sent_along(const Hit& hit, PatchIndex met) const;
+  bool finds_lamps(const Hit& hit) const;
   double from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
                      const std::array<double, 4>& sample) const;
   double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
@@ -161,12 +161,8 @@ bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hi
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
 
-// What a ray over the hemisphere finds: as no ray to a lamp goes over mirrors, what lamps send over these with it. One
-// row.
-Field Gather::sent_along(const Hit& hit, PatchIndex met) const {
-  if (lamps_.empty() || hit.reflections == 0) return sent_.row(met);
-  return sent_.row(met) + exitance_.row(met);
-}
+// No ray to a lamp goes over mirrors: what lamps send over these is found with the rest.
+bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.reflections > 0; }
 
 // E h F V / p summed over the bands, for a lamp that is chosen with probability p, at a point of a patch.
 double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
@@ -202,7 +198,9 @@ double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) 
     if (seen.sight != Sight::patch) continue;
     const SidePoint at{seen.hit->polygon, seen.hit->side, seen.hit->point};
     const PatchIndex sender = lookup_.patches_at({&at, 1}).front();
-    if (sender != no_patch) there += sent_along(*seen.hit, sender).sum() / rays_from_point;
+    if (sender == no_patch) continue;
+    there += sent_.row(sender).sum() / rays_from_point;
+    if (finds_lamps(*seen.hit)) there += exitance_.row(sender).sum() / rays_from_point;
   }
   const double from_no_patch = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
   return (there + from_no_patch) / whole - 1;
@@ -233,7 +231,8 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
     if (may_be_darker_there(patch, met[m], hit))
       into.seen_as[first * rays + k] = as_point(
           more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)})));
-    into.irradiance.row(quarter) += sent_along(hit, met[m]);
+    into.irradiance.row(quarter) += sent_.row(met[m]);
+    if (finds_lamps(hit)) into.irradiance.row(quarter) += exitance_.row(met[m]);
   }
 }
 

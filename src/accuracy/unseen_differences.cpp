@@ -101,8 +101,8 @@ Field display_of(const Differences& one, const Differences& other) {
 
 // As much flux arrives as the differences send, sum_q A_q dB_q over what sees patches: next to none, where nothing is
 // lost. What noise adds to it, all reflections would multiply. What is seen is that of other rays, as what one set
-// finds of it goes with what it finds of the light. Where points stand for quarters only
-// the arriving side is without them, which is taken to be little.
+// finds of it goes with what it finds of the light. Where points stand for quarters, only the
+// arriving side is without them, which is taken to be little.
 Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences, const GatheredQuarters& other) {
   Field off = Field::Zero(1, differences.of_quarters.cols());
   for (Eigen::Index q = 0; q < differences.of_quarters.rows(); ++q) {
