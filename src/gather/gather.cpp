@@ -1,7 +1,7 @@
 #include "patchlight/gather/gather.h"
 
 #include "base/parallel.h"
-#include "gather/gradients.h"
+#include "gather/slopes.h"
 #include "gather/sources.h"
 #include "visibility/occluder.h"
 
@@ -20,7 +20,7 @@ constexpr double on_plane_tolerance = 1e-9;
 struct Light {
   const PatchMesh& mesh;
   const FieldView& radiosity;
-  const Field gradient;
+  const Slopes slopes;
   const RadiosityErrors& errors;
 };
 
@@ -31,7 +31,8 @@ struct Reading {
   Spectrum sampling;   // variance by errors of the patches
   Spectrum mesh;       // by errors of the patches
   Spectrum solver;     // bound
-  Spectrum by_slopes;  // what the gradients on patches add
+  Spectrum by_slopes;  // what the slopes on patches add
+  Spectrum left;       // variance by what is left of the light on patches
   Spectrum reflected;  // the part that patches have reflected
 };
 
@@ -39,7 +40,7 @@ struct Reading {
 // the others of it would meet: of all such rays the heaviest counts as an error.
 Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const FieldView& radiosity) {
   const Spectrum zero = Spectrum::Zero(radiosity.cols());
-  Reading reading{zero, zero, zero, zero, zero, zero, zero};
+  Reading reading{zero, zero, zero, zero, zero, zero, zero, zero};
   Spectrum heaviest = zero;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     Spectrum unoccluded = sources[s].form_factor * radiosity.row(sources[s].patch);
@@ -52,9 +53,14 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
   return reading;
 }
 
-Reading with_errors_of_patches(Reading reading, std::span<const Source> sources, std::span<const VisibleShare> shares,
-                               const Light& light) {
-  const auto& [sampling, mesh, solver, reflected] = light.errors;
+// How unevenly a sensor sees a patch of the area a from the distance r: not at all from afar, where every point of the
+// patch counts alike, and as much as can be close by, where the nearest points alone count.
+double unevenness(double area, double squared_distance) { return area / (area + squared_distance); }
+
+// What slopes on the visible parts of patches add, and what the patches' errors come to.
+Reading with_patches(Reading reading, const Sensor& sensor, std::span<const Source> sources,
+                     std::span<const VisibleShare> shares, const Light& light) {
+  const auto& [sampling, mesh, solver, within, reflected] = light.errors;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const PatchIndex j = sources[s].patch;
     const double weight = sources[s].form_factor * shares[s].mean;
@@ -63,10 +69,17 @@ Reading with_errors_of_patches(Reading reading, std::span<const Source> sources,
     if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
     if (solver.size() > 0) reading.solver += weight * solver.row(j);
     if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
+    if (light.slopes.gradient.size() == 0) continue;
+    const double uneven = unevenness(light.mesh.area[j], (sensor.point - light.mesh.centroid[j]).squaredNorm());
+    reading.left += (weight * uneven * light.slopes.left.row(j)).square();
     const Vector offset = shares[s].centre - light.mesh.centroid[j];
-    for (Eigen::Index band = 0; band < reading.mean.size(); ++band)
-      reading.by_slopes[band] += weight * light.gradient.row(j).segment(3 * band, 3).matrix().dot(offset);
+    for (Eigen::Index band = 0; band < reading.mean.size(); ++band) {
+      const auto gradient = light.slopes.gradient.row(j).segment(3 * band, 3).matrix();
+      reading.by_slopes[band] += weight * gradient.dot(offset);
+      reading.variance[band] += weight * weight * gradient.squaredNorm() * shares[s].centre_variance;
+    }
   }
+  reading.mean += reading.by_slopes;
   return reading;
 }
 
@@ -80,6 +93,8 @@ std::vector<RayCounts> counts_for(std::span<const Source> sources, double rays, 
   return counts;
 }
 
+double square(double value) { return value * value; }
+
 // Both by the number of their rays.
 std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<const VisibleShare> second) {
   for (std::size_t s = 0; s < first.size(); ++s) {
@@ -90,8 +105,15 @@ std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<co
     const Vector moment = a * first[s].mean * first[s].centre + b * second[s].mean * second[s].centre;
     Spectrum colour = a * first[s].mean * first[s].colour + b * second[s].mean * second[s].colour;
     if (mean > 0) colour /= mean;
-    first[s] = {mean, a * a * first[s].variance + b * b * second[s].variance, rays,
-                mean > 0 ? Point(moment / mean) : Point(Point::Zero()), colour};
+    first[s] = {mean,
+                a * a * first[s].variance + b * b * second[s].variance,
+                rays,
+                mean > 0 ? Point(moment / mean) : Point(Point::Zero()),
+                mean > 0 ? (square(a * first[s].mean) * first[s].centre_variance +
+                            square(b * second[s].mean) * second[s].centre_variance) /
+                               (mean * mean)
+                         : 0,
+                colour};
   }
   return first;
 }
@@ -120,7 +142,7 @@ Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const
     shares = together(std::move(shares), rays.visible_shares(sensor, sources, second, 1));
     reading = reading_of(sources, shares, radiosity);
   }
-  return with_errors_of_patches(std::move(reading), sources, shares, light);
+  return with_patches(std::move(reading), sensor, sources, shares, light);
 }
 
 // A column for each band of what a reading has.
@@ -130,14 +152,14 @@ Field column_of(std::span<const Reading> readings, Spectrum Reading::*part, Eige
   return all;
 }
 
-// What slopes add, and what patches of the same mesh may be off themselves.
+// What is left of the light on patches, and what patches of the same mesh may be off themselves.
 Field mesh_part(std::span<const Reading> readings, const Field& irradiance, const RadiosityErrors& errors) {
   const Eigen::Index bands = irradiance.cols();
-  const Field slopes = column_of(readings, &Reading::by_slopes, bands);
-  if (errors.mesh.size() > 0) return (slopes.square() + column_of(readings, &Reading::mesh, bands).square()).sqrt();
+  const Field left = column_of(readings, &Reading::left, bands);
+  if (errors.mesh.size() > 0) return (left + column_of(readings, &Reading::mesh, bands).square()).sqrt();
   const Spectrum squares = irradiance.square().colwise().sum();
-  const Spectrum share = (squares > 0).select(slopes.square().colwise().sum() / squares, 0.0);
-  return (slopes.square() + column_of(readings, &Reading::reflected, bands).square().rowwise() * share).sqrt();
+  const Spectrum share = (squares > 0).select(left.colwise().sum() / squares, 0.0);
+  return (left + column_of(readings, &Reading::reflected, bands).square().rowwise() * share).sqrt();
 }
 
 }  // namespace
@@ -150,7 +172,9 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
   const ShadowRays rays(mesh, occluder, options.seed, options.coloured);
-  const Light light{mesh, radiosity, gradients(mesh, radiosity), options.errors};
+  const Light light{mesh, radiosity,
+                    options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors.within) : Slopes{},
+                    options.errors};
   const double tolerance = on_plane_tolerance / occluder.frame().scale;
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {

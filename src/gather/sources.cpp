@@ -71,12 +71,22 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   }
   if (!(all > 0)) return {0, 0, rays};
   const double mean = reached / all;
-  double squares = 0;
-  for (const Weights& one : replicates) squares += std::pow(one.reached - mean * one.all, 2);
-  const auto count = static_cast<double>(replicates.size());
   const Point centre = reached > 0 ? Point(moment / reached) : Point(Point::Zero());
-  if (reached > 0) by_band /= reached;
-  return {mean, squares / (all * all) * count / (count - 1), rays, centre, by_band};
+  double squares = 0;
+  double squares_of_centre = 0;
+  for (const Weights& one : replicates) {
+    squares += std::pow(one.reached - mean * one.all, 2);
+    squares_of_centre += (one.moment - one.reached * centre).squaredNorm();
+  }
+  const auto count = static_cast<double>(replicates.size());
+  const double scatter = count / (count - 1);
+  if (!(reached > 0)) return {0, scatter * squares / (all * all), rays, centre, 0, by_band};
+  return {mean,
+          scatter * squares / (all * all),
+          rays,
+          centre,
+          scatter * squares_of_centre / (reached * reached),
+          by_band / reached};
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct VisibleShare {
   double variance = 0;  ///< of the mean
   double rays = 0;
   Point centre = Point::Zero();  ///< of what is visible, as seen from the sensor, metres; where anything is
+  double centre_variance = 0;    ///< of that, square metres: the sum over its coordinates
   Spectrum colour = {};          ///< times which each band of the mean arrives; empty: 1
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "mesh/patch_lookup.h"
+#include "pipeline/radiosity_errors.h"
 #include "render/smooth.h"
 #include "visibility/occluder.h"
 
@@ -28,6 +29,7 @@ using namespace patchlight;
 struct Reference {
   std::vector<Sensor> sensors;
   Field irradiance;
+  Field standard_error;
 };
 
 // The rows without a flag, in metres.
@@ -37,6 +39,7 @@ Reference read_reference(const std::filesystem::path& file) {
   std::getline(stream, line);
   Reference reference;
   std::vector<Spectrum> values;
+  std::vector<Spectrum> errors;
   while (std::getline(stream, line)) {
     std::vector<double> numbers;
     std::stringstream fields(line.substr(line.find(',') + 1));
@@ -45,9 +48,14 @@ Reference read_reference(const std::filesystem::path& file) {
     reference.sensors.push_back(
         {1e-3 * Point(numbers[2], numbers[3], numbers[4]), Vector(numbers[5], numbers[6], numbers[7])});
     values.push_back(rgb(numbers[8], numbers[9], numbers[10]));
+    errors.push_back(rgb(numbers[11], numbers[12], numbers[13]));
   }
   reference.irradiance.resize(static_cast<Eigen::Index>(values.size()), 3);
-  for (std::size_t k = 0; k < values.size(); ++k) reference.irradiance.row(static_cast<Eigen::Index>(k)) = values[k];
+  reference.standard_error = reference.irradiance;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    reference.irradiance.row(static_cast<Eigen::Index>(k)) = values[k];
+    reference.standard_error.row(static_cast<Eigen::Index>(k)) = errors[k];
+  }
   return reference;
 }
 
@@ -91,11 +99,15 @@ void print_comparison(const Scene& scene, std::size_t patches, bool contact_line
   request.assembly.storage = Storage::tiles;
   const Simulation simulation = simulate(scene, request);
   const double solved = cpu_seconds();
-  const Field gathered =
-      gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder, reference.sensors).irradiance;
+  const GatheredIrradiance gathered = gather_irradiance(simulation.mesh, simulation.solution.radiosity, occluder,
+                                                        reference.sensors, {.errors = radiosity_errors(simulation)});
   std::printf("%u patches, %zu points: solve %.1f CPU s, gather %.1f CPU s\n", simulation.mesh.size(),
               reference.sensors.size(), solved - begin, cpu_seconds() - solved);
-  print_differences("gathered", gathered, reference.irradiance);
+  print_differences("gathered", gathered.irradiance, reference.irradiance);
+  const Field allowed = 2.6 * (gathered.errors.total().square() + reference.standard_error.square()).sqrt();
+  const auto within = ((gathered.irradiance - reference.irradiance).abs() <= allowed).count();
+  std::printf("  %.1f %% of the values within 2.6 errors of the sensor and the reference\n",
+              100 * static_cast<double>(within) / static_cast<double>(allowed.size()));
   print_differences("interpolated", interpolated(simulation, occluder, reference.sensors), reference.irradiance);
 }
 

@@ -18,6 +18,7 @@ struct RadiosityErrors {
   Field sampling;   ///< standard deviations of errors that have nothing to do with each other
   Field mesh;       ///< standard deviations of errors that patches share; empty where not known
   Field solver;     ///< bounds
+  Field within;     ///< root mean square of how far points of a patch are from its mean; empty where not known
   Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
 };
 
@@ -28,6 +29,7 @@ struct GatherOptions {
   int most_rays = 1 << 18;     ///< where these leave more than the following relative standard error
   double wanted_error = 0.01;  ///< relative standard error of a sensor
   std::uint64_t seed = 1;
+  bool slopes = true;  ///< light varies along patches; else each is even, and readings are linear in radiosity
   RadiosityErrors errors = {};
   const LightPaths* coloured = nullptr;  ///< what each band meets on its way; null where all meet the same
 };
@@ -36,7 +38,7 @@ struct GatherOptions {
 struct SensorErrors {
   Field rays;      ///< shadow rays from the sensor
   Field sampling;  ///< what patches reflect of light that was sampled
-  Field mesh;      ///< that light was taken to be constant on patches
+  Field mesh;      ///< that light was taken to be a plane on each patch, and the patches' own
   Field solver;    ///< a bound
 
   /// The root of the sum of their squares.
@@ -57,10 +59,13 @@ struct GatheredIrradiance {
 /// standard error is too large get more rays, in proportion to its square. The random numbers follow from the sensor's
 /// place.
 ///
+/// On each patch the radiosity is a plane, its slopes fitted to the means of the patches around: above a patch that is
+/// bright in its middle less is read off its dark corners. What a plane does not explain is an error, by as much as the
+/// sensor sees the patch unevenly: as area / (area + distance^2). Such errors of patches add up in squares.
+///
 /// The patches' own errors are gathered as their light is: sampling errors add up in squares, mesh errors and the
-/// solver's bounds as they are. To the mesh's part belongs what gradients of the radiosity inside the visible parts of
-/// patches do to the sensor. Where the patches' mesh errors are not known, what they reflect is taken to be off by the
-/// root mean square of that over all sensors, as a share. O(points x patches). \throws Cancelled.
+/// solver's bounds as they are. Where the patches' mesh errors are not known, what they reflect is taken to be off by
+/// what planes do not explain, root mean square over all sensors, as a share. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});

@@ -123,7 +123,7 @@ TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
   const PatchMesh mesh = fronts(scene, 0.2);
   const Field ones = Field::Ones(mesh.size(), 1);
   GatherOptions options;
-  options.errors = {.sampling = 0.1 * ones, .mesh = 0.2 * ones, .solver = 0.3 * ones, .reflected = ones};
+  options.errors = {.sampling = 0.1 * ones, .mesh = 0.2 * ones, .solver = 0.3 * ones, .within = {}, .reflected = ones};
   const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()}};
   const SensorErrors errors = gather_irradiance(mesh, ones, Occluder(scene), sensors, options).errors;
   EXPECT_NEAR(errors.mesh(0, 0), 0.2, 1e-9);
@@ -157,8 +157,8 @@ TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
     const Field error = (found.irradiance - exact.irradiance).abs();
     const auto outside = (error > 2.6 * found.errors.total()).count();
     EXPECT_LE(outside, static_cast<Eigen::Index>(sensors.size() / 20)) << "of " << sensors.size();
-    // By the rays alone, of which none is blocked, most would be outside.
-    EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 2));
+    // By the rays alone, of which none is blocked, those over the kink in the middle would be outside.
+    EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 3));
   }
 }
 
