@@ -60,7 +60,7 @@ struct Estimator {
   std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
 
   // One row for each of so many sets.
-  Field replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
+  Means replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
                       bool in_shadow) const;
   Estimate by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
   // With `effort` times the samples.
@@ -103,7 +103,7 @@ SampleSets sets_of(double samples, bool at_point) {
           static_cast<std::size_t>(std::max(1.0, samples / (at_point ? replicates : most)))};
 }
 
-Field Estimator::replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
+Means Estimator::replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
                                SampleSets sets, bool in_shadow) const {
   std::vector<std::vector<std::array<double, 4>>> moved;
   std::vector<ReceiverSamples> of_sets;
@@ -122,7 +122,7 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
   if (is_point && !source.has_extent) {
     const SamplePoints one = SamplePoints(points[0]).first(1);
     const ReceiverSamples samples{one, one};
-    return {source.means_at(receiver)({&samples, 1}, true).row(0), none};
+    return {source.means_at(receiver)({&samples, 1}, true).of_sets.row(0), none};
   }
   const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;
   if (left && (left->share == 0).all()) return {none, none};
@@ -132,8 +132,9 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
   // Few rays are sooner traced than they are found to be free. At points what is free has no error.
   const bool is_worth_asking = source.may_be_hidden && (is_point || sets.samples() > few_rays);
   const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
-  const Field arriving = replicates_by(source, receiver, key, sets, in_shadow);
+  const auto [arriving, missed] = replicates_by(source, receiver, key, sets, in_shadow);
   Estimate found = estimate_of(arriving);
+  if (missed.size() > 0) found.variance += missed.square();
   if (left)
     return {found.mean * left->share,
             found.variance * left->share.square() + (found.mean * left->standard_error).square()};
@@ -141,7 +142,7 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
     const Field unshadowed = source.unshadowed(receiver).replicate(arriving.rows(), 1);
     found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
   } else if (in_shadow && is_point && source.may_be_hidden) {
-    const Field unshadowed = replicates_by(source, receiver, key, sets, false);
+    const Field unshadowed = replicates_by(source, receiver, key, sets, false).of_sets;
     found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
   }
   return found;

@@ -4,6 +4,7 @@
 #include "lighting/sky_irradiance.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace patchlight {
 namespace {
@@ -13,11 +14,11 @@ namespace {
 constexpr int sun_effort = 64;
 constexpr int lamp_effort = 4;
 
-template <class Means>
-std::function<MeansBy(const Receiver&)> at_each(Means means) {
+template <class FieldBy>
+std::function<MeansBy(const Receiver&)> at_each(FieldBy means) {
   return [means](const Receiver& receiver) {
     return [means, &receiver](std::span<const ReceiverSamples> sets, bool in_shadow) {
-      return means(receiver, sets, in_shadow);
+      return Means{means(receiver, sets, in_shadow)};
     };
   };
 }
@@ -106,6 +107,21 @@ SampledSource source_of(const Lighting& lighting, const Luminaire& luminaire, st
   return {means_at, samples, false, lamp_effort, left, unshadowed};
 }
 
+Means means_of_sky(const Lighting& lighting, const Receiver& receiver, std::span<const ReceiverSamples> sets) {
+  const SkyAim aim = sky_aim(lighting, receiver, receiver.is_point() ? AimFor::points : AimFor::patch);
+  Field means(static_cast<Eigen::Index>(sets.size()), lighting.bands);
+  std::vector<std::uint8_t> seen(aim.probabilities.size(), 0);
+  std::size_t aimed = 0;
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const SkyLight found = sky_irradiance(lighting, receiver, aim, sets[k].rays);
+    means.row(static_cast<Eigen::Index>(k)) = found.irradiance;
+    aimed += found.aimed;
+    std::transform(seen.begin(), seen.end(), found.seen.begin(), seen.begin(), std::bit_or<>());
+  }
+  if (!receiver.is_point() || aimed == 0) return {means};
+  return {means, missed_sky(lighting, receiver, aim, seen, aimed)};
+}
+
 SampledSource sun_of(const Lighting& lighting, std::uint32_t samples) {
   const auto unshadowed = [&lighting](const Receiver& receiver) {
     const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
@@ -134,12 +150,9 @@ std::vector<SampledSource> sampled_sources(const Lighting& lighting, const Light
   if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
   if (lighting.sky) {
     const auto means_at = [&lighting](const Receiver& receiver) {
-      const AimFor what = receiver.is_point() ? AimFor::points : AimFor::patch;
-      const auto mean = [&lighting, aim = sky_aim(lighting, receiver, what)](const Receiver& at,
-                                                                             const ReceiverSamples& samples, bool) {
-        return sky_irradiance(lighting, at, aim, samples.rays);
+      return [&lighting, &receiver](std::span<const ReceiverSamples> sets, bool) {
+        return means_of_sky(lighting, receiver, sets);
       };
-      return at_each_set(lighting.bands, mean)(receiver);
     };
     sources.push_back({means_at, static_cast<std::uint32_t>(options.sky_samples), true});
   }

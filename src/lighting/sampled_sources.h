@@ -12,9 +12,14 @@
 
 namespace patchlight {
 
-/// Estimates of the mean irradiance of one receiver, which has to live as long, with or without shadows: one row for
-/// each set of samples, one column per band.
-using MeansBy = std::function<Field(std::span<const ReceiverSamples>, bool)>;
+/// Estimates of the mean irradiance of one receiver: one row for each set of samples, one column per band.
+struct Means {
+  Field of_sets;
+  Spectrum missed = {};  ///< what one ray more may find, W/m^2; empty: not known, or nothing
+};
+
+/// Those of a receiver, which has to live as long, with or without shadows.
+using MeansBy = std::function<Means(std::span<const ReceiverSamples>, bool)>;
 
 /// Something that gives light and is no patch.
 struct SampledSource {

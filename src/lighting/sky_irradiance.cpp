@@ -19,6 +19,9 @@ namespace {
 constexpr std::uint32_t rays_ahead = 32;
 constexpr std::uint32_t seed_ahead = 2;
 
+// Of the rays towards openings, those that choose any of them alike.
+constexpr double any_alike = 0.125;
+
 // How far before the plane of a receiver an opening may lie by rounding, as a share of its distance.
 constexpr double plane_rounding = 1e-9;
 
@@ -93,16 +96,16 @@ struct SkyRays {
   std::vector<Vector> directions;
   std::vector<double> cosines;  // to the receiver's normal
   std::vector<Segment> segments;
-  std::vector<const Opening*> aimed_at;  // null: over the hemisphere
-  std::size_t places = 0;                // from each of which one ray goes over the hemisphere
-  std::size_t aimed = 0;                 // from which one goes to an opening
+  std::vector<std::optional<std::size_t>> aimed_at;  // an opening; nothing: over the hemisphere
+  std::size_t places = 0;                            // from each of which one ray goes over the hemisphere
+  std::size_t aimed = 0;                             // from which one goes to an opening
 };
 
 // Rays to panes are half of all. Those to holes, which may be hidden from the receiver, are a third, and more than
 // there are without.
 SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
   SkyRays rays;
-  const auto add = [&](const SurfacePoint& at, const Vector& direction, const Opening* aimed_at) {
+  const auto add = [&](const SurfacePoint& at, const Vector& direction, std::optional<std::size_t> aimed_at) {
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) return;
     rays.aimed_at.push_back(aimed_at);
@@ -118,14 +121,18 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
     ++rays.places;
-    add(at, cosine_direction(at.normal, s, t), nullptr);
+    add(at, cosine_direction(at.normal, s, t), std::nullopt);
     if (aim.probabilities.empty() || k >= half) continue;
     ++rays.aimed;
     const Choice chosen = choose(aim.probabilities, s);
-    const Opening& opening = lighting.openings[chosen.index];
-    add(at, toward(opening, at.point, chosen.rest, t), &opening);
+    add(at, toward(lighting.openings[chosen.index], at.point, chosen.rest, t), chosen.index);
   }
   return rays;
+}
+
+// The solid angle that it would fill if it were turned to a place, roughly.
+double apparent_size(const Opening& opening, const Point& from) {
+  return opening.area / ((opening.centre - from).squaredNorm() + opening.area);
 }
 
 // Is a corner of the opening so high above the plane of a place? Mostly its centre tells.
@@ -149,22 +156,25 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
     const bool is_before = rises_above(opening, at, plane_rounding * std::sqrt(square));
-    const double weight = is_before && !is_own ? opening.area / (square + opening.area) : 0;
+    const double weight = is_before && !is_own ? apparent_size(opening, at.point) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
     sum += weight;
   }
   if (!(sum > 0)) return {};
-  for (double& probability : aim.probabilities) probability /= sum;
+  const auto count = static_cast<double>(
+      std::count_if(aim.probabilities.begin(), aim.probabilities.end(), [](double weight) { return weight > 0; }));
+  for (double& probability : aim.probabilities)
+    probability = probability > 0 ? (1 - any_alike) * probability / sum + any_alike / count : 0;
   if (aim.at_panes) return aim;
   if (what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities)) return {};
   return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 
-Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
+SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
   const SkyRays rays = sky_rays(lighting, receiver, samples, aim);
-  Spectrum sum = Spectrum::Zero(lighting.bands);
-  if (rays.places == 0) return sum;
+  SkyLight found{Spectrum::Zero(lighting.bands), std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed};
+  if (rays.places == 0) return found;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
   const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
   const std::vector<Passage> passages = lighting.paths.passages(rays.segments);
@@ -174,16 +184,34 @@ Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
     const Point& from = rays.segments[k].from;
     const Vector& direction = rays.directions[k];
     // A ray that slips past the edge of what it was aimed at belongs to neither kind.
-    const bool is_aimed = rays.aimed_at[k] != nullptr;
-    if (is_aimed && !distance_to(*rays.aimed_at[k], from, direction, crossings)) continue;
+    const std::optional<std::size_t> aimed_at = rays.aimed_at[k];
+    const bool is_aimed = aimed_at.has_value();
+    if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
+    if (is_aimed) found.seen[*aimed_at] = 1;
     const double over_hemisphere = rays.cosines[k] / std::numbers::pi;
     const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
     const bool is_cut_off = at_openings > cutoff * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;
     const double density = is_cut_off ? at_openings : over_hemisphere + at_openings;
-    sum += radiance(*lighting.sky, direction) * transmittance * (rays.cosines[k] / density);
+    found.irradiance += radiance(*lighting.sky, direction) * transmittance * (rays.cosines[k] / density);
   }
-  return sum / static_cast<double>(rays.places);
+  found.irradiance /= static_cast<double>(rays.places);
+  return found;
+}
+
+Spectrum missed_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                    const std::vector<std::uint8_t>& seen, std::size_t aimed) {
+  const SurfacePoint at = receiver.place(0.5, 0.5);
+  Spectrum most = Spectrum::Zero(lighting.bands);
+  for (std::size_t k = 0; k < aim.probabilities.size(); ++k) {
+    if (seen[k] != 0 || !(aim.probabilities[k] > 0)) continue;
+    const Opening& opening = lighting.openings[k];
+    const Vector direction = (opening.centre - at.point).normalized();
+    const double cosines = std::max(0.0, at.normal.dot(direction)) * std::abs(opening.normal.dot(direction));
+    const double rays = static_cast<double>(aimed) * aim.probabilities[k];
+    most = most.max(radiance(*lighting.sky, direction) * cosines * apparent_size(opening, at.point) / rays);
+  }
+  return most;
 }
 
 }  // namespace patchlight

@@ -16,11 +16,19 @@ struct SkyAim {
 /// What rays are for: the mean over a patch, or single points.
 enum class AimFor : std::uint8_t { patch, points };
 
-/// Each opening with a probability as the solid angle that it would fill if it were turned to the receiver's middle,
-/// roughly; none behind the receiver. Holes alone are not aimed at where a few rays see much of the sky without, nor
-/// for a patch where a few see none of it through the holes, which may be hidden: of a point that would miss what is
-/// left in sight of a window behind a table's leg, and no error would tell.
+/// Seven of eight rays choose an opening with a probability as the solid angle that it would fill if it were turned to
+/// the receiver's middle, roughly, and the others any alike, so that a slit is found whose light windows outshine that
+/// the receiver does not see; none behind the receiver. Holes alone are not aimed at where a few rays see much of the
+/// sky without, nor for a patch where a few see none of it through the holes, which may be hidden: of a point that
+/// would miss what is left in sight of a window behind a table's leg, and no error would tell.
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
+
+/// What rays find of the sky.
+struct SkyLight {
+  Spectrum irradiance;
+  std::vector<std::uint8_t> seen;  ///< of each opening that is aimed at, 1: a ray got to the sky through it
+  std::size_t aimed = 0;           ///< rays towards openings
+};
 
 /// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
 /// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the
@@ -28,6 +36,11 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
 /// with holes alone one more for each of the first half. Where these are many times as dense they alone count (the
 /// cutoff heuristic of the same paper). What gets in through a gap that is no opening is found by the
 /// first kind alone.
-Spectrum sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
+SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
+
+/// What one of so many rays towards openings would bring to a receiver, W/m^2: the most by any opening of which none
+/// was seen to get to the sky. As no hit of n rays means at most a few of n, this is how far off that light may be.
+Spectrum missed_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                    const std::vector<std::uint8_t>& seen, std::size_t aimed);
 
 }  // namespace patchlight

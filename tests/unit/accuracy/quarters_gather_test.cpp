@@ -1,13 +1,17 @@
 #include "accuracy/quarters_gather.h"
 
+#include "form_factor/point_polygon.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 #include "transport/closure.h"
 #include "visibility/occluder.h"
 
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace patchlight::quarters_gather_test {
 namespace {
@@ -70,6 +74,47 @@ TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
   EXPECT_FALSE(more_at_point(seen_as_whole));
   for (double more = -1; more <= 4; more += 0.1) EXPECT_NEAR(more_at_point(as_point(more)).value(), more, 0.0101);
   EXPECT_EQ(more_at_point(as_point(40)).value(), 4);
+}
+
+// A strip over a lamp of 25 patches, more than are told apart one by one, close before it, and a dark plate between,
+// which meets the strip. Its points see the lamp as its middle does, but for the plate and the lamp's edges: what a few
+// rays say of them scatters little, though each shadow ray goes to any patch of the lamp.
+TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
+  Scene scene = with_quad(empty_scene({grey(0.5), grey(0, 1)}),
+                          {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
+  const std::vector<Point> lamp{Point(-.5, -.5, .02), Point(.5, -.5, .02), Point(.5, .5, .02), Point(-.5, .5, .02)};
+  scene = with_quad(std::move(scene), {lamp[0], lamp[1], lamp[2], lamp[3]}, 1);
+  scene = with_quad(std::move(scene),
+                    {Point(-.2, -.02, .22), Point(-.2, .02, .22), Point(.2, .02, .22), Point(.2, -.02, .22)});
+  scene = with_quad(std::move(scene),
+                    {Point(-.02, -.02, .12), Point(.02, -.02, .12), Point(.02, .02, .12), Point(-.02, .02, .12)});
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.21);
+  const auto size = static_cast<Eigen::Index>(mesh.size());
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
+  const LostShare lost{.escaped = zero, .at_backs = zero, .covered = zero};
+  RadiosityProblem problem;
+  problem.exitance = Field::Zero(size, 1);
+  Solution solution;
+  solution.irradiance = Field::Zero(size, 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (mesh.polygon[i] == 1) problem.exitance(i, 0) = 1;
+    if (mesh.polygon[i] == 2) solution.irradiance(i, 0) = point_to_polygon(Point(0, 0, .22), -Vector::UnitZ(), lamp);
+  }
+  solution.radiosity = problem.exitance;
+  const GatheredQuarters rays =
+      gather_at_quarters({mesh, occluder, lost, {problem, solution}}, {.rays = 64, .seed = 1}, {});
+  double squares = 0;
+  int points = 0;
+  for (const std::uint8_t seen_as : rays.seen_as) {
+    const std::optional<double> more = more_at_point(seen_as);
+    if (!more) continue;
+    squares += *more * *more;
+    ++points;
+  }
+  EXPECT_GT(points, 20);
+  // Towards the ends of the strip there is a tenth less. With shadow rays alone it was .6.
+  EXPECT_LT(std::sqrt(squares / points), 0.3);
 }
 
 // A ray counts as from afar where it comes from a patch that is open, and the one it meets is not near.

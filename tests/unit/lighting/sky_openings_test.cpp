@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace patchlight::sky_openings_test {
@@ -153,6 +154,62 @@ TEST(SkyOpenings, LightAPointThatSeesLittleOfThem) {
     EXPECT_NEAR(direct.irradiance(0, 0), expected, 4 * direct.standard_error(0, 0)) << k;
     EXPECT_LT(direct.standard_error(0, 0), 0.3 * expected) << k;
   }
+}
+
+// A room with a window of 1 m and beside it a closet without, behind a wall: its outer wall has a slit of this width, 1
+// m high, or none. The sky shines alike from everywhere, 3 W/(m^2 sr).
+Scene room_and_closet(double slit) {
+  Scene scene = empty_scene({grey(0.5)});
+  const std::vector<Quad> faces = box_faces(Point(-2, 0, -2), Point(4, 4, 2), true);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (k != 2) scene = with_quad(std::move(scene), faces[k]);
+  }
+  scene = with_quad(std::move(scene), {Point(2, 0, -2), Point(2, 4, -2), Point(2, 4, 2), Point(2, 0, 2)});
+  const auto outer = [&](double x0, double x1, double z0, double z1) {
+    scene = with_quad(std::move(scene), {Point(x0, 0, z0), Point(x0, 0, z1), Point(x1, 0, z1), Point(x1, 0, z0)});
+  };
+  outer(-2, -1.5, -2, 2);
+  outer(-0.5, 3, -2, 2);
+  for (const auto& [from, to] : {std::pair{-2.0, -0.5}, {0.5, 2.0}}) {
+    outer(-1.5, -0.5, from, to);
+    outer(3, 3 + slit, from, to);
+  }
+  outer(3 + slit, 4, -2, 2);
+  Sky sky;
+  sky.zenith_radiance = Spectrum::Constant(1, 3);
+  sky.ground_radiance = Spectrum::Constant(1, 3);
+  scene.sky = sky;
+  return scene;
+}
+
+TEST(SkyOpenings, LightAPointBesideAWindowThatItDoesNotSee) {
+  // Of the rays to openings those by solid angle go to the window: one of a thousand to the slit. Of the others, an
+  // eighth of 2,048, half do: E = pi L F, to a tenth.
+  const Scene scene = room_and_closet(0.001);
+  const Lighting lighting = lighting_of(scene, Tracing(scene));
+  const std::vector<Point> slit{Point(3, 0, -0.5), Point(3, 0, 0.5), Point(3.001, 0, 0.5), Point(3.001, 0, -0.5)};
+  for (int k = 0; k < 20; ++k) {
+    const SurfacePoint point{Point(2.4 + 0.05 * k, 3.5, 0.04 * (k - 10)), -Vector::UnitY()};
+    const DirectIrradiance direct = direct_irradiance(lighting, {&point, 1});
+    const double expected = 3 * pi * point_to_polygon(point.point, point.normal, slit);
+    EXPECT_NEAR(direct.irradiance(0, 0), expected, 0.1 * expected) << k;
+    EXPECT_NEAR(direct.irradiance(0, 0), expected, 4 * direct.standard_error(0, 0)) << k;
+  }
+}
+
+TEST(SkyOpenings, ThatArriveNowhereLeaveAnError) {
+  // Without the slit nothing arrives. Of 2,048 rays to the window, or of 1,792, each would bring its part of pi L F: as
+  // much may be in sight. The window's area is taken for that of a ball around it, d^2 + A instead of d^2, .966, and
+  // the light of its middle for all.
+  const Scene scene = room_and_closet(0);
+  const Lighting lighting = lighting_of(scene, Tracing(scene));
+  const std::vector<Point> window{Point(-1.5, 0, -0.5), Point(-1.5, 0, 0.5), Point(-0.5, 0, 0.5), Point(-0.5, 0, -0.5)};
+  const SurfacePoint point{Point(3, 3.5, 0), -Vector::UnitY()};
+  const DirectIrradiance direct = direct_irradiance(lighting, {&point, 1});
+  const double hidden = 3 * pi * point_to_polygon(point.point, point.normal, window);
+  EXPECT_EQ(direct.irradiance(0, 0), 0);
+  EXPECT_GT(direct.standard_error(0, 0), 0.95 * hidden / 2048);
+  EXPECT_LT(direct.standard_error(0, 0), hidden / 1792);
 }
 
 TEST(SkyOpenings, InAThickWallLightAPointAsTheMouthThatItSees) {
