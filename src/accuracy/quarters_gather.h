@@ -54,9 +54,9 @@ struct RaysOfQuarters {
 /// little noise is in their differences. A patch is seen from afar where it is farther away than eight times its
 /// longest edge, so that its quarters look alike, from patches half of whose hemisphere at least is open: into a niche
 /// or a slit only a part of it may be seen. Where a patch meets one of twice its irradiance, closer than that one is
-/// long, light is gathered once more at the point that is met, by two rays and two to lamps, put together by the balance
-/// heuristic (Veach and Guibas 1995): of a pipe that runs through a wall a patch may lie on both sides, its quarters
-/// alike. \throws Cancelled.
+/// long, light is gathered once more at the point that is met, by two rays and two to lamps, put together by the
+/// balance heuristic (Veach and Guibas 1995): of a pipe that runs through a wall a patch may lie on both sides, its
+/// quarters alike. \throws Cancelled.
 GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays, const Observer& observer);
 
 }  // namespace patchlight
