@@ -104,8 +104,8 @@ path default_points_output(const SolveArguments& arguments) {
 void add_points_options(CLI::App& command, SolutionOptions& options) {
   command.option_defaults()->group("Sensors");
   add_file(command, "--points", options.points,
-           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units and direction of the "
-           "receiving side");
+           "points where irradiance is wanted: lines x y z nx ny nz,\nposition in model units, for a scene file in "
+           "metres, and\ndirection of the receiving side");
   command
       .add_option("--points-output", options.points_outputs,
                   "irradiance at these points and at the sensors of a scene file,\nwith error bars (.csv), for "

@@ -227,12 +227,18 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
   return all;
 }
 
+// An axis that was guessed: the model's floors may be walls.
+std::string upright(const SceneFacts& scene) {
+  if (scene.up_stated) return "";
+  return std::string(scene.up.y() > scene.up.z() ? "y" : "z") + " taken to be upright, ";
+}
+
 std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors) {
   std::ostringstream text;
   const Vector& size = report.scene.size;
   text << shown_name(report.scene.file) << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x "
-       << rounded(size.z()) << " m, " << report.scene.polygons << " polygons, " << report.patches
-       << " patches with edges up to " << rounded(report.plan.max_edge) << " m\n";
+       << rounded(size.z()) << " m, " << upright(report.scene) << report.scene.polygons << " polygons, "
+       << report.patches << " patches with edges up to " << rounded(report.plan.max_edge) << " m\n";
   text << effects_line(report.plan.decisions);
   if (long_form) text << details(report);
   text << convergence(report) << '\n';

@@ -78,6 +78,23 @@ std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const Se
   return sentences;
 }
 
+std::vector<std::string> sensors_far_off(const Scene& scene) {
+  const Box box = bounds(scene);
+  const double length = box.diagonal().norm();
+  std::string first;
+  std::size_t count = 0;
+  for (const SensorGroup& group : scene.sensors) {
+    for (std::size_t k = 0; k < group.sensors.size(); ++k) {
+      if (box.exteriorDistance(group.sensors[k].point) <= length) continue;
+      if (count++ == 0) first = place_of(group, k);
+    }
+  }
+  if (count == 0) return {};
+  return {(count == 1 ? "1 sensor lies" : std::to_string(count) + " sensors lie") +
+          " farther from the model than that is long (the first: " + first +
+          "). Are they in the model's unit? Points for a scene file are in metres, whatever its unit"};
+}
+
 std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const PatchMesh& mesh) {
   const std::vector<PatchIndex> patches = patches_with_pictures(scene, mesh);
   if (patches.empty()) return {};

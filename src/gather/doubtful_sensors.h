@@ -15,6 +15,9 @@ namespace patchlight {
 /// that counts the rest. `places` as place_sensors() gives them.
 std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const SensorPlace> places);
 
+/// A sentence where sensors lie farther from the scene's bounds than these are long, as points in another unit do.
+std::vector<std::string> sensors_far_off(const Scene& scene);
+
 /// A sentence where sensors look at patches with pictures from nearer than one and a half times these are wide: each
 /// patch sends them the mean of its part of the picture, and no error bar holds what the texels differ. Empty without
 /// such sensors. O(sensors x patches with pictures).

@@ -33,6 +33,7 @@ namespace {
 
 Scene set_upright(Scene scene, const ReadOptions& options) {
   if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
+  scene.up_stated = scene.up_stated || options.up;
   return scene;
 }
 

@@ -28,6 +28,7 @@ SceneFacts scene_facts(const Scene& scene) {
           .materials = scene.materials.size(),
           .metres_per_unit = scene.metres_per_unit,
           .up = scene.up,
+          .up_stated = scene.up_stated,
           .size = bounds(scene).diagonal(),
           .notes = scene.notes,
           .bands = bands_of(scene)};

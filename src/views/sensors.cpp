@@ -147,6 +147,7 @@ SensorView read_sensors(const Scene& scene, const Simulation& simulation, const 
   const std::vector<SensorPlace> places =
       place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
   std::vector<std::string> warnings = doubtful_sensors(scene, places);
+  for (std::string& warning : sensors_far_off(scene)) warnings.push_back(std::move(warning));
   for (std::string& warning : sensors_close_to_pictures(scene, simulation.mesh)) warnings.push_back(std::move(warning));
   return {readings_at(places, scene, simulation, observer), std::move(warnings)};
 }

@@ -21,6 +21,7 @@ struct SceneFacts {
   std::size_t materials = 0;
   double metres_per_unit = 1;
   Vector up = Vector::UnitZ();
+  bool up_stated = true;         ///< else it was guessed: upright_axis()
   Vector size = Vector::Zero();  ///< of the bounds, m
   std::vector<std::string> notes;
   Bands bands = {};  ///< what spectra are of

@@ -119,7 +119,7 @@ struct Scene {
   std::string sha256;                         ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;                 ///< length of one unit of the model file
   Vector up = Vector::UnitZ();
-  bool up_stated = false;          ///< the model file says which way is up
+  bool up_stated = false;          ///< the model file or who reads it says which way is up
   Vector north = Vector::UnitY();  ///< unit, at right angles to up
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;

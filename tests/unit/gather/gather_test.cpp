@@ -13,6 +13,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <string>
+#include <vector>
 
 namespace patchlight::gather_test {
 namespace {
@@ -160,6 +162,19 @@ TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
     // By the rays alone, of which none is blocked, those over the kink in the middle would be outside.
     EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 3));
   }
+}
+
+TEST(SensorsFarOff, AreThoseFartherAwayThanTheModelIsLong) {
+  // The cube of 1 m is sqrt(3) m long.
+  Scene scene = cube_room(0.5, 0.5);
+  scene.sensors = {
+      {.name = "near", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}, {Point(2.7, 0, 0), Vector::UnitZ()}}}};
+  EXPECT_TRUE(sensors_far_off(scene).empty());
+  scene.sensors[0].sensors.push_back({Point(500, 500, 500), Vector::UnitZ()});
+  const std::vector<std::string> warnings = sensors_far_off(scene);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("1 sensor lies farther from the model"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("sensor 3"), std::string::npos) << warnings[0];
 }
 
 Readings constant_readings(std::initializer_list<double> values) {
