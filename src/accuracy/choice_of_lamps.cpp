@@ -14,6 +14,13 @@ ChoiceOfLamps::Chosen ChoiceOfLamps::at(double u) const {
   return {lamps[k], of_lamp / before.back(), std::clamp((place - before[k]) / of_lamp, 0.0, 1.0)};
 }
 
+double ChoiceOfLamps::probability_of(PatchIndex patch) const {
+  const auto place = std::lower_bound(lamps.begin(), lamps.end(), patch);
+  if (place == lamps.end() || *place != patch) return 0;
+  const auto k = static_cast<std::size_t>(place - lamps.begin());
+  return (before[k + 1] - before[k]) / before.back();
+}
+
 ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
                               const Field& exitance) {
   constexpr double least_cosine = 0.05;  // of a lamp whose centroid is below the horizon some may be above it

@@ -9,7 +9,7 @@ namespace patchlight {
 
 /// Emitting patches, to be chosen by about what they send somewhere.
 struct ChoiceOfLamps {
-  std::vector<PatchIndex> lamps;
+  std::vector<PatchIndex> lamps;  ///< in the order of the mesh
   std::vector<double> before;  ///< what those before each send, W; one more entry at the end
 
   struct Chosen {
@@ -17,6 +17,9 @@ struct ChoiceOfLamps {
     double probability;
     double u;  ///< what the choice leaves of the number, in [0, 1) again
   };
+
+  /// That of a patch to be chosen; 0 where it is none of them. O(log(lamps)).
+  double probability_of(PatchIndex patch) const;
 
   /// The one that belongs to this number of [0, 1). O(log(lamps)).
   Chosen at(double u) const;

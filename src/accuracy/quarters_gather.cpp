@@ -82,9 +82,10 @@ class Gather {
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
   bool finds_lamps(const Hit& hit) const;
-  double part_by_shadow_rays(PatchIndex lamp, double geometry) const;
-  double from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const;
-  double from_hemisphere(PatchIndex patch, const Point& point, const Seen& seen) const;
+  double part_by_shadow_rays(const ChoiceOfLamps& choice, PatchIndex lamp, double geometry) const;
+  double from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+                     const std::array<double, 4>& sample) const;
+  double from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point, const Seen& seen) const;
   double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
   const PatchMesh& mesh_;
@@ -166,27 +167,30 @@ bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hi
 // No ray to a lamp goes over mirrors: what lamps send over these is found with the rest.
 bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.reflections > 0; }
 
-// Shadow rays go to points of lamps by their flux, with the density q_j / A_j, which goes as E_j, and rays over the
+// Shadow rays go to points of lamps with the density q_j / A_j, q_j the probability of lamp j, and rays over the
 // hemisphere meet these with the density G: the share of the former by the balance heuristic (Veach and Guibas 1995).
-double Gather::part_by_shadow_rays(PatchIndex lamp, double geometry) const {
-  const double density = exitance_.row(lamp).mean() / by_flux_.before.back();
+double Gather::part_by_shadow_rays(const ChoiceOfLamps& choice, PatchIndex lamp, double geometry) const {
+  const double density = choice.probability_of(lamp) / mesh_.area[lamp];
   return density / (density + geometry);
 }
 
 // E h G V / p summed over the bands, times its part, for a point of a lamp that is chosen with the density p.
-double Gather::from_a_lamp(PatchIndex patch, const Point& point, const std::array<double, 4>& sample) const {
-  const auto [lamp, probability, u] = by_flux_.at(sample[2]);
+double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+                           const std::array<double, 4>& sample) const {
+  const auto [lamp, probability, u] = choice.at(sample[2]);
   const Point to = square_to_quad(mesh_.corner_points(lamp).points, u, sample[3]);
   const double geometry = geometry_term(point, mesh_.normal[patch], to, mesh_.normal[lamp]);
   if (!(geometry > 0)) return 0;
   const Segment segment{point, to, mesh_.polygon[patch], mesh_.polygon[lamp]};
   const double held = occluder_.held_share(mesh_.polygon[lamp], mesh_.side[lamp]);
   return exitance_.row(lamp).sum() * held * geometry * mesh_.area[lamp] / probability *
-         part_by_shadow_rays(lamp, geometry) * static_cast<double>(occluder_.transmittance({&segment, 1}).front());
+         part_by_shadow_rays(choice, lamp, geometry) *
+         static_cast<double>(occluder_.transmittance({&segment, 1}).front());
 }
 
 // What a ray over the hemisphere brings to a point of a patch, summed over the bands.
-double Gather::from_hemisphere(PatchIndex patch, const Point& point, const Seen& seen) const {
+double Gather::from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+                               const Seen& seen) const {
   if (seen.sight != Sight::patch) return 0;
   const SidePoint at{seen.hit->polygon, seen.hit->side, seen.hit->point};
   const PatchIndex sender = lookup_.patches_at({&at, 1}).front();
@@ -197,24 +201,28 @@ double Gather::from_hemisphere(PatchIndex patch, const Point& point, const Seen&
   // No shadow ray goes over mirrors.
   if (seen.hit->reflections > 0) return sent + emitted;
   const double geometry = geometry_term(point, mesh_.normal[patch], at.point, mesh_.normal[sender]);
-  return sent + emitted * (1 - part_by_shadow_rays(sender, geometry));
+  return sent + emitted * (1 - part_by_shadow_rays(choice, sender, geometry));
 }
 
 // By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to be
 // even.
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
+  constexpr std::size_t few_lamps = 16;  // of which each is told apart for each point
   const double whole = irradiance_.row(patch).sum();
+  const bool takes_by_flux = lamps_.empty() || lamps_.size() > few_lamps;
+  const ChoiceOfLamps for_patch = takes_by_flux ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
+  const ChoiceOfLamps& choice = takes_by_flux ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   double there = 0;
   std::vector<Ray> rays;
   for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
-    if (!lamps_.empty()) there += from_a_lamp(patch, point, sample) / rays_from_point;
+    if (!lamps_.empty()) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
     rays.push_back(
         {point, frame * occluder_.held_direction(mesh_.polygon[patch], sample[0], sample[1]), mesh_.polygon[patch]});
   }
   for (const Seen& seen : sights_.of_rays(patch, rays, key))
-    there += from_hemisphere(patch, point, seen) / rays_from_point;
+    there += from_hemisphere(choice, patch, point, seen) / rays_from_point;
   const double from_no_patch = from_no_patch_.size() > 0 ? from_no_patch_.row(patch).sum() : 0;
   return (there + from_no_patch) / whole - 1;
 }

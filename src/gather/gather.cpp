@@ -27,59 +27,71 @@ struct Light {
 // Irradiance at one sensor.
 struct Reading {
   Spectrum mean;
-  Spectrum variance;   // of the mean, by the rays
-  Spectrum sampling;   // variance by errors of the patches
-  Spectrum mesh;       // by errors of the patches
-  Spectrum solver;     // bound
-  Spectrum by_slopes;  // what the slopes on patches add
-  Spectrum left;       // variance by what is left of the light on patches
-  Spectrum reflected;  // the part that patches have reflected
+  Spectrum variance;     // of the mean, by the rays
+  Spectrum sampling;     // variance by errors of the patches
+  Spectrum mesh;         // by errors of the patches
+  Spectrum solver;       // bound
+  Spectrum unexplained;  // variance by what planes leave of the light on patches
+  Spectrum reflected;    // the part that patches have reflected
 };
 
-// E = sum_j F(x, j) V_j B_j, and its variance sum_j (F(x, j) B_j)^2 var V_j. Rays to a patch that agree may miss what
-// the others of it would meet: of all such rays the heaviest counts as an error.
-Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const FieldView& radiosity) {
-  const Spectrum zero = Spectrum::Zero(radiosity.cols());
-  Reading reading{zero, zero, zero, zero, zero, zero, zero, zero};
+// What of each band gets through coloured panes.
+Spectrum of_bands(const Spectrum& values, const VisibleShare& share) {
+  return share.colour.size() > 0 ? Spectrum(values * share.colour) : values;
+}
+
+// E = sum_j F(x, j) (B_j V_j + g_j . m_j), V_j the visible share and m_j its first moment; and its variance. Rays to a
+// patch that agree may miss what the others of it would meet: of all such rays the heaviest counts as an error.
+Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const Light& light) {
+  const Spectrum zero = Spectrum::Zero(light.radiosity.cols());
+  Reading reading{zero, zero, zero, zero, zero, zero, zero};
   Spectrum heaviest = zero;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    Spectrum unoccluded = sources[s].form_factor * radiosity.row(sources[s].patch);
-    if (shares[s].colour.size() > 0) unoccluded *= shares[s].colour;
-    reading.mean += unoccluded * shares[s].mean;
-    reading.variance += unoccluded.square() * shares[s].variance;
-    if (!(shares[s].variance > 0)) heaviest = heaviest.max(unoccluded / shares[s].rays);
+    const PatchIndex j = sources[s].patch;
+    const double form_factor = sources[s].form_factor;
+    const Spectrum colour = of_bands(Spectrum::Ones(zero.size()), shares[s]);
+    for (Eigen::Index band = 0; band < zero.size(); ++band) {
+      Eigen::Vector4d plane(light.radiosity(j, band), 0, 0, 0);
+      if (light.slopes.gradient.size() > 0)
+        plane.tail<3>() = light.slopes.gradient.row(j).segment(3 * band, 3).matrix().transpose();
+      plane *= form_factor * colour[band];
+      reading.mean[band] += plane.dot(shares[s].moments);
+      reading.variance[band] += plane.dot(shares[s].covariance * plane);
+    }
+    if (!(shares[s].covariance(0, 0) > 0))
+      heaviest = heaviest.max(form_factor * colour * light.radiosity.row(j) / shares[s].rays);
   }
   reading.variance += heaviest.square();
   return reading;
 }
 
-// How unevenly a sensor sees a patch of the area a from the distance r: not at all from afar, where every point of the
-// patch counts alike, and as much as can be close by, where the nearest points alone count.
-double unevenness(double area, double squared_distance) { return area / (area + squared_distance); }
+// How unevenly a sensor sees a patch: not at all from afar, where every point of the patch counts alike, and as much as
+// can be close by, where the nearest points alone count.
+double unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
+  const PatchCorners corners = mesh.corner_points(j);
+  const std::span<const Point> points = corners;
+  double longest = 0;  // edge, squared
+  for (std::size_t k = 0; k < points.size(); ++k)
+    longest = std::max(longest, (points[(k + 1) % points.size()] - points[k]).squaredNorm());
+  return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
+}
 
-// What slopes on the visible parts of patches add, and what the patches' errors come to.
-Reading with_patches(Reading reading, const Sensor& sensor, std::span<const Source> sources,
-                     std::span<const VisibleShare> shares, const Light& light) {
-  const auto& [sampling, mesh, solver, within, reflected] = light.errors;
+// What the errors of the patches come to.
+Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<const Source> sources,
+                               std::span<const VisibleShare> shares, const Light& light) {
+  const auto& [sampling, mesh, solver, display, reflected] = light.errors;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const PatchIndex j = sources[s].patch;
-    const double weight = sources[s].form_factor * shares[s].mean;
-    if (!(weight > 0)) continue;
+    const double seen = sources[s].form_factor * shares[s].mean();
+    if (!(seen > 0)) continue;
+    const Spectrum weight = of_bands(Spectrum::Constant(reading.mean.size(), seen), shares[s]);
     if (sampling.size() > 0) reading.sampling += (weight * sampling.row(j)).square();
     if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
     if (solver.size() > 0) reading.solver += weight * solver.row(j);
     if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
-    if (light.slopes.gradient.size() == 0) continue;
-    const double uneven = unevenness(light.mesh.area[j], (sensor.point - light.mesh.centroid[j]).squaredNorm());
-    reading.left += (weight * uneven * light.slopes.left.row(j)).square();
-    const Vector offset = shares[s].centre - light.mesh.centroid[j];
-    for (Eigen::Index band = 0; band < reading.mean.size(); ++band) {
-      const auto gradient = light.slopes.gradient.row(j).segment(3 * band, 3).matrix();
-      reading.by_slopes[band] += weight * gradient.dot(offset);
-      reading.variance[band] += weight * weight * gradient.squaredNorm() * shares[s].centre_variance;
-    }
+    if (light.slopes.residual.size() > 0)
+      reading.unexplained += (weight * unevenness(light.mesh, j, sensor.point) * light.slopes.residual.row(j)).square();
   }
-  reading.mean += reading.by_slopes;
   return reading;
 }
 
@@ -93,27 +105,17 @@ std::vector<RayCounts> counts_for(std::span<const Source> sources, double rays, 
   return counts;
 }
 
-double square(double value) { return value * value; }
-
 // Both by the number of their rays.
 std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<const VisibleShare> second) {
   for (std::size_t s = 0; s < first.size(); ++s) {
     const double rays = first[s].rays + second[s].rays;
     const double a = first[s].rays / rays;
     const double b = second[s].rays / rays;
-    const double mean = a * first[s].mean + b * second[s].mean;
-    const Vector moment = a * first[s].mean * first[s].centre + b * second[s].mean * second[s].centre;
-    Spectrum colour = a * first[s].mean * first[s].colour + b * second[s].mean * second[s].colour;
+    const double mean = a * first[s].mean() + b * second[s].mean();
+    Spectrum colour = a * first[s].mean() * first[s].colour + b * second[s].mean() * second[s].colour;
     if (mean > 0) colour /= mean;
-    first[s] = {mean,
-                a * a * first[s].variance + b * b * second[s].variance,
-                rays,
-                mean > 0 ? Point(moment / mean) : Point(Point::Zero()),
-                mean > 0 ? (square(a * first[s].mean) * first[s].centre_variance +
-                            square(b * second[s].mean) * second[s].centre_variance) /
-                               (mean * mean)
-                         : 0,
-                colour};
+    first[s] = {a * first[s].moments + b * second[s].moments,
+                a * a * first[s].covariance + b * b * second[s].covariance, rays, colour};
   }
   return first;
 }
@@ -129,10 +131,9 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
 
 Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const Light& light, const ShadowRays& rays,
                     const GatherOptions& options) {
-  const FieldView& radiosity = light.radiosity;
   const std::vector<RayCounts> first = counts_for(sources, options.rays, options.least_rays);
   std::vector<VisibleShare> shares = rays.visible_shares(sensor, sources, first, 0);
-  Reading reading = reading_of(sources, shares, radiosity);
+  Reading reading = reading_of(sources, shares, light);
   double traced = 0;
   for (const VisibleShare& share : shares) traced += share.rays;
   const double more = std::min((wanted_factor(reading, options) - 1) * traced, options.most_rays - traced);
@@ -140,9 +141,9 @@ Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const
     const double share = more / traced;
     const std::vector<RayCounts> second = counts_for(sources, share * options.rays, share * options.least_rays);
     shares = together(std::move(shares), rays.visible_shares(sensor, sources, second, 1));
-    reading = reading_of(sources, shares, radiosity);
+    reading = reading_of(sources, shares, light);
   }
-  return with_patches(std::move(reading), sensor, sources, shares, light);
+  return with_errors_of_patches(std::move(reading), sensor, sources, shares, light);
 }
 
 // A column for each band of what a reading has.
@@ -152,14 +153,14 @@ Field column_of(std::span<const Reading> readings, Spectrum Reading::*part, Eige
   return all;
 }
 
-// What is left of the light on patches, and what patches of the same mesh may be off themselves.
+// What planes leave of the light on patches, and what patches of the same mesh may be off themselves.
 Field mesh_part(std::span<const Reading> readings, const Field& irradiance, const RadiosityErrors& errors) {
   const Eigen::Index bands = irradiance.cols();
-  const Field left = column_of(readings, &Reading::left, bands);
-  if (errors.mesh.size() > 0) return (left + column_of(readings, &Reading::mesh, bands).square()).sqrt();
+  const Field unexplained = column_of(readings, &Reading::unexplained, bands);
+  if (errors.mesh.size() > 0) return (unexplained + column_of(readings, &Reading::mesh, bands).square()).sqrt();
   const Spectrum squares = irradiance.square().colwise().sum();
-  const Spectrum share = (squares > 0).select(left.colwise().sum() / squares, 0.0);
-  return (left + column_of(readings, &Reading::reflected, bands).square().rowwise() * share).sqrt();
+  const Spectrum share = (squares > 0).select(unexplained.colwise().sum() / squares, 0.0);
+  return (unexplained + column_of(readings, &Reading::reflected, bands).square().rowwise() * share).sqrt();
 }
 
 }  // namespace
@@ -173,7 +174,7 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
                                      const Observer& observer) {
   const ShadowRays rays(mesh, occluder, options.seed, options.coloured);
   const Light light{mesh, radiosity,
-                    options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors.within) : Slopes{},
+                    options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
                     options.errors};
   const double tolerance = on_plane_tolerance / occluder.frame().scale;
   std::vector<Reading> readings(sensors.size());

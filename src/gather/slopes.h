@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/gather/gather.h"
 #include "patchlight/mesh/patch_mesh.h"
 
 namespace patchlight {
@@ -10,16 +11,19 @@ class Occluder;
 /// How the radiosity of patches (rows) varies on them: the mean over each patch plus a plane.
 struct Slopes {
   Field gradient;  ///< along the surface, W/m^2 per metre: three components of the first band, then those of the next
-  Field left;      ///< how far the radiosity at a point may be from the plane, W/m^2, root mean square
+  Field residual;  ///< an allowance for how far the radiosity at a point is from the plane, W/m^2
 };
 
 /// Fitted to the differences from the patches of the same polygon side that share a vertex, by least squares; 0 where
-/// there are none. Where one has more than twice the radiosity of the other and they do not see each other, a tenth of
-/// their distance above the polygon, something stands between them, and they say nothing of each other. A plane that
-/// would fall below 0 at a corner of its patch is made less steep. What is left is half of the residuals of the fit, at
-/// the distance of a patch, or of all of the difference where there are too few patches for a residual; or what the
-/// plane does not explain of `within`, how far points of each patch are known to be from its mean, root mean square
-/// (empty: not known), where that is more. O(patches).
-Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder, const Field& within);
+/// there are none. Where one of two patches has a quarter more than the other and they do not see each other, a tenth
+/// of their distance above the polygon, something stands between them, and they say nothing of each other. A plane
+/// that would fall below 0 at a corner of its patch is made less steep.
+///
+/// The residual is half of that at the centroids of the patches around, or of all of the difference where these are
+/// too few for a residual; or what the plane does not explain of `errors.display`, where that is more. Where that is
+/// not known, and a polygon side has no more than four patches, it is all of what these reflect: nothing tells how that
+/// varies. O(patches) with a bounded number around each vertex. \throws Cancelled.
+Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder,
+                 const RadiosityErrors& errors, const Observer& observer);
 
 }  // namespace patchlight

@@ -50,43 +50,34 @@ double shifted(double u, std::uint32_t shift) {
 
 // Summed geometry terms of the rays of one replicate.
 struct Weights {
-  double reached = 0;
+  Eigen::Vector4d reached = Eigen::Vector4d::Zero();  // and times the way from the patch's centroid
   double all = 0;
-  Vector moment = Vector::Zero();  // sum of reached points by their weights
-  Spectrum by_band = {};           // what is reached in each band, where these differ
+  Spectrum by_band = {};  // what is reached in each band, where these differ
 };
 
-// The ratio of what is reached to all, with its variance by the scatter of the replicates about it (Cochran 1977,
-// section 6.4).
+// The ratios of what is reached to all, with their covariance by the scatter of the replicates about them (Cochran
+// 1977, section 6.4).
 VisibleShare share_of(std::span<const Weights> replicates, double rays) {
-  double reached = 0;
+  Eigen::Vector4d reached = Eigen::Vector4d::Zero();
   double all = 0;
-  Vector moment = Vector::Zero();
   Spectrum by_band = Spectrum::Zero(replicates[0].by_band.size());
   for (const Weights& one : replicates) {
     by_band += one.by_band;
     reached += one.reached;
     all += one.all;
-    moment += one.moment;
   }
-  if (!(all > 0)) return {0, 0, rays};
-  const double mean = reached / all;
-  const Point centre = reached > 0 ? Point(moment / reached) : Point(Point::Zero());
-  double squares = 0;
-  double squares_of_centre = 0;
+  VisibleShare share;
+  share.rays = rays;
+  if (!(all > 0)) return share;
+  share.moments = reached / all;
   for (const Weights& one : replicates) {
-    squares += std::pow(one.reached - mean * one.all, 2);
-    squares_of_centre += (one.moment - one.reached * centre).squaredNorm();
+    const Eigen::Vector4d off = (one.reached - share.moments * one.all) / all;
+    share.covariance += off * off.transpose();
   }
   const auto count = static_cast<double>(replicates.size());
-  const double scatter = count / (count - 1);
-  if (!(reached > 0)) return {0, scatter * squares / (all * all), rays, centre, 0, by_band};
-  return {mean,
-          scatter * squares / (all * all),
-          rays,
-          centre,
-          scatter * squares_of_centre / (reached * reached),
-          by_band / reached};
+  share.covariance *= count / (count - 1);
+  share.colour = reached[0] > 0 ? Spectrum(by_band / reached[0]) : by_band;
+  return share;
 }
 
 }  // namespace
@@ -166,8 +157,8 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
         const double reached = static_cast<double>(arriving[ray]) * weights[ray];
-        replicates[r].reached += reached;
-        replicates[r].moment += reached * segments[ray].to;
+        const Vector way = segments[ray].to - mesh_.centroid[sources[shares.size()].patch];
+        replicates[r].reached += reached * Eigen::Vector4d(1, way.x(), way.y(), way.z());
         if (by_band.size() == 0 || !(reached > 0)) continue;
         const Segment& segment = segments[ray];
         const double sent = occluder_.relative_held(segment.to_polygon, (segment.to - segment.from).normalized());

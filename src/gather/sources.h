@@ -27,14 +27,15 @@ struct Source {
 std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
                                    double tolerance);
 
-/// What shadow rays to a source say.
+/// What shadow rays to a source say, weighted by geometry terms.
 struct VisibleShare {
-  double mean = 0;
-  double variance = 0;  ///< of the mean
+  Eigen::Vector4d moments = Eigen::Vector4d::Zero();     ///< the share that is visible, and its first moments about the
+                                                         ///< patch's centroid, metres
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of these
   double rays = 0;
-  Point centre = Point::Zero();  ///< of what is visible, as seen from the sensor, metres; where anything is
-  double centre_variance = 0;    ///< of that, square metres: the sum over its coordinates
-  Spectrum colour = {};          ///< times which each band of the mean arrives; empty: 1
+  Spectrum colour = {};  ///< times which each band of the mean arrives; empty: 1
+
+  double mean() const { return moments[0]; }
 };
 
 /// Shadow rays to a source: so many replicates of so many.

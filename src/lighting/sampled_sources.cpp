@@ -110,16 +110,16 @@ SampledSource source_of(const Lighting& lighting, const Luminaire& luminaire, st
 Means means_of_sky(const Lighting& lighting, const Receiver& receiver, std::span<const ReceiverSamples> sets) {
   const SkyAim aim = sky_aim(lighting, receiver, receiver.is_point() ? AimFor::points : AimFor::patch);
   Field means(static_cast<Eigen::Index>(sets.size()), lighting.bands);
-  std::vector<std::uint8_t> seen(aim.probabilities.size(), 0);
-  std::size_t aimed = 0;
+  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const SkyLight found = sky_irradiance(lighting, receiver, aim, sets[k].rays);
     means.row(static_cast<Eigen::Index>(k)) = found.irradiance;
-    aimed += found.aimed;
-    std::transform(seen.begin(), seen.end(), found.seen.begin(), seen.begin(), std::bit_or<>());
+    seen.aimed += found.seen.aimed;
+    std::transform(seen.through.begin(), seen.through.end(), found.seen.through.begin(), seen.through.begin(),
+                   std::bit_or<>());
   }
-  if (!receiver.is_point() || aimed == 0) return {means};
-  return {means, missed_sky(lighting, receiver, aim, seen, aimed)};
+  if (!receiver.is_point() || seen.aimed == 0) return {means};
+  return {means, missed_sky(lighting, receiver.place(0.5, 0.5), aim, seen)};
 }
 
 SampledSource sun_of(const Lighting& lighting, std::uint32_t samples) {

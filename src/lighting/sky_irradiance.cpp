@@ -146,6 +146,29 @@ bool rises_above(const Opening& opening, const SurfacePoint& at, double height) 
   });
 }
 
+// L tau cos cos' towards the middle or a corner of an opening, the largest of each band: where its middle is below the
+// horizon of the place, a corner may be above.
+Spectrum brightest_of(const Lighting& lighting, const SurfacePoint& at, const Opening& opening) {
+  constexpr double short_way = 1e-3;  // across the opening, to find what it lets through
+  std::vector<Point> points{opening.centre};
+  for (const auto& triangle : opening.triangles) points.insert(points.end(), triangle.begin(), triangle.end());
+  std::vector<Segment> across;
+  std::vector<double> cosines;
+  for (const Point& point : points) {
+    const Vector direction = (point - at.point).normalized();
+    const Vector half_way = short_way * opening.radius * direction;
+    cosines.push_back(std::max(0.0, at.normal.dot(direction)) * std::abs(opening.normal.dot(direction)));
+    across.push_back({opening.centre - half_way, opening.centre + half_way, no_polygon, no_polygon});
+  }
+  const std::vector<Passage> passages = lighting.paths.passages(across);
+  Spectrum most = Spectrum::Zero(lighting.bands);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Spectrum sky = radiance(*lighting.sky, (points[k] - at.point).normalized());
+    most = most.max(cosines[k] * passages[k].transmittance * sky);
+  }
+  return most;
+}
+
 }  // namespace
 
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) {
@@ -173,7 +196,7 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
 
 SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
   const SkyRays rays = sky_rays(lighting, receiver, samples, aim);
-  SkyLight found{Spectrum::Zero(lighting.bands), std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed};
+  SkyLight found{Spectrum::Zero(lighting.bands), {std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed}};
   if (rays.places == 0) return found;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
   const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
@@ -187,7 +210,7 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
     const std::optional<std::size_t> aimed_at = rays.aimed_at[k];
     const bool is_aimed = aimed_at.has_value();
     if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
-    if (is_aimed) found.seen[*aimed_at] = 1;
+    if (is_aimed) found.seen.through[*aimed_at] = 1;
     const double over_hemisphere = rays.cosines[k] / std::numbers::pi;
     const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
     const bool is_cut_off = at_openings > cutoff * over_hemisphere;
@@ -199,17 +222,13 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
   return found;
 }
 
-Spectrum missed_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
-                    const std::vector<std::uint8_t>& seen, std::size_t aimed) {
-  const SurfacePoint at = receiver.place(0.5, 0.5);
+Spectrum missed_sky(const Lighting& lighting, const SurfacePoint& at, const SkyAim& aim, const SkySeen& seen) {
   Spectrum most = Spectrum::Zero(lighting.bands);
   for (std::size_t k = 0; k < aim.probabilities.size(); ++k) {
-    if (seen[k] != 0 || !(aim.probabilities[k] > 0)) continue;
-    const Opening& opening = lighting.openings[k];
-    const Vector direction = (opening.centre - at.point).normalized();
-    const double cosines = std::max(0.0, at.normal.dot(direction)) * std::abs(opening.normal.dot(direction));
-    const double rays = static_cast<double>(aimed) * aim.probabilities[k];
-    most = most.max(radiance(*lighting.sky, direction) * cosines * apparent_size(opening, at.point) / rays);
+    if (seen.through[k] != 0 || !(aim.probabilities[k] > 0)) continue;
+    const double rays = static_cast<double>(seen.aimed) * aim.probabilities[k];
+    const double size = apparent_size(lighting.openings[k], at.point);
+    most = most.max(brightest_of(lighting, at, lighting.openings[k]) * size / rays);
   }
   return most;
 }

@@ -2,6 +2,7 @@
 
 #include "lighting/receiver.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,11 +24,16 @@ enum class AimFor : std::uint8_t { patch, points };
 /// would miss what is left in sight of a window behind a table's leg, and no error would tell.
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
 
+/// What of the sky rays have seen.
+struct SkySeen {
+  std::vector<std::uint8_t> through;  ///< per opening that may be aimed at, 1: a ray got to the sky through it
+  std::size_t aimed = 0;              ///< rays towards openings
+};
+
 /// What rays find of the sky.
 struct SkyLight {
   Spectrum irradiance;
-  std::vector<std::uint8_t> seen;  ///< of each opening that is aimed at, 1: a ray got to the sky through it
-  std::size_t aimed = 0;           ///< rays towards openings
+  SkySeen seen;
 };
 
 /// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
@@ -38,9 +44,9 @@ struct SkyLight {
 /// first kind alone.
 SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
 
-/// What one of so many rays towards openings would bring to a receiver, W/m^2: the most by any opening of which none
-/// was seen to get to the sky. As no hit of n rays means at most a few of n, this is how far off that light may be.
-Spectrum missed_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
-                    const std::vector<std::uint8_t>& seen, std::size_t aimed);
+/// What one ray towards openings would bring to a point, W/m^2: the most, in each band, by any opening through which
+/// none of so many has got to the sky. As no hit of n rays means at most a few of n, this is how far off that light may
+/// be; as for the shadow rays of sensors, one of them counts (gather.h).
+Spectrum missed_sky(const Lighting& lighting, const SurfacePoint& at, const SkyAim& aim, const SkySeen& seen);
 
 }  // namespace patchlight

@@ -14,7 +14,7 @@ RadiosityErrors radiosity_errors(const Simulation& simulation) {
   if (simulation.error_bars) {
     errors.sampling = problem.scattering.reflect(simulation.error_bars->form_factor);
     errors.mesh = problem.scattering.reflect(simulation.error_bars->mesh);
-    errors.within = problem.scattering.reflect(simulation.error_bars->display);
+    errors.display = problem.scattering.reflect(simulation.error_bars->display);
     return errors;
   }
   Field squares = Field::Zero(problem.exitance.rows(), problem.exitance.cols());

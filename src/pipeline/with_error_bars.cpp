@@ -277,7 +277,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
                            .mesh_noise = {},
                            .form_factor = squares.sqrt(),
                            .solver = solver_errors(solved),
-                           .display = display_errors(result.mesh, solved)};
+                           .display = display_errors(result.mesh, solved).max(of_mesh.unseen.display)};
 
   // 3. Where from.
   result.effects = effects_of(result, solved, weight, of_mesh);

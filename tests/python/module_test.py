@@ -195,7 +195,8 @@ class ModuleTest(unittest.TestCase):
         G = t.sensor_factors()
         step = 1e-4
         for k, found in enumerate(pl.sensor_sensitivities(t)):
-            # What a sensor reads is sampled with rays that follow the light: six standard errors, and both have them.
+            # What a sensor reads is sampled with rays that follow the light, and patches are even here, but planes there:
+            # six standard errors, and both have them.
             numpy.testing.assert_array_less(abs(found["value"] - read["irradiance"][k]), 6 * numpy.sqrt(2) * read["standard_error"][k] + 1e-12)
             for m in range(len(scene.materials)):
                 for quantity in ("reflectance", "exitance"):

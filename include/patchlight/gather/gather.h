@@ -18,7 +18,7 @@ struct RadiosityErrors {
   Field sampling;   ///< standard deviations of errors that have nothing to do with each other
   Field mesh;       ///< standard deviations of errors that patches share; empty where not known
   Field solver;     ///< bounds
-  Field within;     ///< root mean square of how far points of a patch are from its mean; empty where not known
+  Field display;    ///< root mean square of how far points of a patch are from its mean; empty where not known
   Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
 };
 
@@ -61,7 +61,8 @@ struct GatheredIrradiance {
 ///
 /// On each patch the radiosity is a plane, its slopes fitted to the means of the patches around: above a patch that is
 /// bright in its middle less is read off its dark corners. What a plane does not explain is an error, by as much as the
-/// sensor sees the patch unevenly: as area / (area + distance^2). Such errors of patches add up in squares.
+/// sensor sees the patch unevenly, docs/theory.md section 10. Such errors of patches add up in squares. Of polygon sides
+/// with four patches or fewer, which symmetry may make alike, all that they reflect is one where `display` is not known.
 ///
 /// The patches' own errors are gathered as their light is: sampling errors add up in squares, mesh errors and the
 /// solver's bounds as they are. Where the patches' mesh errors are not known, what they reflect is taken to be off by

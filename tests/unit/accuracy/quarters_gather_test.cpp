@@ -76,9 +76,9 @@ TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
   EXPECT_EQ(more_at_point(as_point(40)).value(), 4);
 }
 
-// A strip over a lamp of 25 patches, more than are told apart one by one, close before it, and a dark plate between,
-// which meets the strip. Its points see the lamp as its middle does, but for the plate and the lamp's edges: what a few
-// rays say of them scatters little, though each shadow ray goes to any patch of the lamp.
+// A strip over a lamp of 25 patches, chosen by their flux, close before it, and a dark plate between, which meets the
+// strip. Its points see the lamp as its middle does, but for the plate and the lamp's edges: what two rays and two
+// shadow rays say of them scatters little, though each of these goes to any patch of the lamp.
 TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0, 1)}),
                           {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});

@@ -125,7 +125,7 @@ TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
   const PatchMesh mesh = fronts(scene, 0.2);
   const Field ones = Field::Ones(mesh.size(), 1);
   GatherOptions options;
-  options.errors = {.sampling = 0.1 * ones, .mesh = 0.2 * ones, .solver = 0.3 * ones, .within = {}, .reflected = ones};
+  options.errors = {.sampling = 0.1 * ones, .mesh = 0.2 * ones, .solver = 0.3 * ones, .display = {}, .reflected = ones};
   const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()}};
   const SensorErrors errors = gather_irradiance(mesh, ones, Occluder(scene), sensors, options).errors;
   EXPECT_NEAR(errors.mesh(0, 0), 0.2, 1e-9);
@@ -133,6 +133,31 @@ TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
   EXPECT_GT(errors.sampling(0, 0), 0.001);
   EXPECT_LT(errors.sampling(0, 0), 0.03);
   EXPECT_NEAR(errors.total()(0, 0), std::sqrt((errors.rays.square() + errors.sampling.square()).value() + 0.13), 1e-9);
+}
+
+// A sheet hides half of a floor on which the radiosity grows to one side, so that what is seen of each patch, and where
+// on it, is found by rays: over many seeds the readings scatter as is stated, a variance of 200 to some 10 %, that of
+// eight replicates to 4 % in their mean.
+TEST(GatherIrradiance, OfPlanesThatAreHiddenInPartScattersAsItStates) {
+  Scene scene = with_quad(empty_scene({grey(0)}), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
+  const PatchMesh mesh = fronts(scene, 1);
+  Field radiosity(mesh.size(), 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = 3 + mesh.centroid[i].x();
+  scene = with_quad(std::move(scene), {Point(.1, -3, .3), Point(3, -3, .3), Point(3, 3, .3), Point(-.2, 3, .3)});
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const std::vector<Sensor> sensors{{Point(0.1, 0.2, 0.6), -Vector::UnitZ()}};
+  constexpr int seeds = 200;
+  double sum = 0, squares = 0, stated = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const GatherOptions options{.rays = 256, .wanted_error = 1, .seed = static_cast<std::uint64_t>(seed)};
+    const GatheredIrradiance found = gather_irradiance(mesh, radiosity, occluder, sensors, options);
+    sum += found.irradiance(0, 0);
+    squares += std::pow(found.irradiance(0, 0), 2);
+    stated += std::pow(found.errors.rays(0, 0), 2);
+  }
+  const double variance = (squares - sum * sum / seeds) / (seeds - 1);
+  EXPECT_GT(variance, 0.5 * stated / seeds);
+  EXPECT_LT(variance, 1.3 * stated / seeds);
 }
 
 // A floor of 4 x 4 m whose radiosity falls off towards its middle, as the means of patches, in two units. Patches of
@@ -159,7 +184,8 @@ TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
     const Field error = (found.irradiance - exact.irradiance).abs();
     const auto outside = (error > 2.6 * found.errors.total()).count();
     EXPECT_LE(outside, static_cast<Eigen::Index>(sensors.size() / 20)) << "of " << sensors.size();
-    // By the rays alone, of which none is blocked, those over the kink in the middle would be outside.
+    // By the rays alone, of which none is blocked, those over the kink in the middle would be outside: 9 of the 23
+    // places along x are nearer to it than a patch and a half is wide.
     EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 3));
   }
 }
