@@ -10,7 +10,7 @@ namespace patchlight {
 /// Emitting patches, to be chosen by about what they send somewhere.
 struct ChoiceOfLamps {
   std::vector<PatchIndex> lamps;  ///< in the order of the mesh
-  std::vector<double> before;  ///< what those before each send, W; one more entry at the end
+  std::vector<double> before;     ///< what those before each send, W; one more entry at the end
 
   struct Chosen {
     PatchIndex lamp;
