@@ -65,9 +65,10 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
   return reading;
 }
 
-// How unevenly a sensor sees a patch: not at all from afar, where every point of the patch counts alike, and as much as
-// can be close by, where the nearest points alone count.
-double unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
+// How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. Not at all
+// from afar, where every point of the patch counts alike, and as much as can be close by, where the nearest points
+// alone count.
+double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
   const PatchCorners corners = mesh.corner_points(j);
   const std::span<const Point> points = corners;
   double longest = 0;  // edge, squared
@@ -89,8 +90,12 @@ Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<
     if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
     if (solver.size() > 0) reading.solver += weight * solver.row(j);
     if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
-    if (light.slopes.residual.size() > 0)
-      reading.unexplained += (weight * unevenness(light.mesh, j, sensor.point) * light.slopes.residual.row(j)).square();
+    if (light.slopes.residual.size() == 0) continue;
+    // What is curved evenly has no first moment about the plane, so that it counts in the second order.
+    const double squared = squared_unevenness(light.mesh, j, sensor.point);
+    const Spectrum by_points =
+        (squared * light.slopes.residual.row(j)).max(std::sqrt(squared) * light.slopes.unknown.row(j));
+    reading.unexplained += (weight * by_points).square();
   }
   return reading;
 }

@@ -164,7 +164,8 @@ Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder&
                  const RadiosityErrors& errors, const Observer& observer) {
   const Planes planes(mesh, values, occluder);
   const Field& display = errors.display;
-  Slopes found{Field::Zero(values.rows(), 3 * values.cols()), Field::Zero(values.rows(), values.cols())};
+  const Field zero = Field::Zero(values.rows(), values.cols());
+  Slopes found{Field::Zero(values.rows(), 3 * values.cols()), zero, zero};
   parallel_for(mesh.size(), Stage::gather, observer, [&](std::size_t row) {
     const auto j = static_cast<PatchIndex>(row);
     const std::vector<PatchIndex> around = planes.patches_around(j);
@@ -174,10 +175,10 @@ Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder&
       found.gradient.row(j).segment(3 * band, 3) = gradient.col(band).transpose().array();
       if (display.size() == 0) continue;
       const double unexplained = std::pow(display(j, band), 2) - variance_over(mesh, j, gradient.col(band));
-      if (unexplained > 0) found.residual(j, band) = std::max(found.residual(j, band), std::sqrt(unexplained));
+      found.unknown(j, band) = std::sqrt(std::max(0.0, unexplained));
     }
     if (display.size() == 0 && errors.reflected.size() > 0 && has_few_patches(mesh, j))
-      found.residual.row(j) = found.residual.row(j).max(errors.reflected.row(j));
+      found.unknown.row(j) = errors.reflected.row(j);
   });
   return found;
 }

@@ -11,7 +11,8 @@ class Occluder;
 /// How the radiosity of patches (rows) varies on them: the mean over each patch plus a plane.
 struct Slopes {
   Field gradient;  ///< along the surface, W/m^2 per metre: three components of the first band, then those of the next
-  Field residual;  ///< an allowance for how far the radiosity at a point is from the plane, W/m^2
+  Field residual;  ///< an allowance for how far the radiosity at a point is from the plane where it is curved, W/m^2
+  Field unknown;   ///< how far from it is what the plane does not explain at all, root mean square, W/m^2
 };
 
 /// Fitted to the differences from the patches of the same polygon side that share a vertex, by least squares; 0 where
@@ -20,9 +21,9 @@ struct Slopes {
 /// that would fall below 0 at a corner of its patch is made less steep.
 ///
 /// The residual is half of that at the centroids of the patches around, or of all of the difference where these are
-/// too few for a residual; or what the plane does not explain of `errors.display`, where that is more. Where that is
-/// not known, and a polygon side has no more than four patches, it is all of what these reflect: nothing tells how that
-/// varies. O(patches) with a bounded number around each vertex. \throws Cancelled.
+/// too few for a residual. Unknown is what the plane does not explain of `errors.display`, or, where that is not known
+/// and a polygon side has no more than four patches, all that these reflect: nothing tells how that varies. O(patches)
+/// with a bounded number around each vertex. \throws Cancelled.
 Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder,
                  const RadiosityErrors& errors, const Observer& observer);
 
