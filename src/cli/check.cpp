@@ -167,9 +167,11 @@ std::string room_lines(const Scene& scene, bool all) {
   return text + '\n';
 }
 
-std::string lamp_lines(const SceneReport& report) {
+std::string lamp_lines(const SceneReport& report, std::size_t luminaires) {
   std::ostringstream text;
-  text << "lamps: " << (report.lamps == 0 ? "none" : counted(report.lamps, "face")) << '\n';
+  text << "lamps: " << (report.lamps == 0 ? "none" : counted(report.lamps, "face"));
+  if (luminaires > 0) text << ", and " << counted(luminaires, "luminaire");
+  text << '\n';
   for (const MaterialFacts& facts : report.materials) {
     if (!(facts.material.exitance > 0).any()) continue;
     text << "  " << shown_name(facts.material.name) << "  flux " << listed(facts.flux, ", ") << " W, "
@@ -274,8 +276,9 @@ ExitCode check(const CheckArguments& arguments) {
     std::cout << shown_name(scene.file) << ": " << verdict(report) << '\n'
               << next_line(arguments, report, !scene.rooms.empty() && scene.sensors.empty()) << size_line(scene, report)
               << counts_lines(report, scene.faces) << sides_lines(report) << room_lines(scene, arguments.all)
-              << object_lines(report, arguments.all) << material_lines(report, arguments.all) << lamp_lines(report)
-              << daylight_lines(scene) << problem_lines(scene, report, arguments.all) << std::flush;
+              << object_lines(report, arguments.all) << material_lines(report, arguments.all)
+              << lamp_lines(report, scene.luminaires.size()) << daylight_lines(scene)
+              << problem_lines(scene, report, arguments.all) << std::flush;
   }
   if (report.usable) return good;
   print_message("error", scene.file + ": found no lamp: " + report.first_light->advice);
