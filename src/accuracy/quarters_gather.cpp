@@ -6,6 +6,7 @@
 #include "form_factor/monte_carlo.h"
 #include "form_factor/patch_keys.h"
 #include "form_factor/point_polygon.h"
+#include "mesh/longest_edge.h"
 #include "mesh/patch_lookup.h"
 #include "mesh/quarters.h"
 #include "transport/patch_frame.h"
@@ -22,15 +23,6 @@ namespace {
 
 // More evaluations of lamps at patches than this are not worth their time: lamps are chosen by their flux then.
 constexpr double most_evaluations = 2e7;
-
-// Metres, squared.
-double longest_edge_squared(const PatchCorners& corners) {
-  const auto count = static_cast<std::size_t>(corners.count);
-  double longest = 0;
-  for (std::size_t k = 0; k < count; ++k)
-    longest = std::max(longest, (corners.points[(k + 1) % count] - corners.points[k]).squaredNorm());
-  return longest;
-}
 
 // From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
 bool is_far_from(const PatchCorners& corners, double distance) {

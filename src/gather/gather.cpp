@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "gather/slopes.h"
 #include "gather/sources.h"
+#include "mesh/longest_edge.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -69,11 +70,7 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
 // from afar, where every point of the patch counts alike, and as much as can be close by, where the nearest points
 // alone count.
 double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
-  const PatchCorners corners = mesh.corner_points(j);
-  const std::span<const Point> points = corners;
-  double longest = 0;  // edge, squared
-  for (std::size_t k = 0; k < points.size(); ++k)
-    longest = std::max(longest, (points[(k + 1) % points.size()] - points[k]).squaredNorm());
+  const double longest = longest_edge_squared(mesh.corner_points(j));
   return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
 }
 

@@ -24,17 +24,20 @@ struct Gathered {
   GatheredQuarters rays;
 };
 
+GatheredQuarters gathered_of(const Scene& scene, const PatchMesh& mesh, const SolvedProblem& solved, int rays) {
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.size()));
+  const LostShare lost{.escaped = zero, .at_backs = zero, .covered = zero};
+  return gather_at_quarters({mesh, occluder, lost, solved}, {.rays = rays, .seed = 1}, {});
+}
+
 Gathered gathered(const Scene& scene, double max_edge, int rays) {
   Gathered found{tessellate(scene, kept_sides(scene, Sides::front), max_edge), {}};
-  const auto size = static_cast<Eigen::Index>(found.mesh.size());
-  const Occluder occluder(scene, Occluder::Blockers::all);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
-  const LostShare lost{.escaped = zero, .at_backs = zero, .covered = zero};
   RadiosityProblem problem;
-  problem.exitance = Field::Zero(size, 1);
+  problem.exitance = Field::Zero(found.mesh.size(), 1);
   Solution solution;
-  solution.radiosity = solution.irradiance = Field::Ones(size, 1);
-  found.rays = gather_at_quarters({found.mesh, occluder, lost, {problem, solution}}, {.rays = rays, .seed = 1}, {});
+  solution.radiosity = solution.irradiance = Field::Ones(found.mesh.size(), 1);
+  found.rays = gathered_of(scene, found.mesh, {problem, solution}, rays);
   return found;
 }
 
@@ -89,21 +92,16 @@ TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
   scene = with_quad(std::move(scene),
                     {Point(-.02, -.02, .12), Point(.02, -.02, .12), Point(.02, .02, .12), Point(-.02, .02, .12)});
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.21);
-  const auto size = static_cast<Eigen::Index>(mesh.size());
-  const Occluder occluder(scene, Occluder::Blockers::all);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
-  const LostShare lost{.escaped = zero, .at_backs = zero, .covered = zero};
   RadiosityProblem problem;
-  problem.exitance = Field::Zero(size, 1);
+  problem.exitance = Field::Zero(mesh.size(), 1);
   Solution solution;
-  solution.irradiance = Field::Zero(size, 1);
+  solution.irradiance = Field::Zero(mesh.size(), 1);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (mesh.polygon[i] == 1) problem.exitance(i, 0) = 1;
     if (mesh.polygon[i] == 2) solution.irradiance(i, 0) = point_to_polygon(Point(0, 0, .22), -Vector::UnitZ(), lamp);
   }
   solution.radiosity = problem.exitance;
-  const GatheredQuarters rays =
-      gather_at_quarters({mesh, occluder, lost, {problem, solution}}, {.rays = 64, .seed = 1}, {});
+  const GatheredQuarters rays = gathered_of(scene, mesh, {problem, solution}, 64);
   double squares = 0;
   int points = 0;
   for (const std::uint8_t seen_as : rays.seen_as) {

@@ -142,10 +142,10 @@ TEST(GatherIrradiance, OfPlanesThatAreHiddenInPartScattersAsItStates) {
   Scene scene = with_quad(empty_scene({grey(0)}), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
   const PatchMesh mesh = fronts(scene, 1);
   Field radiosity(mesh.size(), 1);
-  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = 3 + mesh.centroid[i].x();
-  scene = with_quad(std::move(scene), {Point(.1, -3, .3), Point(3, -3, .3), Point(3, 3, .3), Point(-.2, 3, .3)});
+  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = 2 + mesh.centroid[i].x();
+  scene = with_quad(std::move(scene), {Point(-1.4, -3, .3), Point(3, -3, .3), Point(3, 3, .3), Point(-1.7, 3, .3)});
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<Sensor> sensors{{Point(0.1, 0.2, 0.6), -Vector::UnitZ()}};
+  const std::vector<Sensor> sensors{{Point(-1.5, 0.2, 0.6), -Vector::UnitZ()}};
   constexpr int seeds = 200;
   double sum = 0, squares = 0, stated = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
