@@ -27,9 +27,9 @@ def measured(words):
     return used.ru_utime + used.ru_stime, used.ru_maxrss * 1024 / 1e9
 
 
-def solved(build, model, patches, folder):
+def solved(build, model, patches, rays, folder):
     report = folder / "report.json"
-    words = [build / "src/patchlight", "solve", model, "--storage", "rays", "--patches", patches, "-q",
+    words = [build / "src/patchlight", "solve", model, "--rays", rays, "--patches", patches, "-q",
              "-o", folder / "result.vtp", "--report", report]
     seconds, gigabytes = measured([str(word) for word in words])
     told = json.loads(report.read_text())
@@ -37,10 +37,10 @@ def solved(build, model, patches, folder):
     return seconds, gigabytes, costs
 
 
-def errors(build, model, patches, checked, paths):
-    words = [build / "tests/benchmarks/benchmark_rays", model, patches, checked, paths]
+def errors(build, model, patches, checked, paths, rays=64):
+    words = [build / "tests/benchmarks/benchmark_rays", model, patches, checked, paths, rays]
     text = subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True).stdout
-    names = {"error": r"error ([\d.]+)", "stated": r"stated ([\d.]+)", "median": r"median ([\d.]+)",
+    names = {"error": r"error ([\d.]+)", "noise": r"noise of paths ([\d.]+)", "stated": r"stated ([\d.]+)", "median": r"median ([\d.]+)",
              "all": r"bar of all patches ([\d.]+)", "covered": r"within two bars ([\d.]+)"}
     return {name: float(re.search(pattern, text).group(1)) for name, pattern in names.items()}
 
@@ -52,21 +52,22 @@ def main():
     parser.add_argument("--patches", default="32000,100000,300000,1000000", type=lambda text: text.split(","))
     parser.add_argument("--checked", type=int, default=400, help="patches, 0: no errors")
     parser.add_argument("--paths", type=int, default=32768, help="of each of them")
+    parser.add_argument("--rays", type=int, default=64, help="of a patch")
     options = parser.parse_args()
-    print("| patches | CPU s | GB | " + " | ".join(STAGES) + " | bar | stated / true error | median | within two bars |")
-    print("|" + "---|" * (7 + len(STAGES)))
+    print("| patches | CPU s | GB | " + " | ".join(STAGES) + " | bar | stated / true error | noise of paths | median | within two bars |")
+    print("|" + "---|" * (8 + len(STAGES)))
     with tempfile.TemporaryDirectory(prefix="patchlight-rooms-") as name:
         folder = pathlib.Path(name)
         script = pathlib.Path(__file__).resolve().parent / "make_large_rooms.py"
         subprocess.run([sys.executable, str(script), str(folder)], check=True)
         model = folder / f"{options.room}.obj"
         for patches in options.patches:
-            seconds, gigabytes, costs = solved(options.build, model, patches, folder)
+            seconds, gigabytes, costs = solved(options.build, model, patches, options.rays, folder)
             parts = " | ".join(f"{costs.get(stage, 0):.1f}" for stage in STAGES)
             row = f"| {patches} | {seconds:.1f} | {gigabytes:.2f} | {parts} |"
             if options.checked > 0:
-                e = errors(options.build, model, patches, options.checked, options.paths)
-                row += f" {e['all']:.4f} | {e['stated']:.4f} / {e['error']:.4f} | {e['median']:.4f} | {e['covered']:.2f} |"
+                e = errors(options.build, model, patches, options.checked, options.paths, options.rays)
+                row += f" {e['all']:.4f} | {e['stated']:.4f} / {e['error']:.4f} | {e['noise']:.4f} | {e['median']:.4f} | {e['covered']:.2f} |"
             print(row, flush=True)
 
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -25,20 +26,37 @@ double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
   return (from + t * edge - point).norm();
 }
 
-// Zero inside. The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds
-// nothing.
+// In the grid's plane, from its lower corner.
+Flat flat(const auto& grid, const Point& point) {
+  return {point[grid.axis_u] - grid.lower_u, point[grid.axis_v] - grid.lower_v};
+}
+
+struct FlatEdge {
+  Flat from, to;
+};
+
+FlatEdge edge(const auto& outline, std::size_t k) {
+  const std::size_t next = (k + 1) % 4;
+  return {Flat(outline.u[k], outline.v[k]), Flat(outline.u[next], outline.v[next])};
+}
+
+// The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds nothing.
+bool holds(const auto& outline, const Flat& eye) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto [from, to] = edge(outline, k);
+    if (cross(to - from, eye - from) < 0) return false;
+  }
+  return true;
+}
+
+// From outside: to the nearest of the edges beyond which the point lies. Zero inside.
 double distance_to(const auto& outline, const Flat& eye) {
-  bool inside = true;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t next = (k + 1) % 4;
-    const Flat from(outline.u[k], outline.v[k]);
-    const Flat to(outline.u[next], outline.v[next]);
-    if (cross(to - from, eye - from) >= 0) continue;
-    inside = false;
-    nearest = std::min(nearest, distance_to_edge(eye, from, to));
+    const auto [from, to] = edge(outline, k);
+    if (cross(to - from, eye - from) < 0) nearest = std::min(nearest, distance_to_edge(eye, from, to));
   }
-  return inside ? 0 : nearest;
+  return std::isfinite(nearest) ? nearest : 0;
 }
 
 struct Cell {
@@ -47,10 +65,9 @@ struct Cell {
 
 // The cell at a point; the closest one for a point outside.
 Cell cell_at(const auto& grid, const Point& point) {
-  const double u = (point[grid.axis_u] - grid.lower_u) * grid.cells_per_u;
-  const double v = (point[grid.axis_v] - grid.lower_v) * grid.cells_per_v;
-  return {static_cast<int>(std::clamp(u, 0.0, grid.count_u - 1.0)),
-          static_cast<int>(std::clamp(v, 0.0, grid.count_v - 1.0))};
+  const Flat at = flat(grid, point);
+  return {static_cast<int>(std::clamp(at.x() * grid.cells_per_u, 0.0, grid.count_u - 1.0)),
+          static_cast<int>(std::clamp(at.y() * grid.cells_per_v, 0.0, grid.count_v - 1.0))};
 }
 
 std::size_t cell_index(const auto& grid, Cell cell) {
@@ -147,10 +164,33 @@ PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch)
   const PatchCorners corners = mesh_.corner_points(patch);
   Outline outline{};
   for (std::size_t k = 0; k < 4; ++k) {
-    outline.u[k] = corners.points[k][grid.axis_u];
-    outline.v[k] = corners.points[k][grid.axis_v];
+    const Flat at = flat(grid, corners.points[k]);
+    outline.u[k] = static_cast<float>(at.x());
+    outline.v[k] = static_cast<float>(at.y());
   }
   return outline;
+}
+
+// The first of each is the one at its middle, or any where there is none.
+LargeArray<PatchLookup::CellPatches> PatchLookup::cells_of(const Grid& grid, std::span<const std::uint32_t> begin) {
+  LargeArray<CellPatches> cells;
+  cells.reserve(begin.size() - 1);
+  for (int v = 0; v < grid.count_v; ++v) {
+    for (int u = 0; u < grid.count_u; ++u) {
+      const std::size_t index = cells.size();
+      CellPatches cell{.begin = begin[index], .end = begin[index + 1]};
+      const Flat middle((u + 0.5) / grid.cells_per_u, (v + 0.5) / grid.cells_per_v);
+      const auto patches = grid.patches_of(cell);
+      const auto there = std::find_if(patches.begin(), patches.end(),
+                                      [&](PatchIndex patch) { return holds(grid.outline(patch), middle); });
+      if (!patches.empty()) {
+        cell.first = there != patches.end() ? *there : patches[0];
+        cell.outline = grid.outline(cell.first);
+      }
+      cells.push_back(cell);
+    }
+  }
+  return cells;
 }
 
 PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
@@ -167,23 +207,25 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
 
   // Sort the patches into the cells that their padded bounds overlap: count, then fill from the back.
   const Point pad = Point::Constant(lookup_slack * bounds.diagonal().norm());
+  std::vector<std::uint32_t> begin(static_cast<std::size_t>(grid.count_u) * static_cast<std::size_t>(grid.count_v) + 1,
+                                   0);
   const auto for_cells_of = [&](PatchIndex patch, const auto& visit) {
     const Box box = box_of(mesh_, patch);
     const Cell low = cell_at(grid, box.min() - pad);
     const Cell high = cell_at(grid, box.max() + pad);
     for (int v = low.v; v <= high.v; ++v) {
-      for (int u = low.u; u <= high.u; ++u) visit(grid.begin[cell_index(grid, {u, v})]);
+      for (int u = low.u; u <= high.u; ++u) visit(begin[cell_index(grid, {u, v})]);
     }
   };
-  grid.begin.assign(static_cast<std::size_t>(grid.count_u) * static_cast<std::size_t>(grid.count_v) + 1, 0);
   for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
     for_cells_of(patch, [](std::uint32_t& entry) { ++entry; });
   }
-  std::partial_sum(grid.begin.begin(), grid.begin.end(), grid.begin.begin());
-  grid.patches.resize(grid.begin.back());
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  grid.patches.resize(begin.back());
   for (PatchIndex patch = range.end; patch-- > range.begin;) {
     for_cells_of(patch, [&](std::uint32_t& entry) { grid.patches[--entry] = patch; });
   }
+  grid.cells = cells_of(grid, begin);
   return grid;
 }
 
@@ -196,20 +238,24 @@ PatchIndex PatchLookup::patch_in(const Lattice& lattice, const Point& point) {
 }
 
 PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
-  const Flat eye(point[grid.axis_u], point[grid.axis_v]);
+  // 1. The first of the point's cell that holds it.
+  const Flat eye = flat(grid, point);
+  const Cell home = cell_at(grid, point);
+  const CellPatches& there = grid.cells[cell_index(grid, home)];
+  if (there.first != no_patch && holds(there.outline, eye)) return there.first;
+  for (const PatchIndex patch : grid.patches_of(there))
+    if (holds(grid.outline(patch), eye)) return patch;
+
+  // 2. Else the nearest of it or, when it is empty, of the closest ring of cells around it that is not.
   PatchIndex nearest = no_patch;
   double shortest = std::numeric_limits<double>::infinity();
   const auto search_cell = [&](Cell cell) {
     if (cell.u < 0 || cell.u >= grid.count_u || cell.v < 0 || cell.v >= grid.count_v) return;
-    const std::size_t index = cell_index(grid, cell);
-    for (std::uint32_t k = grid.begin[index]; k < grid.begin[index + 1] && shortest > 0; ++k) {
-      const double distance = distance_to(grid.outlines[grid.patches[k] - grid.first], eye);
-      if (distance < shortest) shortest = distance, nearest = grid.patches[k];
+    for (const PatchIndex patch : grid.patches_of(grid.cells[cell_index(grid, cell)])) {
+      const double distance = distance_to(grid.outline(patch), eye);
+      if (distance < shortest) shortest = distance, nearest = patch;
     }
   };
-
-  // The point's cell or, when that is empty, the closest ring of cells around it that is not.
-  const Cell home = cell_at(grid, point);
   search_cell(home);
   for (int ring = 1; nearest == no_patch; ++ring) {
     for (int k = -ring; k < ring; ++k) {
@@ -234,17 +280,25 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
   return grid.lattice ? range.begin + patch_in(*grid.lattice, point) : patch_in(grid, point);
 }
 
-// Starts to read the patches of each cell, and then their outlines.
-void PatchLookup::prefetch(std::span<const Searched> searched) {
-  constexpr std::uint32_t in_a_line = 16;
-  for (const auto& [place, grid, cell] : searched) {
-    for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; at += in_a_line)
-      __builtin_prefetch(&grid->patches[at]);
+// The patches with those that are searched for. What is read next is on its way from memory before it is needed.
+std::vector<PatchIndex> PatchLookup::with_searched(std::vector<PatchIndex> patches, std::span<const Searched> searched,
+                                                   std::span<const SidePoint> points) {
+  // 1. The first of each cell.
+  std::vector<Searched> rest;
+  for (const Searched& one : searched) {
+    const CellPatches& cell = one.grid->cells[one.cell];
+    if (cell.first != no_patch && holds(cell.outline, flat(*one.grid, points[one.place].point)))
+      patches[one.place] = cell.first;
+    else
+      rest.push_back(one);
   }
-  for (const auto& [place, grid, cell] : searched) {
-    for (std::uint32_t at = grid->begin[cell]; at < grid->begin[cell + 1]; ++at)
-      __builtin_prefetch(&grid->outlines[grid->patches[at] - grid->first]);
-  }
+
+  // 2. The others.
+  for (const auto& [place, grid, cell] : rest) __builtin_prefetch(grid->patches_of(grid->cells[cell]).data());
+  for (const auto& [place, grid, cell] : rest)
+    for (const PatchIndex patch : grid->patches_of(grid->cells[cell])) __builtin_prefetch(&grid->outline(patch));
+  for (const auto& [place, grid, cell] : rest) patches[place] = patch_in(*grid, points[place].point);
+  return patches;
 }
 
 std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> points) const {
@@ -270,13 +324,11 @@ std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> point
       continue;
     }
     searched.push_back({k, &grid, cell_index(grid, cell_at(grid, point))});
-    __builtin_prefetch(&grid.begin[searched.back().cell]);
+    __builtin_prefetch(&grid.cells[searched.back().cell]);
   }
 
   // 2. What does.
-  prefetch(searched);
-  for (const auto& [k, grid, cell] : searched) patches[k] = patch_in(*grid, points[k].point);
-  return patches;
+  return with_searched(std::move(patches), searched, points);
 }
 
 }  // namespace patchlight

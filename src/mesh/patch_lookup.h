@@ -20,7 +20,7 @@ struct SidePoint {
 };
 
 /// Finds the patch at a point: per polygon side with several patches a uniform grid of cells in the polygon's plane,
-/// each with the patches whose bounds overlap it.
+/// each with the patches whose bounds overlap it. The one at its middle is looked at first: most points need no other.
 class PatchLookup {
  public:
   /// Keeps a reference to the mesh, which must outlive it.
@@ -41,9 +41,16 @@ class PatchLookup {
     Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
     int count_u = 0, count_v = 0;
   };
-  // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
-  struct alignas(64) Outline {
-    std::array<double, 4> u, v;
+  // The corners of a patch in the plane, from the grid's lower corner, counter-clockwise; a triangle repeats its last.
+  // Single precision is far below the slack with which patches are looked for, and edges are those of both neighbours.
+  struct Outline {
+    std::array<float, 4> u, v;
+  };
+  // What most points of a cell need, in one line of memory.
+  struct alignas(64) CellPatches {
+    PatchIndex first = no_patch;       // that at its middle, or any; none where the cell is empty
+    Outline outline{};                 // of this one
+    std::uint32_t begin = 0, end = 0;  // all of the cell's, in Grid::patches
   };
   struct Grid {
     std::optional<Lattice> lattice;  // then the rest is empty
@@ -51,12 +58,18 @@ class PatchLookup {
     int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
     double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
     int count_u = 0, count_v = 0;
-    LargeArray<std::uint32_t> begin;  // per cell, into patches
+    LargeArray<CellPatches> cells;
     LargeArray<PatchIndex> patches;
     LargeArray<Outline> outlines;  // of its patches, the first one first
+
+    std::span<const PatchIndex> patches_of(const CellPatches& cell) const {
+      return std::span(patches).subspan(cell.begin, cell.end - cell.begin);
+    }
+    const Outline& outline(PatchIndex patch) const { return outlines[patch - first]; }
   };
   std::optional<Lattice> lattice_of(PatchRange range) const;
   Grid make_grid(PatchRange range) const;
+  static LargeArray<CellPatches> cells_of(const Grid& grid, std::span<const std::uint32_t> begin);
   Outline outline_of(const Grid& grid, PatchIndex patch) const;
   const Grid& grid_on(PolygonIndex polygon, Side side) const;
   // A point of several that is looked for in a cell of a grid.
@@ -65,7 +78,8 @@ class PatchLookup {
     const Grid* grid;
     std::size_t cell;
   };
-  static void prefetch(std::span<const Searched> searched);
+  static std::vector<PatchIndex> with_searched(std::vector<PatchIndex> patches, std::span<const Searched> searched,
+                                               std::span<const SidePoint> points);
   static PatchIndex patch_in(const Lattice& lattice, const Point& point);
   static PatchIndex patch_in(const Grid& grid, const Point& point);
 

@@ -51,14 +51,30 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
 std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return {};
   const std::string advice =
-      guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
-                  ": read.metres_per_unit=" + shortest(guess->metres_per_unit)
-            : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
+      guess
+          ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
+                ": read.metres_per_unit=" + shortest(guess->metres_per_unit) + ", in a scene file unit under [[model]]"
+          : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
   return {
       {ProblemKind::implausible_size,
        1,
        "the model is " + rounded(size) + " m long with " + rounded(scene.metres_per_unit) + " m per unit; " + advice,
        {}}};
+}
+
+std::vector<Problem> problems_of_luminaires(const Scene& scene) {
+  const Box box = main_bounds(scene);
+  std::vector<std::string> far;
+  for (const Luminaire& luminaire : scene.luminaires) {
+    if (box.exteriorDistance(luminaire.position) > box.diagonal().norm())
+      far.push_back("'" + luminaire.name + "' of " + luminaire.place);
+  }
+  if (far.empty()) return {};
+  return {{ProblemKind::implausible_size,
+           far.size(),
+           "luminaires farther from the model than that is long: " + first_few(far) +
+               ". Are their positions in the unit of the scene file?",
+           {}}};
 }
 
 std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
@@ -158,7 +174,9 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
 
 std::vector<Problem> problems_with_size(const Scene& scene) {
   const double size = main_bounds(scene).sizes().maxCoeff();
-  return problems_of_size(scene, guess_unit(scene, size), size);
+  std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, size), size);
+  for (Problem& problem : problems_of_luminaires(scene)) problems.push_back(std::move(problem));
+  return problems;
 }
 
 SceneReport survey(const Scene& scene) {
@@ -190,6 +208,7 @@ SceneReport survey(const Scene& scene) {
     report.problems.insert(report.problems.end(), problems.begin(), problems.end());
   };
   add(problems_of_size(scene, report.unit_guess, size));
+  add(problems_of_luminaires(scene));
   add(problems_with_reflectance(report.materials));
   add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
   if (!report.usable) {

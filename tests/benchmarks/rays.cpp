@@ -90,7 +90,7 @@ Errors errors_of(const Scene& scene, const Simulation& s, std::size_t checked, s
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: benchmark_rays MODEL PATCHES [CHECKED [PATHS]]\n");
+    std::fprintf(stderr, "usage: benchmark_rays MODEL PATCHES [CHECKED [PATHS [RAYS]]]\n");
     return 1;
   }
   const Scene scene = read_scene(argv[1]);
@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
   request.mesh.patches = std::strtoul(argv[2], nullptr, 10);
   request.assembly.storage = Storage::rays;
   request.solver.solver = Solver::gmres;
+  if (argc > 5) request.assembly.rays = std::atoi(argv[5]);
   const double begin = cpu_seconds();
   const Simulation s = simulate(scene, request);
   std::printf("%u patches, %.2f CPU s, %.2f GB at the peak;", s.mesh.size(), cpu_seconds() - begin,

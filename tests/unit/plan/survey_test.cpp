@@ -69,6 +69,18 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
   EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
 }
 
+TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
+  Scene scene = furnished_room(0.5);
+  const double length = bounds(scene).diagonal().norm();
+  scene.luminaires = {{.name = "near", .place = "a.toml:1", .position = Point(length, 1, 1), .light = PointLight{}}};
+  EXPECT_FALSE(has(survey_of(scene), ProblemKind::implausible_size)) << "outside, as lamps of streets are";
+  scene.luminaires.push_back({.name = "far", .place = "a.toml:7", .position = Point(300, 1, 1), .light = PointLight{}});
+  const SceneReport report = survey_of(scene);
+  ASSERT_TRUE(has(report, ProblemKind::implausible_size));
+  EXPECT_NE(report.problems.front().what.find("'far' of a.toml:7"), std::string::npos) << report.problems.front().what;
+  EXPECT_EQ(report.problems.front().count, 1U);
+}
+
 TEST(Survey, FullReflectanceIsAWarning) {
   EXPECT_TRUE(has(survey_of(furnished_room(1)), ProblemKind::full_reflectance));
   EXPECT_FALSE(has(survey_of(furnished_room(0.99)), ProblemKind::full_reflectance));
