@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Prints what rows of rays cost and err in large rooms, as the table in docs/theory.md section 12.
 
-usage: scripts/large_rooms.py BUILD [--room boxes|uplight|spheres] [--patches N,N...] [--checked N] [--paths N]
+usage: scripts/large_rooms.py BUILD [--room boxes|uplight|spheres] [--patches N,N...] [--checked N] [--paths N] [--rays N]
 
-BUILD holds src/patchlight and tests/benchmarks/benchmark_rays. The cost is that of `patchlight solve --storage rays`, the
+BUILD holds src/patchlight and tests/benchmarks/benchmark_rays. The cost is that of `patchlight solve --rays N`, the
 result written: processor seconds of all threads, stage by stage, and the largest memory. The error is relative to the
-light that is reflected, against path tracing of some patches, by benchmark_rays.
+light that is reflected, against path tracing of some patches, by benchmark_rays; the noise of the paths is taken out of
+it, but not out of the median.
 """
 import argparse
 import json
@@ -29,8 +30,8 @@ def measured(words):
 
 def solved(build, model, patches, rays, folder):
     report = folder / "report.json"
-    words = [build / "src/patchlight", "solve", model, "--rays", rays, "--patches", patches, "-q",
-             "-o", folder / "result.vtp", "--report", report]
+    words = [build / "src/patchlight", "solve", model, "--rays", rays, "--patches", patches, "-q", "-o",
+             folder / "result.vtp", "--report", report]
     seconds, gigabytes = measured([str(word) for word in words])
     told = json.loads(report.read_text())
     costs = {cost["stage"]: cost["cpu_seconds"] for cost in told["costs"]}
@@ -54,7 +55,8 @@ def main():
     parser.add_argument("--paths", type=int, default=32768, help="of each of them")
     parser.add_argument("--rays", type=int, default=64, help="of a patch")
     options = parser.parse_args()
-    print("| patches | CPU s | GB | " + " | ".join(STAGES) + " | bar | stated / true error | noise of paths | median | within two bars |")
+    print("| patches | CPU s | GB | " + " | ".join(STAGES) +
+          " | bar | stated / true error | noise of paths | median | within two bars |")
     print("|" + "---|" * (8 + len(STAGES)))
     with tempfile.TemporaryDirectory(prefix="patchlight-rooms-") as name:
         folder = pathlib.Path(name)
@@ -67,7 +69,8 @@ def main():
             row = f"| {patches} | {seconds:.1f} | {gigabytes:.2f} | {parts} |"
             if options.checked > 0:
                 e = errors(options.build, model, patches, options.checked, options.paths, options.rays)
-                row += f" {e['all']:.4f} | {e['stated']:.4f} / {e['error']:.4f} | {e['noise']:.4f} | {e['median']:.4f} | {e['covered']:.2f} |"
+                row += (f" {e['all']:.4f} | {e['stated']:.4f} / {e['error']:.4f} | {e['noise']:.4f} | {e['median']:.4f} | "
+                        f"{e['covered']:.2f} |")
             print(row, flush=True)
 
 

@@ -25,8 +25,8 @@ def main():
     parser.add_argument("--checked", type=int, default=4000)
     parser.add_argument("--paths", type=int, default=2048, help="of each of them")
     options = parser.parse_args()
-    print("| scene | stated error | true error | stated / true | median | within two bars |")
-    print("|---|---|---|---|---|---|")
+    print("| scene | stated error | true error | noise of paths | stated / true | median | within two bars |")
+    print("|" + "---|" * 7)
     with tempfile.TemporaryDirectory(prefix="patchlight-bars-") as name:
         folder = pathlib.Path(name)
         for script, more in (("make_varied_rooms.py", []), ("make_large_rooms.py", ["4"])):
@@ -38,8 +38,8 @@ def main():
             e = errors(options.build, model, options.patches, options.checked, options.paths)
             # The noise of the paths, taken out of the error, may leave nothing.
             ratio = f"{e['stated'] / e['error']:.2f}" if e["error"] > 0 else "-"
-            print(f"| {scene} | {e['stated']:.4f} | {e['error']:.4f} | {ratio} | {e['median']:.4f} | {e['covered']:.2f} |",
-                  flush=True)
+            print(f"| {scene} | {e['stated']:.4f} | {e['error']:.4f} | {e['noise']:.4f} | {ratio} | {e['median']:.4f} | "
+                  f"{e['covered']:.2f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ struct ChoiceOfLamps {
   struct Chosen {
     PatchIndex lamp;
     double probability;
-    double u;  ///< what the choice leaves of the number, in [0, 1) again
+    double u;  ///< what the choice leaves of the number, in [0, 1]
   };
 
   /// That of a patch to be chosen; 0 where it is none of them. O(log(lamps)).

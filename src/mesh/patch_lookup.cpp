@@ -13,9 +13,6 @@ namespace {
 // Points this share of the polygon side's extent outside of a patch still find it.
 constexpr double lookup_slack = 4e-6;
 
-// The patches of a lattice are at their places up to this share of their edges.
-constexpr double lattice_tolerance = 1e-6;
-
 using Flat = Eigen::Vector2d;
 
 double cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -26,10 +23,7 @@ double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
   return (from + t * edge - point).norm();
 }
 
-// In the grid's plane, from its lower corner.
-Flat flat(const auto& grid, const Point& point) {
-  return {point[grid.axis_u] - grid.lower_u, point[grid.axis_v] - grid.lower_v};
-}
+Flat flat(const auto& grid, const Point& point) { return {point[grid.axis_u], point[grid.axis_v]}; }
 
 struct FlatEdge {
   Flat from, to;
@@ -66,8 +60,10 @@ struct Cell {
 // The cell at a point; the closest one for a point outside.
 Cell cell_at(const auto& grid, const Point& point) {
   const Flat at = flat(grid, point);
-  return {static_cast<int>(std::clamp(at.x() * grid.cells_per_u, 0.0, grid.count_u - 1.0)),
-          static_cast<int>(std::clamp(at.y() * grid.cells_per_v, 0.0, grid.count_v - 1.0))};
+  const double u = (at.x() - grid.lower_u) * grid.cells_per_u;
+  const double v = (at.y() - grid.lower_v) * grid.cells_per_v;
+  return {static_cast<int>(std::clamp(u, 0.0, grid.count_u - 1.0)),
+          static_cast<int>(std::clamp(v, 0.0, grid.count_v - 1.0))};
 }
 
 std::size_t cell_index(const auto& grid, Cell cell) {
@@ -109,48 +105,7 @@ Grid lay_out(const PatchMesh& mesh, PatchRange range, const Box& bounds) {
   return grid;
 }
 
-// Do the corners of a parallelogram lie at -1/2 and 1/2 along both directions, counted from its centroid?
-bool is_cell(const PatchMesh& mesh, PatchIndex patch, const Vector& to_u, const Vector& to_v) {
-  const PatchCorners corners = mesh.corner_points(patch);
-  return corners.count == 4 && std::all_of(corners.points.begin(), corners.points.end(), [&](const Point& corner) {
-           const Vector from = corner - mesh.centroid[patch];
-           return std::abs(std::abs(from.dot(to_u)) - 0.5) <= lattice_tolerance &&
-                  std::abs(std::abs(from.dot(to_v)) - 0.5) <= lattice_tolerance;
-         });
-}
-
 }  // namespace
-
-std::optional<PatchLookup::Lattice> PatchLookup::lattice_of(PatchRange range) const {
-  // 1. The first row, as long as centroids are evenly spaced; then the step from row to row.
-  const PatchIndex count = range.end - range.begin;
-  const Point& first = mesh_.centroid[range.begin];
-  const Vector u = mesh_.centroid[range.begin + 1] - first;
-  const auto is_at = [&](PatchIndex k, const Point& place) {
-    return (mesh_.centroid[range.begin + k] - place).norm() <= lattice_tolerance * u.norm();
-  };
-  PatchIndex row = 1;
-  while (row < count && is_at(row, first + row * u)) ++row;
-  if (count % row != 0) return std::nullopt;
-  const PatchCorners corners = mesh_.corner_points(range.begin);
-  const Vector edge = corners.points[1] - corners.points[0];
-  const Vector other = corners.points[3] - corners.points[0];
-  const Vector v = row < count                                    ? Vector(mesh_.centroid[range.begin + row] - first)
-                   : edge.cross(u).norm() > other.cross(u).norm() ? edge
-                                                                  : other;
-
-  // 2. All of them are parallelograms in their places. The dual vectors: u . to_u = 1, v . to_u = 0.
-  const Vector normal = u.cross(v);
-  const double squared = normal.squaredNorm();
-  if (!(squared > 0)) return std::nullopt;
-  const Vector to_u = v.cross(normal) / squared;
-  const Vector to_v = normal.cross(u) / squared;
-  for (PatchIndex k = 0; k < count; ++k) {
-    if (!is_at(k, first + k % row * u + k / row * v) || !is_cell(mesh_, range.begin + k, to_u, to_v))
-      return std::nullopt;
-  }
-  return Lattice{first - 0.5 * u - 0.5 * v, to_u, to_v, static_cast<int>(row), static_cast<int>(count / row)};
-}
 
 PatchLookup::PatchLookup(const PatchMesh& mesh) : mesh_(mesh) {
   for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
@@ -165,36 +120,43 @@ PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch)
   Outline outline{};
   for (std::size_t k = 0; k < 4; ++k) {
     const Flat at = flat(grid, corners.points[k]);
-    outline.u[k] = static_cast<float>(at.x());
-    outline.v[k] = static_cast<float>(at.y());
+    outline.u[k] = at.x();
+    outline.v[k] = at.y();
   }
   return outline;
 }
 
-// The first of each is the one at its middle, or any where there is none.
+PatchLookup::CellPatches PatchLookup::with_middle(CellPatches cell, const Grid& grid, const Flat& middle) {
+  for (const PatchIndex patch : grid.patches_of(cell)) {
+    const Outline& outline = grid.outline(patch);
+    if (!holds(outline, middle)) continue;
+    cell.middle = patch;
+    cell.u = outline.u[0], cell.v = outline.v[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      cell.to_u[k] = static_cast<float>(outline.u[k + 1] - cell.u);
+      cell.to_v[k] = static_cast<float>(outline.v[k + 1] - cell.v);
+      cell.size = std::max({cell.size, std::abs(cell.to_u[k]), std::abs(cell.to_v[k])});
+    }
+    break;
+  }
+  return cell;
+}
+
 LargeArray<PatchLookup::CellPatches> PatchLookup::cells_of(const Grid& grid, std::span<const std::uint32_t> begin) {
   LargeArray<CellPatches> cells;
   cells.reserve(begin.size() - 1);
   for (int v = 0; v < grid.count_v; ++v) {
     for (int u = 0; u < grid.count_u; ++u) {
-      const std::size_t index = cells.size();
-      CellPatches cell{.begin = begin[index], .end = begin[index + 1]};
-      const Flat middle((u + 0.5) / grid.cells_per_u, (v + 0.5) / grid.cells_per_v);
-      const auto patches = grid.patches_of(cell);
-      const auto there = std::find_if(patches.begin(), patches.end(),
-                                      [&](PatchIndex patch) { return holds(grid.outline(patch), middle); });
-      if (!patches.empty()) {
-        cell.first = there != patches.end() ? *there : patches[0];
-        cell.outline = grid.outline(cell.first);
-      }
-      cells.push_back(cell);
+      const CellPatches cell{.begin = begin[cells.size()], .end = begin[cells.size() + 1]};
+      const Flat middle(grid.lower_u + (u + 0.5) / grid.cells_per_u, grid.lower_v + (v + 0.5) / grid.cells_per_v);
+      cells.push_back(with_middle(cell, grid, middle));
     }
   }
   return cells;
 }
 
 PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
-  if (auto lattice = lattice_of(range)) {
+  if (auto lattice = lattice_of(mesh_, range)) {
     Grid grid;
     grid.lattice = *lattice;
     return grid;
@@ -229,21 +191,30 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
   return grid;
 }
 
-PatchIndex PatchLookup::patch_in(const Lattice& lattice, const Point& point) {
-  const Vector to = point - lattice.origin;
-  const auto place = [](double at, int count) { return static_cast<int>(std::clamp(at, 0.0, count - 0.5)); };
-  const int column = place(to.dot(lattice.to_u), lattice.count_u);
-  const int row = place(to.dot(lattice.to_v), lattice.count_v);
-  return static_cast<PatchIndex>(row * lattice.count_u + column);
+// Is a point inside of the patch at the middle of its cell by more than the corners are rounded, each by 6e-8 of
+// `size`? A cross product is off by less than 4e-7 size (size + |x| + |y|) then.
+bool PatchLookup::surely_holds(const CellPatches& cell, const Flat& point) {
+  constexpr double rounding = 4e-7;
+  if (!(cell.size > 0)) return false;
+  const Flat eye(point.x() - cell.u, point.y() - cell.v);
+  const double size = cell.size;
+  const double least = rounding * size * (size + eye.lpNorm<1>());
+  Flat from(0, 0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Flat to = k < 3 ? Flat(cell.to_u[k], cell.to_v[k]) : Flat(0, 0);
+    if (to != from && !(cross(to - from, eye - from) > least)) return false;
+    from = to;
+  }
+  return true;
 }
 
 PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
-  // 1. The first of the point's cell that holds it.
+  // 1. The first patch of the point's cell that holds it.
   const Flat eye = flat(grid, point);
   const Cell home = cell_at(grid, point);
-  const CellPatches& there = grid.cells[cell_index(grid, home)];
-  if (there.first != no_patch && holds(there.outline, eye)) return there.first;
-  for (const PatchIndex patch : grid.patches_of(there))
+  const CellPatches& at_home = grid.cells[cell_index(grid, home)];
+  if (surely_holds(at_home, eye)) return at_home.middle;
+  for (const PatchIndex patch : grid.patches_of(at_home))
     if (holds(grid.outline(patch), eye)) return patch;
 
   // 2. Else the nearest of it or, when it is empty, of the closest ring of cells around it that is not.
@@ -277,20 +248,20 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
   if (range.begin == range.end) return std::nullopt;
   if (range.end - range.begin == 1) return range.begin;
   const Grid& grid = grid_on(polygon, side);
-  return grid.lattice ? range.begin + patch_in(*grid.lattice, point) : patch_in(grid, point);
+  return grid.lattice ? range.begin + grid.lattice->patch_at(point) : patch_in(grid, point);
 }
 
-// The patches with those that are searched for. What is read next is on its way from memory before it is needed.
+// Fills in the patches that are searched for. What is read next is on its way from memory before it is needed.
 std::vector<PatchIndex> PatchLookup::with_searched(std::vector<PatchIndex> patches, std::span<const Searched> searched,
                                                    std::span<const SidePoint> points) {
-  // 1. The first of each cell.
+  // 1. Those at the middles of their cells.
   std::vector<Searched> rest;
-  for (const Searched& one : searched) {
-    const CellPatches& cell = one.grid->cells[one.cell];
-    if (cell.first != no_patch && holds(cell.outline, flat(*one.grid, points[one.place].point)))
-      patches[one.place] = cell.first;
+  for (const Searched& each : searched) {
+    const CellPatches& cell = each.grid->cells[each.cell];
+    if (surely_holds(cell, flat(*each.grid, points[each.place].point)))
+      patches[each.place] = cell.middle;
     else
-      rest.push_back(one);
+      rest.push_back(each);
   }
 
   // 2. The others.
@@ -320,7 +291,7 @@ std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> point
     }
     const Grid& grid = grid_on(polygon, side);
     if (grid.lattice) {
-      patches[k] = range.begin + patch_in(*grid.lattice, point);
+      patches[k] = range.begin + grid.lattice->patch_at(point);
       continue;
     }
     searched.push_back({k, &grid, cell_index(grid, cell_at(grid, point))});

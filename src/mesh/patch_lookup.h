@@ -3,6 +3,8 @@
 #include "patchlight/base/large_array.h"
 #include "patchlight/mesh/patch_mesh.h"
 
+#include "mesh/patch_lattice.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +22,8 @@ struct SidePoint {
 };
 
 /// Finds the patch at a point: per polygon side with several patches a uniform grid of cells in the polygon's plane,
-/// each with the patches whose bounds overlap it. The one at its middle is looked at first: most points need no other.
+/// each with the patches whose bounds overlap it. Most points lie in the patch at the middle of their cell, and need no
+/// other.
 class PatchLookup {
  public:
   /// Keeps a reference to the mesh, which must outlive it.
@@ -35,25 +38,22 @@ class PatchLookup {
   std::vector<PatchIndex> patches_at(std::span<const SidePoint> points) const;
 
  private:
-  // Equal parallelograms, row by row: the patch follows from the place.
-  struct Lattice {
-    Point origin;
-    Vector to_u, to_v;  // (x - origin) . to_u counts the patches along the first edge
-    int count_u = 0, count_v = 0;
+  using Flat = Eigen::Vector2d;  // in the plane of a grid
+  // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
+  struct alignas(64) Outline {
+    std::array<double, 4> u, v;
   };
-  // The corners of a patch in the plane, from the grid's lower corner, counter-clockwise; a triangle repeats its last.
-  // Single precision is far below the slack with which patches are looked for, and edges are those of both neighbours.
-  struct Outline {
-    std::array<float, 4> u, v;
-  };
-  // What most points of a cell need, in one line of memory.
+  // A cell and the patch at its middle, in one line of memory: the corners are in single precision from the first one
+  // on, which is exact enough for all but points next to an edge.
   struct alignas(64) CellPatches {
-    PatchIndex first = no_patch;       // that at its middle, or any; none where the cell is empty
-    Outline outline{};                 // of this one
-    std::uint32_t begin = 0, end = 0;  // all of the cell's, in Grid::patches
+    double u = 0, v = 0;  // of the first corner
+    std::array<float, 3> to_u{}, to_v{};
+    float size = 0;                    // the largest of these
+    PatchIndex middle = no_patch;      // this patch; none where no patch is there
+    std::uint32_t begin = 0, end = 0;  // all patches of the cell, in Grid::patches
   };
   struct Grid {
-    std::optional<Lattice> lattice;  // then the rest is empty
+    std::optional<PatchLattice> lattice;  // then the rest is empty
     PatchIndex first = 0;
     int axis_u = 0, axis_v = 1;  // the two coordinates that the plane is projected on
     double lower_u = 0, lower_v = 0, cells_per_u = 0, cells_per_v = 0;
@@ -67,8 +67,9 @@ class PatchLookup {
     }
     const Outline& outline(PatchIndex patch) const { return outlines[patch - first]; }
   };
-  std::optional<Lattice> lattice_of(PatchRange range) const;
   Grid make_grid(PatchRange range) const;
+  static CellPatches with_middle(CellPatches cell, const Grid& grid, const Flat& middle);
+  static bool surely_holds(const CellPatches& cell, const Flat& point);
   static LargeArray<CellPatches> cells_of(const Grid& grid, std::span<const std::uint32_t> begin);
   Outline outline_of(const Grid& grid, PatchIndex patch) const;
   const Grid& grid_on(PolygonIndex polygon, Side side) const;
@@ -80,7 +81,6 @@ class PatchLookup {
   };
   static std::vector<PatchIndex> with_searched(std::vector<PatchIndex> patches, std::span<const Searched> searched,
                                                std::span<const SidePoint> points);
-  static PatchIndex patch_in(const Lattice& lattice, const Point& point);
   static PatchIndex patch_in(const Grid& grid, const Point& point);
 
   const PatchMesh& mesh_;

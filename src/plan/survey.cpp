@@ -51,10 +51,9 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
 std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
   if (size >= smallest_plausible && size <= largest_plausible) return {};
   const std::string advice =
-      guess
-          ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
-                ": read.metres_per_unit=" + shortest(guess->metres_per_unit) + ", in a scene file unit under [[model]]"
-          : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
+      guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
+                  ": read.metres_per_unit=" + shortest(guess->metres_per_unit)
+            : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
   return {
       {ProblemKind::implausible_size,
        1,
@@ -62,18 +61,28 @@ std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<Un
        {}}};
 }
 
+// Farther off than masts are high, and than the model is long.
+constexpr double farthest_luminaire = 30;  // metres
+
 std::vector<Problem> problems_of_luminaires(const Scene& scene) {
-  const Box box = main_bounds(scene);
+  if (scene.luminaires.empty()) return {};
+  const Box box = bounds(scene);
+  const double length = box.diagonal().norm();
+  double farthest = std::max(length, farthest_luminaire);
   std::vector<std::string> far;
   for (const Luminaire& luminaire : scene.luminaires) {
-    if (box.exteriorDistance(luminaire.position) > box.diagonal().norm())
-      far.push_back("'" + luminaire.name + "' of " + luminaire.place);
+    const double distance = box.exteriorDistance(luminaire.position);
+    if (distance <= std::max(length, farthest_luminaire)) continue;
+    far.push_back("'" + luminaire.name + "' of " + luminaire.place);
+    farthest = std::max(farthest, distance);
   }
   if (far.empty()) return {};
+  const bool is_one = far.size() == 1;
   return {{ProblemKind::implausible_size,
            far.size(),
-           "luminaires farther from the model than that is long: " + first_few(far) +
-               ". Are their positions in the unit of the scene file?",
+           (is_one ? "1 luminaire lies " : std::to_string(far.size()) + " luminaires lie up to ") + rounded(farthest) +
+               " m from the model, which is " + rounded(length) + " m long (the first: " + far.front() + "). " +
+               (is_one ? "Is its position in the unit of its file?" : "Are their positions in the unit of their file?"),
            {}}};
 }
 

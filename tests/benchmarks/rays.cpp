@@ -1,6 +1,6 @@
 // Rows of rays against path tracing: cost and error of a whole run. docs/theory.md section 12, scripts/large_rooms.py.
 //
-// usage: benchmark_rays MODEL PATCHES [CHECKED [PATHS]]
+// usage: benchmark_rays MODEL PATCHES [CHECKED [PATHS [RAYS]]]
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   request.mesh.patches = std::strtoul(argv[2], nullptr, 10);
   request.assembly.storage = Storage::rays;
   request.solver.solver = Solver::gmres;
-  if (argc > 5) request.assembly.rays = std::atoi(argv[5]);
+  if (argc > 5) request.assembly.rays = std::max(16, std::atoi(argv[5]));
   const double begin = cpu_seconds();
   const Simulation s = simulate(scene, request);
   std::printf("%u patches, %.2f CPU s, %.2f GB at the peak;", s.mesh.size(), cpu_seconds() - begin,

@@ -48,7 +48,7 @@ struct ProblemFace {
 /// One kind of thing that is wrong.
 struct Problem {
   ProblemKind kind = ProblemKind::no_lamp;
-  std::size_t count = 0;           ///< of faces, edges, vertices, files or materials, as the kind says
+  std::size_t count = 0;           ///< of faces, edges, vertices, files, materials or luminaires
   std::string what;                ///< one sentence: what was found, how many, and what is done about it
   std::vector<ProblemFace> faces;  ///< those concerned, in the model's order; may be empty
 };

@@ -3,7 +3,9 @@
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <utility>
 #include <vector>
 
 namespace patchlight::choice_of_lamps_test {
@@ -11,23 +13,23 @@ namespace {
 
 using namespace test;
 
-// All patches of a cube as lamps, each of another exitance.
+// All patches of a box of 1 x 2 x 3 m as lamps, each of another exitance; they differ in area.
 struct Lamps {
   PatchMesh mesh;
   std::vector<PatchIndex> all;
   Field exitance;
 };
 
-Lamps all_of_a_cube() {
-  const Scene scene = cube_room(0.5, 1);
-  Lamps lamps{tessellate(scene, kept_sides(scene, Sides::front), 0.3), {}, {}};
+Lamps all_of_a_box() {
+  const Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 2, 3), true);
+  Lamps lamps{tessellate(scene, kept_sides(scene, Sides::front), 0.7), {}, {}};
   for (PatchIndex i = 0; i < lamps.mesh.size(); ++i) lamps.all.push_back(i);
   lamps.exitance = Eigen::ArrayXd::LinSpaced(lamps.mesh.size(), 1, 3);
   return lamps;
 }
 
-// at() is the inverse of the distribution: k numbers of [0, 1), evenly spaced, give each lamp k q_j of them within one,
-// and what is left of a number is a number again, in rising order within a lamp.
+// at() inverts the distribution: of n evenly spaced numbers of [0, 1), a lamp with the probability q gets n q within
+// one, and what is left of the number rises from 0 to 1 within each lamp.
 void expect_chosen_as_told(const ChoiceOfLamps& choice, const std::vector<PatchIndex>& lamps) {
   constexpr int count = 100'000;
   std::vector<int> chosen(lamps.size(), 0);
@@ -51,27 +53,45 @@ void expect_chosen_as_told(const ChoiceOfLamps& choice, const std::vector<PatchI
 }
 
 TEST(ChoiceOfLamps, FollowsItsProbabilities) {
-  const Lamps lamps = all_of_a_cube();
+  const Lamps lamps = all_of_a_box();
   expect_chosen_as_told(choice_by_flux(lamps.mesh, lamps.all, lamps.exitance), lamps.all);
   expect_chosen_as_told(choice_of_lamps(lamps.mesh, 0, lamps.all, lamps.exitance), lamps.all);
 }
 
 TEST(ChoiceOfLamps, ByFluxGoesWithAreaTimesExitance) {
-  const Lamps lamps = all_of_a_cube();
+  const Lamps lamps = all_of_a_box();
   const ChoiceOfLamps choice = choice_by_flux(lamps.mesh, lamps.all, lamps.exitance);
-  const double flux_0 = lamps.mesh.area[0] * lamps.exitance(0);
-  const double flux_9 = lamps.mesh.area[9] * lamps.exitance(9);
-  EXPECT_NEAR(choice.probability_of(9) / choice.probability_of(0), flux_9 / flux_0, 1e-12);
+  const PatchIndex last = lamps.mesh.size() - 1;
+  ASSERT_GT(std::abs(lamps.mesh.area[last] / lamps.mesh.area[0] - 1), 0.01) << "else the areas are not looked at";
+  const double flux_first = lamps.mesh.area[0] * lamps.exitance(0);
+  const double flux_last = lamps.mesh.area[last] * lamps.exitance(last);
+  EXPECT_NEAR(choice.probability_of(last) / choice.probability_of(0), flux_last / flux_first, 1e-12);
+}
+
+// A floor and a ceiling of 1 x 1 m, 2 m apart, and a wall of 1 x 2 m between them, one patch each. By hand, with r^2
+// from middle to middle plus the area: the ceiling has 4 + 1 and both cosines 2 / sqrt(5); the wall .25 + 1 + 2 and
+// cosines of 1 / sqrt(3.25) and .5 / sqrt(3.25).
+TEST(ChoiceOfLamps, GoesWithWhatIsSentWithNothingInTheWay) {
+  Scene scene = empty_scene({grey(0.5)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 2), Point(0, 1, 2), Point(1, 1, 2), Point(1, 0, 2)});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 2), Point(0, 0, 2)});
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 10);
+  ASSERT_EQ(mesh.size(), 3U);
+  const ChoiceOfLamps choice = choice_of_lamps(mesh, 0, {1, 2}, Field::Ones(3, 1));
+  const double of_ceiling = 1 * (4.0 / 5) / 5;
+  const double of_wall = 2 * (1 * 0.5 / 3.25) / 3.25;
+  EXPECT_NEAR(choice.probability_of(1), of_ceiling / (of_ceiling + of_wall), 1e-12);
 }
 
 TEST(ChoiceOfLamps, OtherPatchesAreNeverChosen) {
-  const Lamps lamps = all_of_a_cube();
+  const Lamps lamps = all_of_a_box();
   const ChoiceOfLamps choice = choice_by_flux(lamps.mesh, {3, 7}, lamps.exitance);
   EXPECT_EQ(choice.probability_of(2), 0);
   EXPECT_EQ(choice.probability_of(5), 0);
   EXPECT_EQ(choice.probability_of(8), 0);
   EXPECT_EQ(choice.at(0).lamp, 3U);
-  EXPECT_EQ(choice.at(0x1.fffffep-1).lamp, 7U);
+  EXPECT_EQ(choice.at(0x1.fffffffffffffp-1).lamp, 7U) << "the largest number below 1";
 }
 
 }  // namespace

@@ -96,9 +96,26 @@ TEST(PatchLookup, WidensTheSearchInTheMouthOfAConcavePolygon) {
   const Scene scene = tiny::polygon(
       {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2.9, 3, 0}, {2.9, 0.1, 0}, {0.1, 0.1, 0}, {0.1, 3, 0}, {0, 3, 0}});
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
-  const auto patch = PatchLookup(mesh).patch_at(0, Side::front, {1.3, 1.9, 0});
+  const PatchLookup lookup(mesh);
+  const SidePoint in_the_mouth{0, Side::front, {1.3, 1.9, 0}};
+  const auto patch = lookup.patch_at(0, Side::front, in_the_mouth.point);
   ASSERT_TRUE(patch);
   EXPECT_LT(mesh.centroid[*patch].x(), 0.1);
+  EXPECT_EQ(lookup.patches_at({&in_the_mouth, 1}).front(), *patch);
+}
+
+// At the place of a map, where single precision tells half a metre apart, and not a parallelogram, so that cells are
+// searched.
+TEST(PatchLookup, FindsPatchesFarFromTheOrigin) {
+  const Point at(4e5, 5e6, 300);
+  const Scene scene = tiny::polygon({at, at + Vector(1, 0, 0), at + Vector(1.2, 0.9, 0), at + Vector(0, 1, 0)});
+  const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
+  ASSERT_GT(mesh.size(), 300U);
+  const PatchLookup lookup(mesh);
+  std::vector<SidePoint> points;
+  for (const Point& centroid : mesh.centroid) points.push_back({0, Side::front, centroid});
+  const std::vector<PatchIndex> found = lookup.patches_at(points);
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) EXPECT_EQ(found[patch], patch);
 }
 
 TEST(PatchLookup, HasNothingOnASideThatIsNotKept) {

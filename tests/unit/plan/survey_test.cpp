@@ -69,16 +69,25 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
   EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
 }
 
+// The room is 5.6 m long, less than 30 m, and ends at x = 4 m.
 TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
   Scene scene = furnished_room(0.5);
-  const double length = bounds(scene).diagonal().norm();
-  scene.luminaires = {{.name = "near", .place = "a.toml:1", .position = Point(length, 1, 1), .light = PointLight{}}};
-  EXPECT_FALSE(has(survey_of(scene), ProblemKind::implausible_size)) << "outside, as lamps of streets are";
-  scene.luminaires.push_back({.name = "far", .place = "a.toml:7", .position = Point(300, 1, 1), .light = PointLight{}});
+  const auto lamp_at = [](double x) {
+    return Luminaire{.name = "far", .place = "a.toml:7", .position = Point(x, 1, 1), .light = PointLight{}};
+  };
+  scene.luminaires = {lamp_at(33.9)};
+  EXPECT_FALSE(has(survey_of(scene), ProblemKind::implausible_size)) << "as lamps on masts are";
+  EXPECT_TRUE(problems_with_size(scene).empty());
+  scene.luminaires.push_back(lamp_at(34.1));
   const SceneReport report = survey_of(scene);
   ASSERT_TRUE(has(report, ProblemKind::implausible_size));
-  EXPECT_NE(report.problems.front().what.find("'far' of a.toml:7"), std::string::npos) << report.problems.front().what;
-  EXPECT_EQ(report.problems.front().count, 1U);
+  EXPECT_EQ(report.problems.front().what,
+            "1 luminaire lies 30.1 m from the model, which is 5.59 m long (the first: 'far' of a.toml:7). Is its "
+            "position in the unit of its file?");
+  scene.luminaires.push_back(lamp_at(304));
+  ASSERT_EQ(problems_with_size(scene).size(), 1U) << "what solve and plan tell";
+  EXPECT_EQ(problems_with_size(scene).front().count, 2U);
+  EXPECT_NE(problems_with_size(scene).front().what.find("2 luminaires lie up to 300 m"), std::string::npos);
 }
 
 TEST(Survey, FullReflectanceIsAWarning) {
