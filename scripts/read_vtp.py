@@ -46,8 +46,7 @@ def block_bytes(data, start):
     at, out = start + 24 + 8 * count, b""
     for k, length in enumerate(packed):
         full = last if k + 1 == count and last else size
-        block = data[at:at + length]
-        out += block if length == full else lz4_block(block, full)
+        out += lz4_block(data[at:at + length], full)
         at += length
     return out
 

@@ -3,6 +3,8 @@
 #include "accuracy/errors.h"
 #include "accuracy/spanning_bands.h"
 #include "base/conjugate_directions.h"
+#include "base/sampling.h"
+#include "form_factor/patch_keys.h"
 #include "mesh/means_around.h"
 #include "solve/scattering.h"
 #include "transport/random_errors.h"
@@ -131,6 +133,26 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
   // Of two independent values each is off by a root of one half of their difference.
   const Field error = followed(transport, problem, difference / std::sqrt(2.0));
   return form_factor_scale * means_around(mesh, problem.area, error);
+}
+
+Field errors_of_luminaires(const PatchMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
+                           const Field& standard_error) {
+  constexpr double told = 1e-3;  // of the light, as above
+  const RadiosityProblem& problem = solved.problem;
+  const auto norm = [&](const Field& irradiance) {
+    return (problem.scattering.reflect(irradiance).square().colwise() * problem.area.array()).sum();
+  };
+  if (norm(standard_error) <= told * told * norm(solved.solution.irradiance)) return standard_error;
+  const std::vector<std::uint32_t> keys = patch_keys(mesh);
+  Field squares = Field::Zero(standard_error.rows(), standard_error.cols());
+  for (std::uint64_t draw = 0; draw < draws; ++draw) {
+    Field error = standard_error;
+    for (PatchIndex i = 0; i < mesh.size(); ++i)
+      if ((hash({seed, keys[i], draw, 2}) & 1) != 0) error.row(i) *= -1;
+    squares += followed(transport, problem, error).square() / draws;
+  }
+  // The own error is known, and needs no draws.
+  return squares.sqrt().max(standard_error);
 }
 
 }  // namespace patchlight

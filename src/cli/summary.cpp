@@ -65,7 +65,8 @@ std::string advice_on_errors(const Report& report) {
   return std::string("that is much; ") +
          (step.mesh >= step.form_factor ? "more --patches make it smaller, or --accuracy where they pay"
           : by_rays                     ? "more --rays make it smaller"
-                                        : "more --samples make it smaller") +
+                                        : "more --samples make it smaller, and more --patches that part of "
+                                          "it which is light of luminaires, sun or sky") +
          '\n';
 }
 
@@ -195,9 +196,11 @@ std::string sensor_lines(const Report& report, const std::string& how_to_know_er
                                 "largest standard error" + in_unit}};
   if (sensors.daylight) rows[0].emplace_back("mean daylight factor, %");
   for (const GroupReadings& group : sensors.groups) {
-    rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls), rounded(group.min),
-                    rounded(group.mean), error_text(group.standard_error_of_mean), rounded(group.max),
-                    rounded(group.uniformity), error_text(group.largest_standard_error)});
+    rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls)});
+    if (group.inside_walls == group.sensors) continue;
+    rows.back().insert(rows.back().end(),
+                       {rounded(group.min), rounded(group.mean), error_text(group.standard_error_of_mean),
+                        rounded(group.max), rounded(group.uniformity), error_text(group.largest_standard_error)});
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   if (!report.accuracy.empty()) return text_table(rows);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace patchlight {
 
@@ -36,7 +37,11 @@ namespace {
 
 GroupReadings statistics(std::span<const std::size_t> sensors, const Readings& readings) {
   GroupReadings found;
-  if (sensors.empty()) return found;
+  if (sensors.empty()) {
+    found.min = found.mean = found.max = found.standard_error_of_mean = found.uniformity =
+        found.largest_standard_error = std::numeric_limits<double>::quiet_NaN();
+    return found;
+  }
   const auto count = static_cast<double>(sensors.size());
   found.min = sensor_value(readings, sensors[0]).value;
   double daylight = 0;

@@ -272,7 +272,8 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const Field sampled = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
-  if (has_point_or_daylight(run.scene)) squares += simulation.direct_standard_error.square();
+  if (has_point_or_daylight(run.scene))
+    squares += errors_of_luminaires(mesh, rows, solved, simulation.direct_standard_error).square();
   simulation.error_bars = {.mesh = of_mesh.total(),
                            .mesh_noise = {},
                            .form_factor = squares.sqrt(),

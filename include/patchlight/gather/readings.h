@@ -50,7 +50,8 @@ const char* sensor_unit(const Readings& readings);
 /// must be given.
 double daylight_factor(const Readings& readings, std::size_t sensor);
 
-/// What the sensors of one group read, in sensor_unit(). Those inside walls count in the first two numbers alone.
+/// What the sensors of one group read, in sensor_unit(). Those inside walls count in the first two numbers alone; where
+/// all are, the others are not numbers.
 struct GroupReadings {
   std::string name;
   std::size_t sensors = 0;
