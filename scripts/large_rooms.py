@@ -41,8 +41,8 @@ def solved(build, model, patches, rays, folder):
 def errors(build, model, patches, checked, paths, rays=64):
     words = [build / "tests/benchmarks/benchmark_rays", model, patches, checked, paths, rays]
     text = subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True).stdout
-    names = {"error": r"error ([\d.]+)", "noise": r"noise of paths ([\d.]+)", "stated": r"stated ([\d.]+)", "median": r"median ([\d.]+)",
-             "all": r"bar of all patches ([\d.]+)", "covered": r"within two bars ([\d.]+)"}
+    names = {"error": r"error ([\d.]+)", "noise": r"noise of paths ([\d.]+)", "stated": r"stated ([\d.]+)",
+             "median": r"median ([\d.]+)", "all": r"bar of all patches ([\d.]+)", "covered": r"within two bars ([\d.]+)"}
     return {name: float(re.search(pattern, text).group(1)) for name, pattern in names.items()}
 
 

@@ -43,10 +43,10 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
 
 /// What the errors of light straight from luminaires, sun and sky come to through all reflections: the root mean square
 /// over random draws of them, those of one patch unrelated to those of the others, each followed; W/m^2.
-/// `standard_error` is that of RadiosityProblem::direct_irradiance, which alone is given back where it is less than a
-/// thousandth of the light. Costs some tens of applications.
-Field errors_of_luminaires(const PatchMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
-                           const Field& standard_error);
+/// `standard_error` is that of RadiosityProblem::direct_irradiance. Costs some tens of applications, none where it is
+/// 0.
+Field errors_of_lights(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
+                       const Field& standard_error);
 
 /// What the share of a patch that is exposed, when it is not all of it, may be off, as a share of it; stratified points
 /// find a straight edge with a variance of their number to the power of -3/2 times the length of the edge, which grows

@@ -135,14 +135,9 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
   return form_factor_scale * means_around(mesh, problem.area, error);
 }
 
-Field errors_of_luminaires(const PatchMesh& mesh, const RowTransport& transport, const SolvedProblem& solved,
-                           const Field& standard_error) {
-  constexpr double told = 1e-3;  // of the light, as above
-  const RadiosityProblem& problem = solved.problem;
-  const auto norm = [&](const Field& irradiance) {
-    return (problem.scattering.reflect(irradiance).square().colwise() * problem.area.array()).sum();
-  };
-  if (norm(standard_error) <= told * told * norm(solved.solution.irradiance)) return standard_error;
+Field errors_of_lights(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
+                       const Field& standard_error) {
+  if (standard_error.isZero(0)) return standard_error;
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   Field squares = Field::Zero(standard_error.rows(), standard_error.cols());
   for (std::uint64_t draw = 0; draw < draws; ++draw) {

@@ -273,7 +273,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
   if (has_point_or_daylight(run.scene))
-    squares += errors_of_luminaires(mesh, rows, solved, simulation.direct_standard_error).square();
+    squares += errors_of_lights(mesh, rows, solved.problem, simulation.direct_standard_error).square();
   simulation.error_bars = {.mesh = of_mesh.total(),
                            .mesh_noise = {},
                            .form_factor = squares.sqrt(),
