@@ -39,18 +39,15 @@ class PocketTransport : public TransportOperator {
   double farthest_off() const { return farthest_off_; }
 
  private:
-  using Arriving = std::function<Eigen::VectorXd(const Pocket& pocket, Eigen::Index band)>;
-
-  Field followed(const Arriving& arriving, Field irradiance) const;
-  Eigen::VectorXd followed_in_band(const Pocket& pocket, const PocketSystem& system,
-                                   const Eigen::VectorXd& irradiance) const;
+  Field followed(const Pocket& pocket, const PocketSystem& system, const FieldView& irradiance) const;
+  Field followed_in_each(const std::function<Field(const Pocket&)>& arriving, Field irradiance) const;
 
   const TransportOperator& transport_;
   const Pockets& pockets_;
   bool closed_are_dark_;
   double accuracy_;
-  // Per pocket I - F_PP R of each band; where these are several, at last that of the highest R of all.
-  std::vector<std::vector<PocketSystem>> systems_;
+  std::vector<PocketSystem> of_bands_;            // per pocket
+  std::vector<PocketSystem> of_highest_;          // of the highest R of all bands, where these are several; else empty
   mutable std::atomic<double> farthest_off_ = 0;  // of all calls: in whatever order these come it is the same
 };
 

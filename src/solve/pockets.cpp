@@ -10,8 +10,6 @@
 namespace patchlight {
 namespace {
 
-using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
 // Light that is still there after as many bounces among all patches, and then among those that have kept it so far.
 // With 16 more of the latter fewer patches are followed apart, and the kitchen of docs/models.md takes 30 iterations,
 // not 19.
@@ -23,12 +21,8 @@ constexpr double least_reflectance = 0.917;
 constexpr double largest_part = 1.0 / 8;
 // What a row may lack to 1 by rounding.
 constexpr double least_loss = 1e-6;
-// Of the incomplete factors: what is dropped, relative to its row, and their size, relative to the matrix.
-constexpr double dropped_share = 0.01;
-constexpr int size_of_factors = 2;
-// A pocket of at most so many patches is solved by elimination: however often light is reflected there, only rounding
-// is left, which the bounces multiply. Of so many 1e-8 of the light. Iterations take the longer the more there are.
-constexpr Eigen::Index few_patches = 512;
+// However often light is reflected in a pocket that is solved by elimination, only rounding is left, which the bounces
+// multiply. Of so many 1e-8 of the light. Iterations take the longer the more there are.
 constexpr double most_bounces = 1e8;
 constexpr double most_bounces_by_iterations = 1e5;
 
@@ -41,7 +35,7 @@ std::vector<PatchIndex> keeping_enough(const std::vector<PatchIndex>& patches, c
 }
 
 // F among some patches.
-Rows rows_among(const RayTransport& transport, const std::vector<PatchIndex>& patches) {
+SparseRows rows_among(const RayTransport& transport, const std::vector<PatchIndex>& patches) {
   constexpr int none = -1;
   std::vector<int> number(transport.size(), none);
   for (std::size_t k = 0; k < patches.size(); ++k) number[patches[k]] = static_cast<int>(k);
@@ -60,7 +54,7 @@ Rows rows_among(const RayTransport& transport, const std::vector<PatchIndex>& pa
     }
   }
   const auto size = static_cast<Eigen::Index>(patches.size());
-  Rows among(size, size);
+  SparseRows among(size, size);
   among.setFromTriplets(entries.begin(), entries.end());
   return among;
 }
@@ -81,7 +75,7 @@ std::vector<PatchIndex> keeping_light(const RayTransport& transport, const Eigen
     left = reflectance.cwiseProduct(transport.apply(left).col(0).matrix());
   patches = keeping_enough(patches, left);
   if (patches.size() > most) return patches;
-  const Rows among = rows_among(transport, patches);
+  const SparseRows among = rows_among(transport, patches);
   const Eigen::VectorXd reflected = values_at(patches, reflectance);
   left = Eigen::VectorXd::Ones(among.rows());
   for (int bounce = 0; bounce < more_bounces; ++bounce) left = reflected.cwiseProduct(among * left);
@@ -89,7 +83,7 @@ std::vector<PatchIndex> keeping_light(const RayTransport& transport, const Eigen
 }
 
 // Which of some patches lose light: they absorb, some leaves, or it gets to others that do. As in trapped_light().
-Eigen::ArrayXd losing_light(const Rows& among, const Eigen::VectorXd& reflectance) {
+Eigen::ArrayXd losing_light(const SparseRows& among, const Eigen::VectorXd& reflectance) {
   const Eigen::VectorXd row_sum = among * Eigen::VectorXd::Ones(among.rows());
   Eigen::VectorXd loses = (reflectance.array() < 1 || row_sum.array() < 1 - least_loss).cast<double>().matrix();
   for (double before = -1; loses.sum() > before;) {
@@ -107,7 +101,7 @@ struct Groups {
 };
 
 // Union and find by the lowest number of each group; those that lose no light are groups of their own.
-std::vector<std::size_t> lowest_of_groups(const Rows& among, const Eigen::ArrayXd& loses) {
+std::vector<std::size_t> lowest_of_groups(const SparseRows& among, const Eigen::ArrayXd& loses) {
   std::vector<std::size_t> lower(static_cast<std::size_t>(loses.size()));
   std::iota(lower.begin(), lower.end(), std::size_t{0});
   const auto lowest = [&lower](std::size_t k) {
@@ -116,7 +110,7 @@ std::vector<std::size_t> lowest_of_groups(const Rows& among, const Eigen::ArrayX
   };
   for (Eigen::Index row = 0; row < among.rows(); ++row) {
     if (loses[row] == 0) continue;
-    for (Rows::InnerIterator entry(among, row); entry; ++entry) {
+    for (SparseRows::InnerIterator entry(among, row); entry; ++entry) {
       if (loses[entry.col()] == 0) continue;
       const auto [low, high] =
           std::minmax({lowest(static_cast<std::size_t>(row)), lowest(static_cast<std::size_t>(entry.col()))});
@@ -128,7 +122,7 @@ std::vector<std::size_t> lowest_of_groups(const Rows& among, const Eigen::ArrayX
 }
 
 // Without patches that lose no light: these are of no group.
-Groups groups_of(const Rows& among, const Eigen::ArrayXd& loses) {
+Groups groups_of(const SparseRows& among, const Eigen::ArrayXd& loses) {
   const std::vector<std::size_t> lowest = lowest_of_groups(among, loses);
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   Groups groups{{}, std::vector<std::size_t>(lowest.size(), none), std::vector<int>(lowest.size(), 0)};
@@ -146,70 +140,38 @@ Groups groups_of(const Rows& among, const Eigen::ArrayXd& loses) {
 }
 
 // F among the patches of one group.
-Rows rows_of(const Groups& groups, std::size_t group, const Rows& among) {
+SparseRows rows_of(const Groups& groups, std::size_t group, const SparseRows& among) {
   const std::vector<std::size_t>& members = groups.members[group];
   std::vector<Eigen::Triplet<double>> entries;
   for (const std::size_t k : members) {
-    for (Rows::InnerIterator entry(among, static_cast<Eigen::Index>(k)); entry; ++entry) {
+    for (SparseRows::InnerIterator entry(among, static_cast<Eigen::Index>(k)); entry; ++entry) {
       const auto seen = static_cast<std::size_t>(entry.col());
       if (groups.group[seen] == group) entries.emplace_back(groups.place[k], groups.place[seen], entry.value());
     }
   }
   const auto size = static_cast<Eigen::Index>(members.size());
-  Rows rows(size, size);
+  SparseRows rows(size, size);
   rows.setFromTriplets(entries.begin(), entries.end());
   return rows;
 }
 
-// Eigen's place for a preconditioner, filled with factors that the pockets hold.
-class KnownFactors {
- public:
-  KnownFactors() = default;
-  template <typename Matrix>
-  explicit KnownFactors(const Matrix& /*matrix*/) {}
-  template <typename Matrix>
-  KnownFactors& analyzePattern(const Matrix& /*matrix*/) {  // NOLINT(readability-identifier-naming): Eigen's
-    return *this;
-  }
-  template <typename Matrix>
-  KnownFactors& factorize(const Matrix& /*matrix*/) {
-    return *this;
-  }
-  template <typename Matrix>
-  KnownFactors& compute(const Matrix& /*matrix*/) {
-    return *this;
-  }
-  void set(const Eigen::IncompleteLUT<double>& factors) { factors_ = &factors; }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return factors_->solve(right); }
-  Eigen::ComputationInfo info() const { return Eigen::Success; }
-
- private:
-  const Eigen::IncompleteLUT<double>* factors_ = nullptr;
-};
-
-// (I - F rho) bounces >= 1/2: light is reflected at most twice as often as the bounces say.
-bool bounces_hold(const Pocket& pocket, const PocketSystem& system) {
-  return (pocket.bounces.array() > 0).all() && ((system.matrix * pocket.bounces).array() > 0.5).all();
-}
-
 // Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
-// what is followed is.
-std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const Rows& form_factors,
+// what is followed is. From (I - F rho) bounces >= 1/2 light is reflected at most twice as often as they say.
+std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, SparseRows form_factors,
                                 const Eigen::VectorXd& reflectance) {
   Pocket pocket;
   pocket.patches = std::move(patches);
-  pocket.form_factors = form_factors;
-  const PocketSystem system = system_within(pocket, values_at(pocket.patches, reflectance));
-  if (!system.is_eliminated()) {
-    pocket.nearly_solved = std::make_unique<Eigen::IncompleteLUT<double>>();
-    pocket.nearly_solved->setDroptol(dropped_share);
-    pocket.nearly_solved->setFillfactor(size_of_factors);
-    pocket.nearly_solved->compute(system.matrix);
-  }
+  pocket.form_factors = std::move(form_factors);
+  const Eigen::VectorXd reflected = values_at(pocket.patches, reflectance);
+  const PocketSystem system = system_within(pocket.form_factors, reflected.array());
+  if (!system.is_eliminated()) pocket.nearly_solved = incomplete_factors(pocket.form_factors, reflected);
   constexpr double loosely = 1e-6;
-  pocket.bounces = solution_within(pocket, system, Eigen::VectorXd::Ones(system.matrix.rows()), loosely);
+  const Field once = Field::Ones(reflected.size(), 1);
+  const Field bounces = solution_within(pocket, system, once, loosely);
   const double most = system.is_eliminated() ? most_bounces : most_bounces_by_iterations;
-  if (!bounces_hold(pocket, system) || pocket.bounces.maxCoeff() > most) return std::nullopt;
+  const bool hold = (bounces > 0).all() && (residual_within(pocket, system, once, bounces) < 0.5).all();
+  if (!hold || bounces.maxCoeff() > most) return std::nullopt;
+  pocket.bounces = bounces.col(0).matrix();
   return pocket;
 }
 
@@ -221,7 +183,7 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
   if (patches.empty() || static_cast<double>(patches.size()) > largest_part * transport.size()) return nullptr;
 
   const auto pockets = std::make_shared<Pockets>();
-  const Rows among = rows_among(transport, patches);
+  const SparseRows among = rows_among(transport, patches);
   const Eigen::ArrayXd loses = losing_light(among, values_at(patches, reflectance));
   for (std::size_t k = 0; k < patches.size(); ++k)
     if (loses[static_cast<Eigen::Index>(k)] == 0) pockets->closed.push_back(patches[k]);
@@ -233,26 +195,6 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
     if (pocket) pockets->each.push_back(std::move(*pocket));
   }
   return pockets->each.empty() && pockets->closed.empty() ? nullptr : pockets;
-}
-
-PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance) {
-  Rows one(pocket.form_factors.rows(), pocket.form_factors.cols());
-  one.setIdentity();
-  PocketSystem system{.matrix = one - pocket.form_factors * reflectance.asDiagonal(), .factors = {}};
-  if (one.rows() <= few_patches) system.factors.compute(Eigen::MatrixXd(system.matrix));
-  return system;
-}
-
-Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
-                                double tolerance) {
-  if (system.is_eliminated()) return system.factors.solve(right);
-  constexpr int most_iterations = 200;
-  Eigen::BiCGSTAB<Rows, KnownFactors> solver;
-  solver.preconditioner().set(*pocket.nearly_solved);
-  solver.setTolerance(tolerance);
-  solver.setMaxIterations(most_iterations);
-  solver.compute(system.matrix);
-  return solver.solve(right);
 }
 
 }  // namespace patchlight

@@ -2,27 +2,15 @@
 
 #include "patchlight/transport/transport_operator.h"
 
+#include "solve/pocket.h"
 #include "transport/ray_transport.h"
 
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/LU>
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace patchlight {
-
-/// Patches that keep light among themselves, as those of white boards 3 mm apart do: it takes hundreds of bounces to
-/// get out. Iterations over all patches hardly change what is there, and no bound on the error is found.
-struct Pocket {
-  std::vector<PatchIndex> patches;                              ///< in rising order; none sees one of another pocket
-  Eigen::SparseMatrix<double, Eigen::RowMajor> form_factors;    ///< F among them, numbered as they stand there
-  Eigen::VectorXd bounces;                                      ///< (I - F rho)^-1 1, rho the highest of all bands: how
-                                                                ///< often light is reflected before it gets out
-  std::unique_ptr<Eigen::IncompleteLUT<double>> nearly_solved;  ///< factors of about I - F rho (ILUT, Saad 1994); of
-                                                                ///< few patches null
-};
 
 /// There are few pockets: where their patches are more than an eighth of all, it is the room that is white.
 struct Pockets {
@@ -37,22 +25,6 @@ struct Pockets {
 /// 1e8, 1e5 of more than 512 patches. Null where nothing is left. Costs some five applications of
 /// one band; nothing where no reflectance is above .917.
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance);
-
-/// I - F R among the patches of a pocket.
-struct PocketSystem {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors;  ///< of up to 512 patches, up to 4 kB each; else of size 0
-
-  bool is_eliminated() const { return factors.rows() > 0; }
-};
-
-/// From the reflectances of its patches.
-PocketSystem system_within(const Pocket& pocket, const Eigen::VectorXd& reflectance);
-
-/// x of such a system: by its factors, or by BiCGSTAB until ||r||_2 is below `tolerance` times ||right||_2, or 200
-/// iterations are done.
-Eigen::VectorXd solution_within(const Pocket& pocket, const PocketSystem& system, const Eigen::VectorXd& right,
-                                double tolerance);
 
 /// Rows of rays whose pockets are known: solve() follows light within these apart.
 class RaysWithPockets : public TransportOperator {

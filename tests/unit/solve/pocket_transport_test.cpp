@@ -252,7 +252,7 @@ TEST(PocketTransport, SolvesLargePocketsByIterations) {
   ASSERT_NE(pockets, nullptr);
   ASSERT_EQ(pockets->each.size(), 1);
   ASSERT_EQ(pockets->each[0].patches.size(), in_ring);
-  ASSERT_NE(pockets->each[0].nearly_solved, nullptr);
+  ASSERT_EQ(pockets->each[0].nearly_solved.order.size(), in_ring);
   EXPECT_LT((pockets->each[0].bounces.array() * leak - 1).abs().maxCoeff(), 1e-3);
   const Solution found = solve(transport, problem, {.solver = Solver::gmres, .relative_error = 1e-5});
   EXPECT_TRUE(found.converged);
