@@ -3,9 +3,11 @@
 #include "patchlight/base/error.h"
 
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "input/new_scene_file.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
+#include "plan/survey.h"
 
 #include <iostream>
 #include <system_error>
@@ -18,6 +20,7 @@ ExitCode new_scene(const NewArguments& arguments) {
     throw OutputError(arguments.output.string(), "is there already; expected a new name");
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.models, arguments.read);
+  for (const Problem& problem : problems_with_size(scene)) print_message("note", problem.what);
   const std::string text = new_scene_file(scene, arguments.models, arguments.read.metres_per_unit, arguments.output);
   const WritingGuard guard;
   write_bytes(arguments.output, text);

@@ -205,10 +205,29 @@ std::string light_tables(const Scene& scene, const std::vector<NamedFloor>& plac
   return luminaire_table(scene, *hull, places) + sky_tables(scene, false);
 }
 
+// Half a metre, or over a floor on which that would be a great many sensors what a standard calls for. Metres.
+double spacing_over(const Floor& floor) {
+  constexpr double usual = 0.5;
+  constexpr double most_cells = 1e4;
+  if (floor.outlines.empty()) return usual;
+  const auto [corner, x, y] = rectangle_over(floor, 0);
+  if (cells_along(x.norm(), usual) * cells_along(y.norm(), usual) <= most_cells) return usual;
+  return std::ceil(spacing_by_standard(std::max(x.norm(), y.norm())));
+}
+
+// Of the floors that get a grid.
+double spacing_for(const Scene& scene, const std::vector<NamedFloor>& places) {
+  double spacing = scene.rooms.empty() && !places.empty() ? spacing_over(places[0].floor) : 0.5;
+  for (const NamedRoom& room : scene.rooms) spacing = std::max(spacing, spacing_over(floor_of(room.faces, scene.up)));
+  return spacing;
+}
+
 std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
   if (!scene.sensors.empty()) return "# The model has sensors of its own.\n\n";
   std::ostringstream text;
-  const std::string rest = "height = 0.8      # metres above the floor\nspacing = 0.5\nfrom_walls = 0.5\n\n";
+  const std::string rest =
+      "height = 0.8      # metres above the floor\nspacing = " + shortest(spacing_for(scene, places)) +
+      "\nfrom_walls = 0.5\n\n";
   if (!scene.rooms.empty()) {
     text
         << "# A grid over the floor of every room; results are told room by room.\n[[sensors]]\nname = \"work plane\"\n"

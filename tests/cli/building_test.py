@@ -85,6 +85,27 @@ class BuildingTest(ToolTest):
         self.assertEqual((self.folder / "court.toml").read_text(), text)
         self.refused(USAGE, ["patchlight new MODEL -o SCENE.toml"], "new", "court.obj")
 
+    def test_a_new_scene_file_has_a_grid_that_solve_takes_whatever_the_unit(self):
+        """A court in millimetres that is read as metres is 4,000 m long: half a metre would be 48 million sensors."""
+        court = (self.folder / "court.obj").read_text().splitlines()
+        self.write("mm.obj", "\n".join("v " + " ".join(str(1000 * float(x)) for x in line.split()[1:4])
+                                       if line.startswith("v ") else line for line in court) + "\n")
+        done = self.run_tool("new", "mm.obj", "-o", "mm.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("--unit mm", done.stderr)
+        self.assertNotIn("spacing = 0.5", (self.folder / "mm.toml").read_text())
+        self.good("solve", "mm.toml", "--patches", 200, "-q", "-o", "mm.vtp")
+        self.good("new", "mm.obj", "--unit", "mm", "-o", "right.toml")
+        self.assertIn("spacing = 0.5", (self.folder / "right.toml").read_text())
+
+    def test_check_tells_of_a_great_many_sensors(self):
+        self.good("new", "court.obj", "-o", "court.toml")
+        text = (self.folder / "court.toml").read_text()
+        self.write("fine.toml", text.replace("spacing = 0.5", "spacing = 0.005"))
+        said = self.good("check", "fine.toml")
+        self.assertRegex(said, r"\d{6} sensors are asked for.* are of 'work plane' \(\S*fine\.toml:\d+\) over")
+        self.assertNotIn("sensors are asked for", self.good("check", "court.toml"))
+
     def test_check_fits_on_a_screen(self):
         names = [f"m{k}" for k in range(80)]
         self.write("many.mtl", "".join(f"newmtl {name}\nKd .5 .5 .5\n" for name in names))
