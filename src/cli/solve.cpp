@@ -30,6 +30,7 @@
 #include "page/write_page.h"
 #include "pipeline/stage_clock.h"
 #include "plan/check_request.h"
+#include "plan/survey.h"
 #include "scene/limits.h"
 #include "scene/section.h"
 
@@ -201,6 +202,13 @@ LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
   };
 }
 
+// Before it begins.
+void tell_of_long_work(const Scene& scene, const SolveArguments& arguments, ProgressLine& line) {
+  if (arguments.verbosity == Verbosity::quiet) return;
+  line.hide();
+  for (const Problem& problem : problems_with_sensors(scene)) print_message("note", problem.what);
+}
+
 Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, ProgressLine& line) {
   const Observer observer = observer_on(line);
   Results results;
@@ -211,6 +219,7 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, Progres
   SolveInput input = read(arguments, observer);
   results.scene = std::move(input.scene);
   reading.finish(Stage::read);
+  tell_of_long_work(results.scene, arguments, line);
 
   // 2. Solve
   Iterates iterates(!arguments.series.empty());

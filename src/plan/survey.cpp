@@ -87,28 +87,6 @@ std::vector<Problem> problems_of_luminaires(const Scene& scene) {
            {}}};
 }
 
-// More than a map of them shows, and than a floor of a building of 150 m needs by half a metre.
-constexpr std::size_t many_sensors = 100'000;
-
-std::vector<Problem> problems_of_sensors(const Scene& scene) {
-  std::size_t count = 0;
-  for (const SensorGroup& group : scene.sensors) count += group.sensors.size();
-  if (count <= many_sensors) return {};
-  const auto fewer = [](const SensorGroup& a, const SensorGroup& b) { return a.sensors.size() < b.sensors.size(); };
-  const SensorGroup& most = *std::max_element(scene.sensors.begin(), scene.sensors.end(), fewer);
-  Box box;
-  for (const Sensor& sensor : most.sensors) box.extend(sensor.point);
-  const double length = box.sizes().maxCoeff();
-  return {{ProblemKind::implausible_size,
-           count,
-           std::to_string(count) + " sensors are asked for, which takes long; most of them, " +
-               std::to_string(most.sensors.size()) + ", are of '" + most.name + "' (" + most.file + ":" +
-               std::to_string(most.lines.empty() ? 0 : most.lines.front()) + ") over " + rounded(length) +
-               " m. Is the model in the unit that is stated? Over so much EN 12464-1 wants a spacing of " +
-               rounded(spacing_by_standard(length), 2) + " m or less",
-           {}}};
-}
-
 std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
   std::vector<std::string> names;
   for (const MaterialFacts& facts : materials) {
@@ -208,8 +186,28 @@ std::vector<Problem> problems_with_size(const Scene& scene) {
   const double size = main_bounds(scene).sizes().maxCoeff();
   std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, size), size);
   for (Problem& problem : problems_of_luminaires(scene)) problems.push_back(std::move(problem));
-  for (Problem& problem : problems_of_sensors(scene)) problems.push_back(std::move(problem));
   return problems;
+}
+
+std::vector<Problem> problems_with_sensors(const Scene& scene) {
+  // More than a map of them shows, and than a floor of a building of 150 m needs by half a metre.
+  constexpr std::size_t many_sensors = 100'000;
+  std::size_t count = 0;
+  for (const SensorGroup& group : scene.sensors) count += group.sensors.size();
+  if (count <= many_sensors) return {};
+  const auto fewer = [](const SensorGroup& a, const SensorGroup& b) { return a.sensors.size() < b.sensors.size(); };
+  const SensorGroup& most = *std::max_element(scene.sensors.begin(), scene.sensors.end(), fewer);
+  Box box;
+  for (const Sensor& sensor : most.sensors) box.extend(sensor.point);
+  const double length = box.sizes().maxCoeff();
+  return {{ProblemKind::implausible_size,
+           count,
+           std::to_string(count) + " sensors are asked for, which takes long; most of them, " +
+               std::to_string(most.sensors.size()) + ", are of '" + most.name + "' (" + most.file + ":" +
+               std::to_string(most.lines.empty() ? 0 : most.lines.front()) + ") over " + rounded(length) +
+               " m. Is the model in the unit that is stated? Over so much EN 12464-1 wants a spacing of " +
+               rounded(spacing_by_standard(length), 2) + " m or less",
+           {}}};
 }
 
 SceneReport survey(const Scene& scene) {
@@ -242,7 +240,7 @@ SceneReport survey(const Scene& scene) {
   };
   add(problems_of_size(scene, report.unit_guess, size));
   add(problems_of_luminaires(scene));
-  add(problems_of_sensors(scene));
+  add(problems_with_sensors(scene));
   add(problems_with_reflectance(report.materials));
   add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
   if (!report.usable) {

@@ -105,6 +105,9 @@ class BuildingTest(ToolTest):
         said = self.good("check", "fine.toml")
         self.assertRegex(said, r"\d{6} sensors are asked for.* are of 'work plane' \(\S*fine\.toml:\d+\) over")
         self.assertNotIn("sensors are asked for", self.good("check", "court.toml"))
+        # Long before its end: without mesh and patches it is refused afterwards.
+        done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
+        self.assertRegex(done.stderr, r"note: \d{6} sensors are asked for")
 
     def test_check_fits_on_a_screen(self):
         names = [f"m{k}" for k in range(80)]

@@ -115,6 +115,29 @@ TEST(Verify, FewPathsThatMissAGapAreNotBelieved) {
   EXPECT_EQ(verify(brighter, simulation, bar, with_seed(1)).verdict, Verdict::disagrees);
 }
 
+// Beside these rooms an even one, from which most of the light comes that lamps send to patches: it is dim.
+Scene rooms_with_a_gap_beside_a_dim_one() {
+  Scene scene = with_box(rooms_with_a_gap(), Point(10, 0, 0), Point(15, 5, 5), true);
+  scene.materials.push_back(grey(0, 0.5));
+  return with_quad(std::move(scene), {Point(11, 1, 4), Point(11, 4, 4), Point(14, 4, 4), Point(14, 1, 4)}, 2);
+}
+
+// What few paths bring by the mean of all lamps' light tells too little of the gap.
+TEST(Verify, RightAnswersThatFewPathsRefuseAreLookedAtOnceMore) {
+  const Scene scene = rooms_with_a_gap_beside_a_dim_one();
+  Request request = with_error_bars(400);
+  request.mesh.sides = Sides::automatic;
+  const Simulation simulation = simulate(scene, request);
+  const Field bar = simulation.error_bars->total();
+  int looked_at_again = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Verification right = verify(scene, simulation, bar, {.paths = 32, .checked = 150, .seed = seed});
+    EXPECT_NE(right.verdict, Verdict::disagrees) << seed;
+    looked_at_again += right.first_paths == 32;
+  }
+  EXPECT_GT(looked_at_again, 0);
+}
+
 TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   // A furnace has B = H = 1 without any error of the mesh: what is left is the noise of the paths, so that no bar is
   // needed.
