@@ -4,6 +4,7 @@
 #include "base/shortest.h"
 #include "light/photometry.h"
 #include "plan/first_few.h"
+#include "plan/luminaire_problems.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/sensor_grid.h"
@@ -60,31 +61,6 @@ std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<Un
        1,
        "the model is " + rounded(size) + " m long with " + rounded(scene.metres_per_unit) + " m per unit; " + advice,
        {}}};
-}
-
-// Farther off than masts are high, and than the model is long.
-constexpr double farthest_luminaire = 30;  // metres
-
-std::vector<Problem> problems_of_luminaires(const Scene& scene) {
-  if (scene.luminaires.empty()) return {};
-  const Box box = bounds(scene);
-  const double length = box.diagonal().norm();
-  double farthest = std::max(length, farthest_luminaire);
-  std::vector<std::string> far;
-  for (const Luminaire& luminaire : scene.luminaires) {
-    const double distance = box.exteriorDistance(luminaire.position);
-    if (distance <= std::max(length, farthest_luminaire)) continue;
-    far.push_back("'" + luminaire.name + "' of " + luminaire.place);
-    farthest = std::max(farthest, distance);
-  }
-  if (far.empty()) return {};
-  const bool is_one = far.size() == 1;
-  return {{ProblemKind::implausible_size,
-           far.size(),
-           (is_one ? "1 luminaire lies " : std::to_string(far.size()) + " luminaires lie up to ") + rounded(farthest) +
-               " m from the model, which is " + rounded(length) + " m long (the first: " + far.front() + "). " +
-               (is_one ? "Is its position in the unit of its file?" : "Are their positions in the unit of their file?"),
-           {}}};
 }
 
 std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
@@ -185,7 +161,7 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
 std::vector<Problem> problems_with_size(const Scene& scene) {
   const double size = main_bounds(scene).sizes().maxCoeff();
   std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, size), size);
-  for (Problem& problem : problems_of_luminaires(scene)) problems.push_back(std::move(problem));
+  for (Problem& problem : problems_with_luminaires(scene)) problems.push_back(std::move(problem));
   return problems;
 }
 
@@ -239,7 +215,7 @@ SceneReport survey(const Scene& scene) {
     report.problems.insert(report.problems.end(), problems.begin(), problems.end());
   };
   add(problems_of_size(scene, report.unit_guess, size));
-  add(problems_of_luminaires(scene));
+  add(problems_with_luminaires(scene));
   add(problems_with_sensors(scene));
   add(problems_with_reflectance(report.materials));
   add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));

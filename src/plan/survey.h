@@ -70,8 +70,7 @@ struct SceneReport {
 SceneReport survey(const Scene& scene);
 
 /// That a model is smaller than 0.4 m or larger than 150 m, what is far from the rest apart, with the unit that would
-/// make it the size of a room; and that luminaires are farther from it than it is long, and than 30 m. Nothing for
-/// others.
+/// make it the size of a room; and what problems_with_luminaires() tells. Nothing for others.
 std::vector<Problem> problems_with_size(const Scene& scene);
 
 /// That more than 100,000 sensors are asked for. Nothing for fewer.

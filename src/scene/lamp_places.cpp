@@ -39,28 +39,10 @@ LampShape shape_of(const Luminaire& luminaire) {
   return shape;
 }
 
-// Ericson 2005, Real-Time Collision Detection, section 5.1.5, by the regions of the plane: the nearest point lies in
-// the triangle or on one of its edges.
-double distance(const Point& point, const std::array<Point, 3>& triangle) {
-  const auto& [a, b, c] = triangle;
-  const Vector normal = (b - a).cross(c - a);
-  bool within = normal.squaredNorm() > 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Point& from = triangle[k];
-    const Vector edge = triangle[(k + 1) % 3] - from;
-    const double length = edge.squaredNorm();
-    const double along = length > 0 ? std::clamp(edge.dot(point - from) / length, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (point - from - along * edge).norm());
-    within = within && normal.cross(edge).dot(point - from) >= 0;
-  }
-  return within ? std::min(nearest, std::abs(normal.normalized().dot(point - a))) : nearest;
-}
-
 bool comes_near(const Point& point, const Solid& solid, double reach) {
   if (!with_margin(solid.box, reach).contains(point)) return false;
   return std::any_of(solid.triangles.begin(), solid.triangles.end(),
-                     [&](const std::array<Point, 3>& triangle) { return distance(point, triangle) <= reach; });
+                     [&](const std::array<Point, 3>& triangle) { return distance_to(triangle, point) <= reach; });
 }
 
 // The length of the part of a segment that lies in a triangle of the same plane, made wider by `margin`.
@@ -118,6 +100,30 @@ LampPlaces places_of(const LampShape& lamp, const Solid& solid, double near) {
 }
 
 }  // namespace
+
+// Ericson 2005, Real-Time Collision Detection, section 5.1.5, by the regions of the plane: the nearest point lies in
+// the triangle or on one of its edges.
+double distance_to(const std::array<Point, 3>& triangle, const Point& point) {
+  const auto& [a, b, c] = triangle;
+  const Vector normal = (b - a).cross(c - a);
+  bool within = normal.squaredNorm() > 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point& from = triangle[k];
+    const Vector edge = triangle[(k + 1) % 3] - from;
+    const double length = edge.squaredNorm();
+    const double along = length > 0 ? std::clamp(edge.dot(point - from) / length, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (point - from - along * edge).norm());
+    within = within && normal.cross(edge).dot(point - from) >= 0;
+  }
+  return within ? std::min(nearest, std::abs(normal.normalized().dot(point - a))) : nearest;
+}
+
+double distance_to(const Solid& solid, const Point& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::array<Point, 3>& triangle : solid.triangles) least = std::min(least, distance_to(triangle, point));
+  return least;
+}
 
 std::vector<LampShape> lamp_shapes(const Scene& scene, double extent) {
   std::vector<LampShape> shapes;

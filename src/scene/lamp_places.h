@@ -21,6 +21,12 @@ struct LampShape {
 /// The shapes of every side that emits and of every luminaire.
 std::vector<LampShape> lamp_shapes(const Scene& scene, double extent);
 
+/// The distance of a point to the nearest triangle of a solid, m.
+double distance_to(const Solid& solid, const Point& point);
+
+/// The distance of a point to a triangle, m.
+double distance_to(const std::array<Point, 3>& triangle, const Point& point);
+
 /// Where a lamp lies with respect to a closed solid: both when it crosses the surface, or comes so near to it that
 /// rounding decides.
 struct LampPlaces {

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -43,6 +45,30 @@ std::vector<std::string> notes_on(const Count& count) {
     notes.push_back(solids(count.outward) + line + " with outward normals around a lamp: the inner sides are used");
   }
   return notes;
+}
+
+// What is said of luminaires around dark solids that are most of the scene, as a room without any other: most often
+// their position is wrong by the thickness of a ceiling.
+std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) {
+  const double half = bounds(scene).volume() / 2;
+  double least = std::numeric_limits<double>::infinity();
+  const Luminaire* nearest = nullptr;
+  for (const Solid& solid : dark) {
+    if (solid.box.volume() < half) continue;
+    for (const Luminaire& luminaire : scene.luminaires) {
+      if (solid.box.exteriorDistance(luminaire.position) >= least) continue;
+      const double distance = distance_to(solid, luminaire.position);
+      if (!(distance < least)) continue;
+      least = distance;
+      nearest = &luminaire;
+    }
+  }
+  if (nearest == nullptr) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "no luminaire stands in the room: '" << nearest->name << "' (" << nearest->place << ") is the nearest, "
+       << least << " m outside";
+  return text.str();
 }
 
 std::string name_of_solid(const Scene& scene, const Solid& solid) {
@@ -178,8 +204,11 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   const Shells shells = shells_of(scene);
   Count count;
   std::vector<Solid> dark, around_all_lamps;
+  bool holds_lamp = false;
   for (Solid& solid : closed_solids(scene, shells)) {
-    const Lit lit = lit_sides(solid, places_of(lamps, solid, extent), daylight);
+    const LampPlaces places = places_of(lamps, solid, extent);
+    const Lit lit = lit_sides(solid, places, daylight);
+    holds_lamp = holds_lamp || places.inside;
     if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
       count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     }
@@ -192,6 +221,7 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
     else if (!lit.outside)
       around_all_lamps.push_back(std::move(solid));
   }
+  const std::string outside = holds_lamp || in_the_dark.unreached ? std::string() : nearest_outside(scene, dark);
   // What other faces close may be dark inside; of those faces it is not known which part lies inside, so that the dark
   // outside of one that holds all lamps is not looked for.
   for (Solid& solid : standing_solids(scene, shells)) {
@@ -201,6 +231,7 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
     dark.push_back(std::move(solid));
   }
   kept.notes = notes_on(count);
+  if (!outside.empty()) kept.notes.push_back(outside);
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
   const SideMask unreached = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);

@@ -90,6 +90,29 @@ TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
   EXPECT_NE(problems_with_size(scene).front().what.find("2 luminaires lie up to 300 m"), std::string::npos);
 }
 
+// The room's ceiling lies at 3 m.
+TEST(Survey, SpheresThatAFaceCutsAreAWarning) {
+  Scene scene = furnished_room(0.5);
+  const double ceiling = bounds(scene).max().z();
+  const auto sphere_at = [&](double below, double radius) {
+    return Luminaire{.name = "bulb",
+                     .place = "a.toml:7",
+                     .position = Point(2, 1.5, ceiling - below),
+                     .light = SphericalLamp{radius, Spectrum::Ones(1)}};
+  };
+  scene.luminaires = {sphere_at(0.07, 0.06)};
+  EXPECT_TRUE(problems_with_size(scene).empty());
+  scene.luminaires = {sphere_at(0.05, 0.06), sphere_at(-0.05, 0.06)};
+  ASSERT_EQ(problems_with_size(scene).size(), 1U);
+  EXPECT_EQ(problems_with_size(scene).front().count, 2U);
+  EXPECT_EQ(problems_with_size(scene).front().what.rfind(
+                "2 sphere luminaires are cut by faces (the first: 'bulb' (a.toml:7), 0.12 m wide, by face '", 0),
+            0U)
+      << problems_with_size(scene).front().what;
+  scene.luminaires = {sphere_at(1.5, 4)};
+  EXPECT_EQ(problems_with_size(scene).size(), 1U) << "one as large as the room";
+}
+
 TEST(Survey, FullReflectanceIsAWarning) {
   EXPECT_TRUE(has(survey_of(furnished_room(1)), ProblemKind::full_reflectance));
   EXPECT_FALSE(has(survey_of(furnished_room(0.99)), ProblemKind::full_reflectance));

@@ -140,6 +140,25 @@ TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   expect_all(inward, 0, 6, front_only);
 }
 
+// A lamp 20 cm above the ceiling lights no room: it is told where it is. One beside a cupboard in the room is not.
+TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
+  Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
+  const double ceiling = bounds(scene).max().z();
+  const auto told = [&](const Point& position) {
+    scene.luminaires = {
+        {.name = "bulb", .place = "a.toml:7", .position = position, .light = PointLight{Spectrum::Ones(1)}}};
+    const std::vector<std::string> notes = kept_sides(scene, Sides::automatic).notes;
+    const auto found = std::find_if(notes.begin(), notes.end(),
+                                    [](const std::string& note) { return note.rfind("no luminaire stands", 0) == 0; });
+    return found == notes.end() ? std::string() : *found;
+  };
+  EXPECT_EQ(told({0, 0, ceiling + 0.2}),
+            "no luminaire stands in the room: 'bulb' (a.toml:7) is the nearest, 0.2 m outside");
+  EXPECT_EQ(told({0, 0, ceiling - 0.1}), "");
+  scene = with_cube(std::move(scene), {0, 0, 0}, 0.2, Normals::outward);
+  EXPECT_EQ(told({0, 0, ceiling - 0.1}), "");
+}
+
 // A room with a lamp under the sky: nobody is left to wonder why daylight changes nothing in it.
 TEST(KeptSides, SaysWhereNoDaylightGetsIn) {
   const auto says_so = [](const Scene& scene) {
