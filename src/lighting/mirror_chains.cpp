@@ -154,14 +154,21 @@ class ChainQueue {
     return chain;
   }
 
-  // The same with one mirror more.
-  void add_longer(const MirrorChain& chain) {
+  // The same with one mirror more. Returns the highest reflectance of one with which it is too long to be followed.
+  double add_longer(const MirrorChain& chain) {
     const MirrorSide& last = chain.mirrors.back();
+    double too_long = 0;
     for (const MirrorSide& side : sides_) {
-      if (chain.reflectance * side.reflectance < least_reflectance) continue;
       if (!has_corner_before(scene_, side.polygon, last, tolerance_)) continue;
-      if (has_corner_before(scene_, last.polygon, side, tolerance_)) add(lengthened(chain, side));
+      if (!has_corner_before(scene_, last.polygon, side, tolerance_)) continue;
+      const bool is_followed =
+          chain.mirrors.size() < most_mirrors && chain.reflectance * side.reflectance >= least_reflectance;
+      if (is_followed)
+        add(lengthened(chain, side));
+      else
+        too_long = std::max(too_long, side.reflectance);
     }
+    return too_long;
   }
 
  private:
@@ -179,13 +186,25 @@ class ChainQueue {
 
 }  // namespace
 
+namespace {
+
+// The light by all longer chains, none of which is followed, over that by one of n mirrors: each mirror more reflects
+// rho, so that it is rho / (1 - rho) at most; and images come to lie farther off, as k = n + 1, n + 2 ... do between
+// two mirrors, so that it is less than the sum of n^2 / k^2, which is less than n.
+double light_beyond(const MirrorChain& chain, double reflectance) {
+  const auto mirrors = static_cast<double>(chain.mirrors.size());
+  return reflectance < 1 ? std::min(mirrors, reflectance / (1 - reflectance)) : mirrors;
+}
+
+}  // namespace
+
 MirrorChains mirror_chains(const Scene& scene) {
   const std::vector<MirrorSide> sides = mirror_sides(scene);
   ChainQueue queued(scene, sides);
   MirrorChains found;
   while (!queued.empty() && found.chains.size() < most_chains) {
     MirrorChain chain = queued.next();
-    if (chain.mirrors.size() < most_mirrors) queued.add_longer(chain);
+    chain.beyond = light_beyond(chain, queued.add_longer(chain));
     found.chains.push_back(std::move(chain));
   }
   found.is_cut = !queued.empty();

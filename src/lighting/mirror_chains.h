@@ -25,6 +25,8 @@ struct MirrorChain {
   double reflectance = 1;  ///< the product of theirs
   double light_share = 1;  ///< the least of theirs
   Eigen::Affine3d image = Eigen::Affine3d::Identity();
+  double beyond = 0;  ///< chains that go on from it and are too long to be followed, as between two mirrors that face
+                      ///< each other, bring at most so many times its own light
 };
 
 /// The chains that light can take over planar mirrors and clear faces, those first by which most light may go,

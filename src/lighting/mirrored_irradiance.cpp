@@ -73,6 +73,12 @@ struct MirrorEffort {
   std::size_t points = 0;
 };
 
+// Irradiance of each replicate.
+struct OverChains {
+  Field light;
+  Field beyond;  // what chains that are not followed bring at most
+};
+
 struct MirrorSampler {
   const Lighting& lighting;
   std::vector<MirroredSource> sources;
@@ -80,12 +86,12 @@ struct MirrorSampler {
 
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
-  void add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places, Field& sums) const;
+  OverChains over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const;
   Spectrum sky_in(std::span<const MirrorRay> rays) const;
   Spectrum of_sky(std::span<const SampledPlace> places, bool is_point) const;
   std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort) const;
-  Field replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
-                      std::span<const WantedChain> among) const;
+  OverChains replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
+                           std::span<const WantedChain> among) const;
 };
 
 std::vector<WantedChain> MirrorSampler::all_chains() const {
@@ -116,9 +122,10 @@ std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<co
   return wanted;
 }
 
-// Added to the sums over the places of each replicate. The shadow rays of all of them are traced together.
-void MirrorSampler::add_over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places,
-                                    Field& sums) const {
+// The sums over the places of each replicate. The shadow rays of all of them are traced together.
+OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const {
+  const Field none = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
+  OverChains sums{none, none};
   for (const auto& [chain, wanted] : chains) {
     std::vector<Segment> segments;
     std::vector<Spectrum> unoccluded;
@@ -137,9 +144,13 @@ void MirrorSampler::add_over_chains(std::span<const WantedChain> chains, std::sp
     }
     if (segments.empty()) continue;
     const Field share = lighting.mirrors->paths.transmittance(*chain, lighting.paths, segments);
-    for (std::size_t k = 0; k < segments.size(); ++k)
-      sums.row(replicate[k]) += unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      const Spectrum arriving = unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
+      sums.light.row(replicate[k]) += arriving;
+      sums.beyond.row(replicate[k]) += chain->beyond * arriving;
+    }
   }
+  return sums;
 }
 
 // Light of the sky in rays that leave mirrors.
@@ -195,31 +206,34 @@ std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std
 }
 
 // One row each, of those with a place over which no other polygon lies.
-Field MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
-                                   std::span<const WantedChain> among) const {
+OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
+                                        std::span<const WantedChain> among) const {
   const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
-  if (chains.empty() && !lighting.sky) return Field::Zero(1, lighting.bands);
+  if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), Field::Zero(1, lighting.bands)};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
-  Field found = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
-  add_over_chains(chains, places, found);
+  OverChains found = over_chains(chains, places);
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
-    found.row(first->replicate) += of_sky({first, last}, receiver.is_point());
-    found.row(first->replicate) /= static_cast<double>(last - first);
+    found.light.row(first->replicate) += of_sky({first, last}, receiver.is_point());
+    for (Field* const field : {&found.light, &found.beyond})
+      field->row(first->replicate) /= static_cast<double>(last - first);
     first = last;
   }
   return found;
 }
 
-// The mean of replicates and its standard error, as large as itself where there is one alone; 0 where there is none.
-MirroredEstimate estimate_from(const Field& replicates) {
-  const Eigen::Index count = replicates.rows();
-  if (count == 0) return {Spectrum::Zero(replicates.cols()), Spectrum::Zero(replicates.cols())};
-  const Spectrum mean = replicates.colwise().mean();
+// The mean of replicates and its standard error, as large as itself where there is one alone, with what is not
+// followed; 0 where there is none.
+MirroredEstimate estimate_from(const OverChains& replicates) {
+  const Field& light = replicates.light;
+  const Eigen::Index count = light.rows();
+  if (count == 0) return {Spectrum::Zero(light.cols()), Spectrum::Zero(light.cols())};
+  const Spectrum mean = light.colwise().mean();
   if (count == 1) return {mean, mean};
-  const Spectrum squares = replicates.square().colwise().mean();
-  return {mean, ((squares - mean.square()).max(0.0) / static_cast<double>(count - 1)).sqrt()};
+  const Spectrum variance = (light.square().colwise().mean() - mean.square()).max(0.0) / static_cast<double>(count - 1);
+  const Spectrum beyond = replicates.beyond.colwise().mean();
+  return {mean, (variance + beyond.square()).sqrt()};
 }
 
 // Receivers: what share of the replicates each takes, and how often the points of these are doubled.
@@ -253,7 +267,7 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
       const auto share = static_cast<std::size_t>(std::lround(all.share_at(k) * replicates));
       const MirrorEffort effort{std::max<std::size_t>(2, share), std::size_t{of_each} << all.doublings_at(k)};
-      const Field replicates_of =
+      const OverChains replicates_of =
           sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), effort, near);
       const MirroredEstimate found = estimate_from(replicates_of);
       direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;

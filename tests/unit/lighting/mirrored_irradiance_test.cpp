@@ -48,6 +48,42 @@ TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
   EXPECT_GT(found, 15);
 }
 
+// Between mirrors that face each other images of a lamp go on without end: sixteen mirrors in a row are followed, and
+// the error has what lies beyond. By images k = 1, 2 ... of a small ball, on either side, at distance z from mirror 0.
+TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
+  constexpr double gap = 2, height = 1, radius = 0.05;
+  for (const double reflectance : {0.8, 0.97, 1.0}) {
+    Material mirror = grey(0);
+    mirror.specular_reflectance = Spectrum::Constant(1, reflectance);
+    Scene scene = empty_scene({grey(0.5), mirror});
+    constexpr double far = 500;
+    scene = with_quad(std::move(scene), {Point(0.9, -1, 0), Point(1.1, -1, 0), Point(1.1, 1, 0), Point(0.9, 1, 0)});
+    scene = with_quad(std::move(scene),
+                      {Point(0, -far, -far), Point(0, far, -far), Point(0, far, far), Point(0, -far, far)}, 1);
+    scene = with_quad(std::move(scene),
+                      {Point(gap, -far, -far), Point(gap, -far, far), Point(gap, far, far), Point(gap, far, -far)}, 1);
+    Luminaire lamp;
+    lamp.position = Point(1, 0, height);
+    lamp.light = SphericalLamp{radius, Spectrum::Constant(1, 7)};
+    scene.luminaires = {lamp};
+    const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
+    const Lighting lighting = lighting_of(scene, tracing);
+    ASSERT_TRUE(lighting.mirrors);
+    const std::vector<SurfacePoint> points{{Point(1, 0, 0), Vector::UnitZ(), 0}};
+    const DirectIrradiance found = mirrored_irradiance(lighting, {}, points, {});
+    // E sin^2 of the half angle times the cosine of each image, which lies k gaps to a side.
+    double exact = 0;
+    for (double k = 1; k < 100000; ++k) {
+      const double squared = height * height + k * k * gap * gap;
+      exact += 2 * std::pow(reflectance, k) * 7 * radius * radius / squared * height / std::sqrt(squared);
+    }
+    const double missing = exact - found.irradiance(0, 0);
+    EXPECT_GE(missing, -3 * found.standard_error(0, 0));
+    EXPECT_LE(missing, found.standard_error(0, 0)) << reflectance;
+    EXPECT_LE(found.standard_error(0, 0), 0.01 * exact) << reflectance;
+  }
+}
+
 // Chains of mirrors are looked for by groups of points: a point alone gets the same bits as among others, of which some
 // lie where only the other mirror throws light.
 TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
