@@ -52,10 +52,10 @@ std::vector<Difference> worst_first(const Verification& verification) {
 }
 
 // Beyond so many standard errors more of them tell nothing more.
-std::string standard_errors(double z) {
+std::string standard_errors(double z, int digits) {
   constexpr double most = 100;
   if (std::abs(z) > most) return z > 0 ? "> 100" : "< -100";
-  return rounded(z, 2);
+  return rounded(z, digits);
 }
 
 std::string table(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
@@ -73,7 +73,7 @@ std::string table(const Scene& scene, const PatchMesh& mesh, const Verification&
          name_of(mesh.side[patch]), position(mesh.centroid[patch]), bands[static_cast<std::size_t>(band)].name,
          rounded(verification.irradiance(i, band), 5), rounded(verification.bar(i, band), 2),
          rounded(verification.paths.irradiance(i, band), 5), rounded(verification.paths.standard_error(i, band), 2),
-         standard_errors(z(i, band)), standard_errors(with_bar(i, band))});
+         standard_errors(z(i, band), 2), standard_errors(with_bar(i, band), 2)});
   }
   return text_table(rows);
 }
@@ -120,15 +120,6 @@ std::string figure(const std::string& what, const char* tells, bool explained) {
   return what.empty() ? "" : "  " + what + (explained ? std::string(": ") + tells : "") + '\n';
 }
 
-// Of how many patches the paths tell next to nothing, so that nobody takes these for checked.
-std::string hardly_met(const VerifiedPart& part) {
-  if (part.hardly_met == 0) return {};
-  return "  paths tell too little of " + std::to_string(part.hardly_met) + " of these " +
-         std::to_string(part.rows.size()) +
-         " patches: so few of them meet what lights these that their light could be missing, or be twice as much, "
-         "within two standard errors; more --paths tell\n";
-}
-
 // What the differences of a part come to. From what is stated to what is found.
 std::string figures_of(const VerifiedPart& part, bool explained) {
   Eigen::Index band = 0;
@@ -151,15 +142,14 @@ std::string figures_of(const VerifiedPart& part, bool explained) {
          figure(
              squares.str(),
              "differences over bars and noise, squared and summed, about one a patch or less where the answer is right",
-             explained) +
-         hardly_met(part);
+             explained);
 }
 
 std::string figures(const Verification& verification) {
   std::string text;
   for (const VerifiedPart& part : verification.parts) text += figures_of(part, text.empty());
   return text + "z by the noise of the paths alone: root mean square " +
-         rounded(std::min(100.0, root_mean_square(deviations_by_noise(verification))), 3) +
+         standard_errors(root_mean_square(deviations_by_noise(verification)), 3) +
          " (1 is noise; above it the paths see errors, which the bars have to cover)\n";
 }
 
@@ -198,10 +188,7 @@ std::string verdict(const Verification& verification, const std::string& granted
        << ", p = " << verification.probability << (verification.probability < least_probability ? " < " : " >= ")
        << least_probability;
   if (differs && verification.probability >= least_probability) text << ", but a side that was left out is lit";
-  const auto& parts = verification.parts;
-  if (verification.verdict == Verdict::inconclusive && std::any_of(parts.begin(), parts.end(), tells_too_little)) {
-    text << ", but paths tell too little of more than half of the patches. Give more --paths";
-  } else if (verification.verdict == Verdict::inconclusive) {
+  if (verification.verdict == Verdict::inconclusive) {
     text << ", but bars above " << percent(widest_bar, 2)
          << " % of the light grant so much that this says little. Give more --patches, or more --paths where these are "
             "what scatters";

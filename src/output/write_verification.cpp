@@ -23,7 +23,6 @@ Json part_of(const VerifiedPart& part) {
   return {{"part", part.name},
           {"checked", part.rows.size()},
           {"dark", list(part.dark)},
-          {"hardly_met", part.hardly_met},
           {"chi_square", list(part.chi_square)},
           {"mean_difference", list(part.mean_difference)},
           {"error", list(part.error)},
@@ -92,7 +91,6 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["patches"] = simulation.mesh.size();
   json["paths_per_patch"] = verification.paths.paths;
   json["first_paths_per_patch"] = verification.first_paths;
-  json["of_few_W_m2"] = list(verification.of_few);
   json["rays"] = verification.paths.rays;
   json["checked"] = checked_part(scene, simulation.mesh, verification);
   json["left_out_sides"] = left_out_part(scene, verification);

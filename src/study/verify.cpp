@@ -6,7 +6,6 @@
 #include "base/vectors.h"
 #include "plan/planned_scene.h"
 #include "solve/scattering.h"
-#include "study/few_paths.h"
 #include "study/left_out.h"
 
 #include <algorithm>
@@ -77,35 +76,20 @@ Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return 
 // Two sums of the same light may differ by so much of it for rounding alone.
 constexpr double rounding = 1e-10;
 
-// The variance of Student's t beside that of the noise which batches tell, and what few paths more or less bring. Paths
-// that met no light may have missed the brightest that was traced.
-Field variance_of(const Verification& verification) {
+// The variance of Student's t beside that of the noise which batches tell. Of n paths that met no light the bound of 95
+// % on the share that would have is 3 / n (Hanley and Lippman-Hand 1983): of the brightest light that was traced.
+Field variance_of(const PathEstimate& paths) {
   constexpr double degrees = path_batches - 1;
-  const PathEstimate& paths = verification.paths;
   Field noise = paths.standard_error.square() * (degrees / (degrees - 2)) + (rounding * paths.irradiance).square();
   if (noise.rows() == 0) return noise;
-  noise.rowwise() += verification.of_few.square();
-  const Spectrum of_none = (bound_of_none * highest(paths.irradiance).transpose() / paths.paths).square();
-  return (paths.irradiance == 0).select(noise.max(of_none.replicate(noise.rows(), 1)), noise);
+  const Spectrum of_none = (3 * highest(paths.irradiance).transpose() / paths.paths).square();
+  return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
 }
 
 Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
   Field chosen(static_cast<Eigen::Index>(rows.size()), field.cols());
   for (std::size_t k = 0; k < rows.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = field.row(rows[k]);
   return chosen;
-}
-
-// What the scatter of the paths and few of them more or less come to, without a bar or Student's t: squares.
-Field noise_of(const Verification& verification) {
-  Field noise = verification.paths.standard_error.square();
-  noise.rowwise() += verification.of_few.square();
-  return noise;
-}
-
-// Of how many patches paths tell too little: two standard errors are all of their light.
-std::size_t count_hardly_met(const Field& solved, const Field& traced, const Field& variance) {
-  const auto untold = solved.max(traced) > 0 && 4 * variance > solved.max(traced).square();
-  return static_cast<std::size_t>(untold.rowwise().any().count());
 }
 
 VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
@@ -118,9 +102,8 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
   const Field solved = rows_at(result.irradiance, part.rows);
   const Field traced = rows_at(result.paths.irradiance, part.rows);
   const Field bar = rows_at(result.bar, part.rows);
-  const Field variance = rows_at(variance_of(result), part.rows);
+  const Field variance = rows_at(variance_of(result.paths), part.rows);
   part.dark = (solved == 0 && traced == 0).cast<double>().colwise().sum().transpose();
-  part.hardly_met = count_hardly_met(solved, traced, variance);
   part.chi_square = sum_over_patches(rows_at(deviations(result), part.rows).square());
 
   // The common offset. Bars of different patches hang together, one cannot say how: as if they were the same.
@@ -129,7 +112,7 @@ VerifiedPart part_of(const Space& space, const Verification& result, const Simul
   part.offset = ratio(difference, (sum_over_patches(variance) + sum_over_patches(bar).square()).sqrt());
 
   // How far patches are off: noise of the paths adds its squares to those of the differences.
-  const Eigen::ArrayXd noise = sum_over_patches(rows_at(noise_of(result), part.rows));
+  const Eigen::ArrayXd noise = sum_over_patches(rows_at(result.paths.standard_error, part.rows).square());
   const Eigen::ArrayXd light = (sum_over_patches(traced.square()) - noise).max(0.0);
   part.error = ratio((sum_over_patches((solved - traced).square()) - noise).max(0.0), light).sqrt();
   part.noise = ratio(noise, light).sqrt();
@@ -155,7 +138,7 @@ Verification judged(Verification result) {
       least = std::min({least, upper_tail(part.chi_square[band], degrees), both_tails(part.offset[band])});
       tests += 2;
     }
-    wide = wide || !(part.width <= widest_bar) || tells_too_little(part);
+    wide = wide || !(part.width <= widest_bar);
   }
   result.probability = std::min(1.0, tests * least);
   const bool lit = std::any_of(result.left_out.begin(), result.left_out.end(), std::mem_fn(&LeftOutSide::is_lit));
@@ -178,7 +161,6 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
       seen, simulation.plan.sides, receivers_of(simulation.mesh, patches),
       {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections}, observer);
   const Spectrum mean = result.paths.irradiance.colwise().mean();
-  result.of_few = few_paths_error(seen, simulation, result.paths.paths);
   result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, follows_reflections, observer);
   for (const Space& space : spaces) result.parts.push_back(part_of(space, result, simulation, bar));
   return judged(std::move(result));
@@ -194,7 +176,7 @@ bool is_by_noise(const Verification& verification) {
   if (!(verification.probability < least_probability)) return false;
   const Field squares = deviations(verification).square();
   constexpr double share = 0.2;
-  const Field of_noise = (noise_of(verification).sqrt() > share * verification.bar).select(squares, 0);
+  const Field of_noise = (verification.paths.standard_error > share * verification.bar).select(squares, 0);
   return of_noise.sum() > squares.sum() / 2;
 }
 
@@ -228,10 +210,8 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
   return bar + irradiance_errors(simulation.problem.scattering, solution.error);
 }
 
-bool tells_too_little(const VerifiedPart& part) { return 2 * part.hardly_met > part.rows.size(); }
-
 Field deviations(const Verification& verification) {
-  const Field noise = variance_of(verification);
+  const Field noise = variance_of(verification.paths);
   const Field difference = verification.irradiance - verification.paths.irradiance;
   const Field none = Field::Zero(difference.rows(), difference.cols());
   return (difference == 0).select(none, difference / (noise + verification.bar.square()).sqrt());
@@ -240,7 +220,7 @@ Field deviations(const Verification& verification) {
 Field deviations_by_noise(const Verification& verification) {
   const Field& noise = verification.paths.standard_error;
   const Field unknown = Field::Constant(noise.rows(), noise.cols(), std::numeric_limits<double>::quiet_NaN());
-  const Field rounded = (noise_of(verification) + (rounding * verification.paths.irradiance).square()).sqrt();
+  const Field rounded = (noise.square() + (rounding * verification.paths.irradiance).square()).sqrt();
   return (noise > 0).select((verification.irradiance - verification.paths.irradiance) / rounded, unknown);
 }
 

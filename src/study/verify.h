@@ -49,11 +49,9 @@ struct VerifiedPart {
   std::string name;                ///< "inside", "outside" or "all"
   std::vector<Eigen::Index> rows;  ///< of the verification
   Eigen::ArrayXd dark;             ///< how many of them got no light, solved and traced: these test nothing
-  std::size_t hardly_met = 0;  ///< patches whose paths tell too little: their light could be missing, or be twice as
-                               ///< much, within two standard errors of the paths, in a band
-  Eigen::ArrayXd chi_square;   ///< sum of deviations() squared, of the others
+  Eigen::ArrayXd chi_square;       ///< sum of deviations() squared, of the others
   Eigen::ArrayXd mean_difference;  ///< sum of what is solved over the sum of what is traced, less 1
-  Eigen::ArrayXd offset;           ///< the difference of both sums over its standard error: that of the paths in
+  Eigen::ArrayXd offset;           ///< the difference of both sums over its standard error: sigma_path^2 31/29 in
                                    ///< quadrature, and the bars as if all were of one sign
   Eigen::ArrayXd error;  ///< typical error of a patch: the root of the mean square difference over that of the traced
                          ///< irradiance, the squares of sigma_path taken out of both
@@ -69,7 +67,6 @@ struct Verification {
   Field irradiance;                 ///< of the solution, W/m^2
   Field bar;                        ///< the standard error it is given, W/m^2
   PathEstimate paths;               ///< by path tracing
-  Spectrum of_few;                  ///< W/m^2: what three paths more or less bring, few_paths_error()
   std::vector<LeftOutSide> left_out;
   std::vector<VerifiedPart> parts;
   std::uint32_t first_paths = 0;  ///< per patch of a first comparison that disagreed by the noise of its paths, so that
@@ -77,8 +74,7 @@ struct Verification {
   double probability = 0;  ///< of the least likely chi-square or offset of a part and band, or a larger one, in a right
                            ///< solution, times their number
   Verdict verdict = Verdict::inconclusive;  ///< disagrees below least_probability, or where a side that was left out
-                                            ///< is lit; else inconclusive where a part is wider than widest_bar, or
-                                            ///< paths tell too little of more than half of its patches
+                                            ///< is lit; else inconclusive where a part is wider than widest_bar
 };
 
 /// A bar on the irradiance of every patch, W/m^2: `relative` of it or of the mean by area, whichever is larger, as what
@@ -96,16 +92,13 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 
-/// True where paths tell too little of more than half of its patches.
-bool tells_too_little(const VerifiedPart& part);
-
-/// (solved - traced) / sqrt(sigma_path^2 31/29 + of_few^2 + bar^2): 31/29 is the variance of Student's t with
-/// path_batches - 1 degrees of freedom. Where no path has met light sigma_path is 3 / paths of the brightest irradiance
-/// that was traced, without the 31/29. 0 where nothing differs.
+/// (solved - traced) / sqrt(sigma_path^2 31/29 + bar^2): 31/29 is the variance of Student's t with path_batches - 1
+/// degrees of freedom. Where no path has met light sigma_path is 3 / paths of the brightest irradiance that was traced,
+/// without the 31/29. 0 where nothing differs.
 Field deviations(const Verification& verification);
 
-/// z: the same by the noise of the paths alone, (solved - traced) / sqrt(sigma_path^2 + of_few^2). Not a number where
-/// no two batches differ, as then the noise is not known: no path has met light.
+/// z: the same by the noise of the paths alone, (solved - traced) / sigma_path. Not a number where no two batches
+/// differ, as then the noise is not known: no path has met light.
 Field deviations_by_noise(const Verification& verification);
 
 }  // namespace patchlight

@@ -2,7 +2,6 @@
 import json
 import os
 import pathlib
-import re
 import unittest
 
 from support import ROOM, ToolTest
@@ -27,9 +26,8 @@ class VerifyTest(ToolTest):
             for band in range(3):
                 ours, traced = patch["irradiance_W_m2"][band], patch["traced_W_m2"][band]
                 error, bar = patch["standard_error_W_m2"][band], patch["bar_W_m2"][band]
-                few = facts["of_few_W_m2"][band]
-                self.assertAlmostEqual(patch["z"][band], (ours - traced) / (error ** 2 + few ** 2) ** .5, 6)
-                chi_square[band] += (ours - traced) ** 2 / (error ** 2 * 31 / 29 + few ** 2 + bar ** 2)
+                self.assertAlmostEqual(patch["z"][band], (ours - traced) / error, 6)
+                chi_square[band] += (ours - traced) ** 2 / (error ** 2 * 31 / 29 + bar ** 2)
         part, = facts["parts"]
         self.assertEqual((part["part"], part["checked"]), ("all", 64))
         for band in range(3):
@@ -109,30 +107,6 @@ class VerifyTest(ToolTest):
         facts = json.loads((self.folder / "out.json").read_text())
         self.assertEqual((facts["verdict"], facts["agrees"]), ("inconclusive", False))
         self.assertGreater(facts["parts"][0]["width"], facts["widest_bar"])
-
-    def test_a_pool_that_paths_hardly_meet_is_said_to_be_hardly_met(self):
-        """A spot with a beam of two degrees: all other light comes from its pool, which most paths miss."""
-        self.write("spot.toml", f'''
-            [[model]]
-            file = {json.dumps(str(CORNELL_BOX.with_name("furnace_cube.obj")))}
-            scale = 3
-            [[material]]
-            name = "wall"
-            radiance = 0
-            [[luminaire]]
-            kind = "spot"
-            position = [1.2, 1.3, 2.8]
-            lumens = 800
-            beam_angle = 2
-            field_angle = 3.5''')
-        done = self.run_tool("verify", "spot.toml", "--patches", 1000, "--paths", 8192, "--json", "out.json")
-        self.assertEqual(done.returncode, DIFFERS, done.stdout)
-        self.assertRegex(done.stdout, r"^INCONCLUSIVE: ")
-        untold = int(re.search(r"  paths tell too little of (\d+) of these 64 patches: ", done.stdout)[1])
-        facts = json.loads((self.folder / "out.json").read_text())
-        self.assertEqual(facts["parts"][0]["hardly_met"], untold)
-        self.assertGreater(untold, 16)
-        self.assertNotRegex(done.stdout, r"\de[+]\d\d +[-\d]")
 
     def test_too_few_patches_disagree(self):
         """Without a bar the error of a coarse mesh is many times the noise."""

@@ -107,35 +107,15 @@ TEST(Verify, FewPathsThatMissAGapAreNotBelieved) {
   const Field bar = simulation.error_bars->total();
   Scene brighter = scene;
   brighter.materials[0].reflectance *= 1.1;
+  int looked_at_again = 0;
   const auto with_seed = [](std::uint64_t seed) { return VerifyOptions{.paths = 32, .checked = 200, .seed = seed}; };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Verification right = verify(scene, simulation, bar, with_seed(seed));
     EXPECT_NE(right.verdict, Verdict::disagrees) << seed;
-  }
-  EXPECT_EQ(verify(brighter, simulation, bar, with_seed(1)).verdict, Verdict::disagrees);
-}
-
-// Beside these rooms an even one, from which most of the light comes that lamps send to patches: it is dim.
-Scene rooms_with_a_gap_beside_a_dim_one() {
-  Scene scene = with_box(rooms_with_a_gap(), Point(10, 0, 0), Point(15, 5, 5), true);
-  scene.materials.push_back(grey(0, 0.5));
-  return with_quad(std::move(scene), {Point(11, 1, 4), Point(11, 4, 4), Point(14, 4, 4), Point(14, 1, 4)}, 2);
-}
-
-// What few paths bring by the mean of all lamps' light tells too little of the gap.
-TEST(Verify, RightAnswersThatFewPathsRefuseAreLookedAtOnceMore) {
-  const Scene scene = rooms_with_a_gap_beside_a_dim_one();
-  Request request = with_error_bars(400);
-  request.mesh.sides = Sides::automatic;
-  const Simulation simulation = simulate(scene, request);
-  const Field bar = simulation.error_bars->total();
-  int looked_at_again = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Verification right = verify(scene, simulation, bar, {.paths = 32, .checked = 150, .seed = seed});
-    EXPECT_NE(right.verdict, Verdict::disagrees) << seed;
     looked_at_again += right.first_paths == 32;
   }
   EXPECT_GT(looked_at_again, 0);
+  EXPECT_EQ(verify(brighter, simulation, bar, with_seed(1)).verdict, Verdict::disagrees);
 }
 
 TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
@@ -168,33 +148,6 @@ TEST(Verify, TellsTheTypicalErrorOfAPatch) {
   EXPECT_LT(((part.error - 0.25).abs() - by_chance).maxCoeff(), 0.03);
   EXPECT_GT(part.noise.minCoeff(), 0.001);
   EXPECT_LT(part.noise.maxCoeff(), 0.05);
-}
-
-// A closed grey room of 3 m with a spot whose beam is 2 degrees wide: next to all light comes by reflection from a pool
-// of .1 m, of which few of 8,192 paths meet any, or none.
-Scene room_with_a_pool() {
-  Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
-  Luminaire spot;
-  spot.position = Point(1.2, 1.3, 2.8);
-  spot.light = SpotLight{Spectrum::Constant(1, 1000), 1, 1.75};
-  scene.luminaires.push_back(spot);
-  return scene;
-}
-
-// Paths that are too few to meet the pool refuse no right answer, and grant none: it is said of how many patches they
-// tell too little. One that is thirty times too bright is still refused.
-TEST(Verify, PathsThatHardlyMeetAPoolRefuseNoRightAnswer) {
-  const Scene scene = room_with_a_pool();
-  Simulation simulation = simulate(scene, with_error_bars(1000));
-  const Field bar = simulation.error_bars->total();
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Verification right = verify(scene, simulation, bar, {.paths = 8192, .seed = seed});
-    EXPECT_EQ(right.verdict, Verdict::inconclusive) << seed << ": p = " << right.probability;
-    EXPECT_GT(right.parts.front().hardly_met, 16U) << seed;
-    EXPECT_LT(deviations_by_noise(right).abs().maxCoeff(), 100) << seed;
-  }
-  simulation.solution.irradiance *= 30;
-  EXPECT_EQ(verify(scene, simulation, bar, {.paths = 8192}).verdict, Verdict::disagrees);
 }
 
 // Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of four times
