@@ -50,9 +50,8 @@ std::string sentence(const SensorGroup& group, std::size_t k, Standing standing)
   text
       << place_of(group, k) << " at " << point.x() << ", " << point.y() << ", " << point.z() << " m "
       << (standing == Standing::inside_wall
-              ? "lies inside a wall, or in a closed room without light, where nothing is to be read, and is left out "
-                "of "
-                "minimum, mean and maximum. Move it into the room, or a lamp"
+              ? "lies inside a wall, or in a closed room without a lamp, where nothing is to be read, and is left out "
+                "of minimum, mean and maximum. Move it into the room, or give the room a lamp"
               : "lies in a surface that it does not face along: rounding decides on which side of it. Move it away, by "
                 "a millimetre or more");
   return text.str();

@@ -205,21 +205,19 @@ std::string light_tables(const Scene& scene, const std::vector<NamedFloor>& plac
   return luminaire_table(scene, *hull, places) + sky_tables(scene, false);
 }
 
-// Half a metre, or over a floor on which that would be a great many sensors what a standard calls for. Metres.
-double spacing_over(const Floor& floor) {
-  constexpr double usual = 0.5;
-  constexpr double most_cells = 1e4;
-  if (floor.outlines.empty()) return usual;
+double cells_of_grid(const Floor& floor, double spacing) {
+  if (floor.outlines.empty()) return 0;
   const auto [corner, x, y] = rectangle_over(floor, 0);
-  if (cells_along(x.norm(), usual) * cells_along(y.norm(), usual) <= most_cells) return usual;
-  return std::ceil(spacing_by_standard(std::max(x.norm(), y.norm())));
+  return cells_along(x.norm(), spacing) * cells_along(y.norm(), spacing);
 }
 
-// Of the floors that get a grid.
+// Half a metre; where the grids would have more than 20,000 cells so, as many metres as leave about that many.
 double spacing_for(const Scene& scene, const std::vector<NamedFloor>& places) {
-  double spacing = scene.rooms.empty() && !places.empty() ? spacing_over(places[0].floor) : 0.5;
-  for (const NamedRoom& room : scene.rooms) spacing = std::max(spacing, spacing_over(floor_of(room.faces, scene.up)));
-  return spacing;
+  constexpr double usual = 0.5;
+  constexpr double most_cells = 2e4;
+  double cells = scene.rooms.empty() && !places.empty() ? cells_of_grid(places[0].floor, usual) : 0;
+  for (const NamedRoom& room : scene.rooms) cells += cells_of_grid(floor_of(room.faces, scene.up), usual);
+  return cells <= most_cells ? usual : std::ceil(10 * usual * std::sqrt(cells / most_cells)) / 10;
 }
 
 std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {

@@ -7,6 +7,7 @@
 #include "scene/triangulate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,11 +23,15 @@ std::vector<Box> boxes_of_polygons(const Scene& scene) {
   return boxes;
 }
 
-bool cuts(const Scene& scene, PolygonIndex polygon, const Point& middle, double radius) {
+// How far from a point a polygon lies that comes nearer than a radius and lets no light through.
+std::optional<double> near_distance(const Scene& scene, PolygonIndex polygon, const Point& middle, double radius) {
   const std::vector<Point> corners = corner_points(scene, polygon);
+  if (is_opening(scene, polygon) || std::abs(front_normal(scene, polygon).dot(middle - corners[0])) >= radius)
+    return {};
+  double least = radius;
   for (const auto& [a, b, c] : triangulate(corners))
-    if (distance_to({corners[a], corners[b], corners[c]}, middle) < radius) return true;
-  return false;
+    least = std::min(least, distance_to({corners[a], corners[b], corners[c]}, middle));
+  return least < radius ? std::optional(least) : std::nullopt;
 }
 
 // Farther off than masts are high, and than the model is long.
@@ -59,19 +64,24 @@ std::vector<Problem> problems_of_cut_ones(const Scene& scene) {
   std::size_t count = 0;
   std::string first;
   std::optional<BoxRow> row;
+  const double rounding = 1e-6 * extent_of(scene);  // a sphere that touches a face is not cut
   for (const Luminaire& luminaire : scene.luminaires) {
     const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
     if (sphere == nullptr) continue;
     if (!row) row.emplace(boxes_of_polygons(scene));
-    const auto is_out = [&](const Box& box) { return box.exteriorDistance(luminaire.position) >= sphere->radius; };
+    const double radius = sphere->radius - rounding;
+    const auto is_out = [&](const Box& box) { return box.exteriorDistance(luminaire.position) >= radius; };
     const auto is_cut = [&](std::size_t polygon) {
-      return cuts(scene, static_cast<PolygonIndex>(polygon), luminaire.position, sphere->radius);
+      return near_distance(scene, static_cast<PolygonIndex>(polygon), luminaire.position, radius).has_value();
     };
     const auto cut = row->first(0, is_out, is_cut);
     if (!cut || ++count > 1) continue;
     const Polygon& polygon = scene.polygons[*cut];
-    first = "'" + luminaire.name + "' (" + luminaire.place + "), " + rounded(2 * sphere->radius) +
-            " m wide, by face '" + group_name(scene, polygon.group) + "' (" + place_of(scene, polygon) + ")";
+    const double distance =
+        near_distance(scene, static_cast<PolygonIndex>(*cut), luminaire.position, radius).value_or(0);
+    first = "'" + luminaire.name + "' (" + luminaire.place + "), of radius " + rounded(sphere->radius) +
+            " m, whose middle is " + rounded(distance) + " m from face '" + group_name(scene, polygon.group) + "' (" +
+            place_of(scene, polygon) + ")";
   }
   if (count == 0) return {};
   return {
@@ -79,8 +89,7 @@ std::vector<Problem> problems_of_cut_ones(const Scene& scene) {
        count,
        (count == 1 ? "1 sphere luminaire is" : std::to_string(count) + " sphere luminaires are") +
            " cut by faces (the first: " + first +
-           "): light of the part behind the face falls on its other side. Move the luminaire by its radius or more, "
-           "or make it smaller",
+           "): light of the part behind the face falls on its other side. Move the luminaire away, or make it smaller",
        {}}};
 }
 

@@ -8,7 +8,7 @@
 namespace patchlight {
 
 /// That luminaires are farther from the model than it is long, and than 30 m; and that faces cut the spheres of some.
-/// O(n log n) for n polygons where there are spheres, else O(n).
+/// O(spheres x log n) for n polygons, and O(n) where there are spheres.
 std::vector<Problem> problems_with_luminaires(const Scene& scene);
 
 }  // namespace patchlight

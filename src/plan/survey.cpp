@@ -7,7 +7,6 @@
 #include "plan/luminaire_problems.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
-#include "scene/sensor_grid.h"
 #include "scene/shells.h"
 
 #include <algorithm>
@@ -166,23 +165,22 @@ std::vector<Problem> problems_with_size(const Scene& scene) {
 }
 
 std::vector<Problem> problems_with_sensors(const Scene& scene) {
-  // More than a map of them shows, and than a floor of a building of 150 m needs by half a metre.
+  // A grid of half a metre over 150 x 150 m has as many.
   constexpr std::size_t many_sensors = 100'000;
   std::size_t count = 0;
   for (const SensorGroup& group : scene.sensors) count += group.sensors.size();
   if (count <= many_sensors) return {};
   const auto fewer = [](const SensorGroup& a, const SensorGroup& b) { return a.sensors.size() < b.sensors.size(); };
-  const SensorGroup& most = *std::max_element(scene.sensors.begin(), scene.sensors.end(), fewer);
+  const SensorGroup& largest = *std::max_element(scene.sensors.begin(), scene.sensors.end(), fewer);
   Box box;
-  for (const Sensor& sensor : most.sensors) box.extend(sensor.point);
-  const double length = box.sizes().maxCoeff();
+  for (const Sensor& sensor : largest.sensors) box.extend(sensor.point);
+  const std::string line = largest.lines.empty() ? std::string() : ":" + std::to_string(largest.lines.front());
   return {{ProblemKind::implausible_size,
            count,
-           std::to_string(count) + " sensors are asked for, which takes long; most of them, " +
-               std::to_string(most.sensors.size()) + ", are of '" + most.name + "' (" + most.file + ":" +
-               std::to_string(most.lines.empty() ? 0 : most.lines.front()) + ") over " + rounded(length) +
-               " m. Is the model in the unit that is stated? Over so much EN 12464-1 wants a spacing of " +
-               rounded(spacing_by_standard(length), 2) + " m or less",
+           std::to_string(count) + " sensors are asked for, which takes long; the largest group, '" + largest.name +
+               "' (" + largest.file + line + "), has " + std::to_string(largest.sensors.size()) + " of them over " +
+               rounded(box.sizes().maxCoeff()) +
+               " m. Is the model in the unit that is stated? If it is, a larger spacing has fewer sensors",
            {}}};
 }
 

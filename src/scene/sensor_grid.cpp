@@ -101,8 +101,6 @@ bool is_inside(const std::vector<Point>& outline, const Point& point, const Vect
 
 }  // namespace
 
-double spacing_by_standard(double length) { return 0.2 * std::pow(5, std::log10(length)); }
-
 double cells_along(double length, double spacing) {
   constexpr double rounding = 1e-6;  // coordinates of some formats have single precision
   return std::max(1.0, std::ceil(length / spacing - rounding));

@@ -12,9 +12,6 @@ namespace patchlight {
 /// The most sensors that a grid may have.
 inline constexpr double most_sensors = 1e6;
 
-/// The largest spacing of a grid over a place that is so long, both in metres: 0.2 * 5^log10(length) (EN 12464-1).
-double spacing_by_standard(double length);
-
 /// The number of cells of at most `spacing` along a length, at least one. A length that rounding makes a little longer
 /// than a whole number of cells counts as that.
 double cells_along(double length, double spacing);

@@ -1,5 +1,6 @@
 #include "patchlight/scene/sides.h"
 
+#include "base/rounded.h"
 #include "scene/extent.h"
 #include "scene/half_spaces.h"
 #include "scene/lamp_places.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -47,14 +47,15 @@ std::vector<std::string> notes_on(const Count& count) {
   return notes;
 }
 
-// What is said of luminaires around dark solids that are most of the scene, as a room without any other: most often
-// their position is wrong by the thickness of a ceiling.
+// What is said of luminaires just outside of a room without any other: most often their position is wrong by the
+// thickness of a ceiling. A room is a closed solid that looks inward and is most of the scene.
 std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) {
+  constexpr double thickest = 1;  // m
   const double half = bounds(scene).volume() / 2;
-  double least = std::numeric_limits<double>::infinity();
+  double least = thickest;
   const Luminaire* nearest = nullptr;
   for (const Solid& solid : dark) {
-    if (solid.box.volume() < half) continue;
+    if (!solid.fronts_face_inside || solid.box.volume() <= half) continue;
     for (const Luminaire& luminaire : scene.luminaires) {
       if (solid.box.exteriorDistance(luminaire.position) >= least) continue;
       const double distance = distance_to(solid, luminaire.position);
@@ -64,11 +65,8 @@ std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) 
     }
   }
   if (nearest == nullptr) return {};
-  std::ostringstream text;
-  text.precision(3);
-  text << "no luminaire stands in the room: '" << nearest->name << "' (" << nearest->place << ") is the nearest, "
-       << least << " m outside";
-  return text.str();
+  return "no luminaire stands in the room: '" + nearest->name + "' (" + nearest->place + ") is the nearest, " +
+         rounded(least) + " m outside";
 }
 
 std::string name_of_solid(const Scene& scene, const Solid& solid) {

@@ -3,6 +3,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace patchlight {
@@ -20,7 +21,7 @@ using BandRow = Eigen::Array<double, 1, bands_at_once>;
 using BandBlock = Eigen::Array<double, Eigen::Dynamic, bands_at_once, Eigen::RowMajor>;
 using SingleBandBlock = Eigen::Array<float, Eigen::Dynamic, bands_at_once, Eigen::RowMajor>;
 
-// Eigen's factors, which it keeps to itself.
+// Eigen's factors, which it keeps to itself (3.4: m_lu has L before the diagonal of each row, and U from there on).
 class Ilut : public Eigen::IncompleteLUT<float> {
  public:
   using Eigen::IncompleteLUT<float>::IncompleteLUT;
@@ -41,7 +42,7 @@ BandBlock arriving_of(const SparseRows& form_factors, const BandBlock& x) {
 }
 
 // U^-1 L^-1 x, in single precision: what is dropped changes more than that. Scaled, so that no band gets lost in it.
-BandBlock nearly_solved(const IncompleteFactors& by, const BandBlock& x) {
+BandBlock by_factors(const IncompleteFactors& by, const BandBlock& x) {
   using Row = Eigen::SparseMatrix<float, Eigen::RowMajor>::InnerIterator;
   const auto size = static_cast<Eigen::Index>(by.order.size());
   const BandRow scale = x.abs().colwise().maxCoeff().max(std::numeric_limits<double>::min());
@@ -74,44 +75,59 @@ BandRow ratio_or_zero(const BandRow& a, const BandRow& b) { return (b != 0).sele
 
 BandBlock times_each(const BandBlock& x, const BandRow& factors) { return x.rowwise() * factors; }
 
+// An iterate of up to four bands, each of which goes on until its own residual is small enough.
+struct BandIterate {
+  BandBlock found;
+  BandBlock residual;
+  BandBlock shadow;
+  BandBlock direction;
+  BandBlock moved;  // the system applied to it, preconditioned
+  BandRow rho = BandRow::Ones();
+  BandRow alpha = BandRow::Ones();
+  BandRow omega = BandRow::Ones();
+};
+
+// The next direction. Where the residual has come to be at right angles to its shadow, but for rounding, the search
+// begins anew.
+void turn(BandIterate& at) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  BandRow rho = sum_of_products(at.shadow, at.residual);
+  BandRow beta = ratio_or_zero(rho, at.rho) * ratio_or_zero(at.alpha, at.omega);
+  const BandRow least = epsilon * epsilon * sum_of_products(at.shadow, at.shadow);
+  for (Eigen::Index band = 0; band < bands_at_once; ++band) {
+    if (!(std::abs(rho[band]) < least[band])) continue;
+    at.shadow.col(band) = at.residual.col(band);
+    rho[band] = at.residual.col(band).square().sum();
+    beta[band] = 0;
+  }
+  at.rho = rho;
+  at.direction = at.residual + times_each(at.direction - times_each(at.moved, at.omega), beta);
+}
+
 // Up to four bands by BiCGSTAB, preconditioned. Bands that are solved take steps of length 0.
 BandBlock iterated(const Pocket& pocket, const BandBlock& reflectance, const BandBlock& right, double tolerance) {
   constexpr int most_iterations = 200;
-  constexpr double breakdown = std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
   const auto apply = [&](const BandBlock& x) -> BandBlock {
     return x - arriving_of(pocket.form_factors, reflectance * x);
   };
   const BandRow enough = tolerance * tolerance * sum_of_products(right, right);
-  BandBlock found = BandBlock::Zero(right.rows(), bands_at_once);
-  BandBlock residual = right;
-  BandBlock shadow = right, direction = found, moved = found;
-  BandRow rho = BandRow::Ones(), alpha = BandRow::Ones(), omega = BandRow::Ones();
+  const BandBlock zero = BandBlock::Zero(right.rows(), bands_at_once);
+  BandIterate at{.found = zero, .residual = right, .shadow = right, .direction = zero, .moved = zero};
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const BandRow goes_on = (sum_of_products(residual, residual) > enough).cast<double>();
+    const BandRow goes_on = (sum_of_products(at.residual, at.residual) > enough).cast<double>();
     if (!(goes_on > 0).any()) break;
-    BandRow next_rho = sum_of_products(shadow, residual);
-    BandRow beta = ratio_or_zero(next_rho, rho) * ratio_or_zero(alpha, omega);
-    // Where the residual has come to be at right angles to its shadow, it starts anew.
-    const auto stuck = (next_rho.abs() < breakdown * sum_of_products(shadow, shadow)).eval();
-    for (Eigen::Index band = 0; band < bands_at_once; ++band) {
-      if (!stuck[band]) continue;
-      shadow.col(band) = residual.col(band);
-      next_rho[band] = residual.col(band).square().sum();
-      beta[band] = 0;
-    }
-    rho = next_rho;
-    direction = residual + times_each(direction - times_each(moved, omega), beta);
-    const BandBlock toward = nearly_solved(pocket.nearly_solved, direction);
-    moved = apply(toward);
-    alpha = goes_on * ratio_or_zero(rho, sum_of_products(shadow, moved));
-    residual -= times_each(moved, alpha);
-    const BandBlock rest = nearly_solved(pocket.nearly_solved, residual);
-    const BandBlock moved_again = apply(rest);
-    omega = goes_on * ratio_or_zero(sum_of_products(moved_again, residual), sum_of_products(moved_again, moved_again));
-    found += times_each(toward, alpha) + times_each(rest, omega);
-    residual -= times_each(moved_again, omega);
+    turn(at);
+    const BandBlock toward = by_factors(pocket.nearly_solved, at.direction);
+    at.moved = apply(toward);
+    at.alpha = goes_on * ratio_or_zero(at.rho, sum_of_products(at.shadow, at.moved));
+    at.residual -= times_each(at.moved, at.alpha);
+    const BandBlock rest = by_factors(pocket.nearly_solved, at.residual);
+    const BandBlock moved = apply(rest);
+    at.omega = goes_on * ratio_or_zero(sum_of_products(moved, at.residual), sum_of_products(moved, moved));
+    at.found += times_each(toward, at.alpha) + times_each(rest, at.omega);
+    at.residual -= times_each(moved, at.omega);
   }
-  return found;
+  return at.found;
 }
 
 }  // namespace

@@ -28,9 +28,8 @@ struct Pocket {
 
 /// I - F R among the patches of a pocket, in each band of R.
 struct PocketSystem {
-  Field reflectance;  ///< R
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>>
-      factors;  ///< per band; up to 512 patches, up to 4 kB each, or empty
+  Field reflectance;                                          ///< R
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  ///< per band of up to 512 patches, else empty
 
   bool is_eliminated() const { return !factors.empty(); }
 };

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/vectors.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
 
@@ -38,26 +37,28 @@ PocketTransport::PocketTransport(const TransportOperator& transport, const Pocke
 // (I - F_PP R)^-1 H. No entry of the inverse is negative: so |error| <= max |r| y of any y with (I - F_PP R) y >= 1,
 // and twice the bounces are such a one.
 Field PocketTransport::followed(const Pocket& pocket, const PocketSystem& system, const FieldView& irradiance) const {
-  constexpr int most_tries = 2;
   const double highest_bound = 2 * pocket.bounces.maxCoeff();  // of the error, where max |r| is 1
-  double tolerance = accuracy_ / highest_bound;
-  for (int tries = 1;; ++tries) {
-    Field found = solution_within(pocket, system, irradiance, tolerance);
+  const auto relative_errors = [&](const Field& found) {
     const Field residual = residual_within(pocket, system, irradiance, found);
-    double farthest = 0;
-    for (Eigen::Index band = 0; band < found.cols(); ++band) {
-      const double largest_off = residual.col(band).abs().maxCoeff() * highest_bound;
-      const double largest = found.col(band).abs().maxCoeff();
-      if (largest > 0) farthest = std::max(farthest, largest_off / largest);
-      // From what is not finite nothing is found.
-      if (!residual.col(band).allFinite()) found.col(band).setConstant(residual.col(band).sum());
-    }
-    if (farthest <= accuracy_ || system.is_eliminated() || tries == most_tries || !found.allFinite()) {
-      raise_to(farthest_off_, farthest);
-      return found;
-    }
-    tolerance /= 10;
+    return quotient(highest_bound * highest(residual.abs()), highest(found.abs()));
+  };
+  const double tolerance = accuracy_ / highest_bound;
+  Field found = solution_within(pocket, system, irradiance, tolerance);
+  Eigen::ArrayXd error = relative_errors(found);
+  // Bands that are not near enough are looked for once more, each by itself.
+  if (!system.is_eliminated() && !(error <= accuracy_).all()) {
+    constexpr double nearer = 0.1;
+    const Field again = solution_within(pocket, system, irradiance, nearer * tolerance);
+    for (Eigen::Index band = 0; band < found.cols(); ++band)
+      if (!(error[band] <= accuracy_)) found.col(band) = again.col(band);
+    error = relative_errors(found);
   }
+  for (Eigen::Index band = 0; band < found.cols(); ++band) {
+    // From what is not finite nothing is found.
+    if (!irradiance.col(band).allFinite()) found.col(band).setConstant(irradiance.col(band).sum());
+    if (error[band] > 0) raise_to(farthest_off_, error[band]);
+  }
+  return found;
 }
 
 // An irradiance with (I - F_PP R)^-1 H in its pockets, where H arrives at each of these.

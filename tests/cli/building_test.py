@@ -103,7 +103,7 @@ class BuildingTest(ToolTest):
         text = (self.folder / "court.toml").read_text()
         self.write("fine.toml", text.replace("spacing = 0.5", "spacing = 0.005"))
         said = self.good("check", "fine.toml")
-        self.assertRegex(said, r"\d{6} sensors are asked for.* are of 'work plane' \(\S*fine\.toml:\d+\) over")
+        self.assertRegex(said, r"\d{6} sensors are asked for.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
         self.assertNotIn("sensors are asked for", self.good("check", "court.toml"))
         # Long before its end: without mesh and patches it is refused afterwards.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")

@@ -100,13 +100,15 @@ TEST(Survey, SpheresThatAFaceCutsAreAWarning) {
                      .position = Point(2, 1.5, ceiling - below),
                      .light = SphericalLamp{radius, Spectrum::Ones(1)}};
   };
-  scene.luminaires = {sphere_at(0.07, 0.06)};
-  EXPECT_TRUE(problems_with_size(scene).empty());
+  scene.luminaires = {sphere_at(0.07, 0.06), sphere_at(0.1, 0.1)};
+  EXPECT_TRUE(problems_with_size(scene).empty()) << "one hangs free, one touches the ceiling";
   scene.luminaires = {sphere_at(0.05, 0.06), sphere_at(-0.05, 0.06)};
   ASSERT_EQ(problems_with_size(scene).size(), 1U);
   EXPECT_EQ(problems_with_size(scene).front().count, 2U);
   EXPECT_EQ(problems_with_size(scene).front().what.rfind(
-                "2 sphere luminaires are cut by faces (the first: 'bulb' (a.toml:7), 0.12 m wide, by face '", 0),
+                "2 sphere luminaires are cut by faces (the first: 'bulb' (a.toml:7), of radius 0.06 m, whose middle is "
+                "0.05 m from face '",
+                0),
             0U)
       << problems_with_size(scene).front().what;
   scene.luminaires = {sphere_at(1.5, 4)};

@@ -155,7 +155,10 @@ TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
   EXPECT_EQ(told({0, 0, ceiling + 0.2}),
             "no luminaire stands in the room: 'bulb' (a.toml:7) is the nearest, 0.2 m outside");
   EXPECT_EQ(told({0, 0, ceiling - 0.1}), "");
-  scene = with_cube(std::move(scene), {0, 0, 0}, 0.2, Normals::outward);
+  EXPECT_EQ(told({0, 0, ceiling + 5}), "") << "as a street lamp may stand";
+  scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
+  EXPECT_EQ(told({0, 0, ceiling + 0.2}), "") << "a block";
+  scene = with_cube(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0}, 0.2, Normals::outward);
   EXPECT_EQ(told({0, 0, ceiling - 0.1}), "");
 }
 

@@ -264,6 +264,28 @@ TEST(PocketTransport, SolvesLargePocketsByIterations) {
   EXPECT_LE(residual.bottomRows(in_ring).abs().maxCoeff() / leak, 2 * found.error.maxCoeff() + followed);
 }
 
+// More bands than go through the matrix together, of which some are solved long before others, one is dark and one is
+// not finite.
+TEST(PocketTransport, SolvesEachBandToTheBitAsByItself) {
+  constexpr Eigen::Index bands = 6;
+  const RadiosityProblem problem = lit_ring(bands);
+  const RaysWithPockets transport(room_with_ring(), highest_of(problem));
+  const Pocket& pocket = transport.pockets(highest_of(problem))->each[0];
+  const Field reflectance = problem.scattering.reflectance.bottomRows(in_ring);
+  Field right = Field::Random(in_ring, bands);
+  right.col(4) = 0;
+  right(7, 3) = std::numeric_limits<double>::infinity();
+  constexpr double tolerance = 1e-8;
+  const Field together = solution_within(pocket, system_within(pocket.form_factors, reflectance), right, tolerance);
+  for (const Eigen::Index band : {0, 1, 2, 4, 5}) {
+    const PocketSystem alone = system_within(pocket.form_factors, reflectance.col(band));
+    const Field by_itself = solution_within(pocket, alone, right.col(band), tolerance);
+    EXPECT_TRUE((together.col(band) == by_itself.col(0)).all()) << band;
+    const Field residual = residual_within(pocket, alone, right.col(band), by_itself);
+    EXPECT_LE(residual.matrix().norm(), 1.001 * tolerance * right.col(band).matrix().norm()) << band;
+  }
+}
+
 // Each band is followed as it would be by itself, also one that is dark; on one thread as on two.
 TEST(PocketTransport, FollowsBandsAsEachByItself) {
   constexpr Eigen::Index bands = 3;
