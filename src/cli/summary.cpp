@@ -204,7 +204,9 @@ std::string sensor_lines(const Report& report, const std::string& how_to_know_er
     if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
   }
   if (!report.accuracy.empty()) return text_table(rows);
-  return text_table(rows) + "standard errors of sensors hold a guess of what the size of the patches errs" +
+  return text_table(rows) +
+         "standard errors of sensors hold a guess, in pockets, behind slits and by louvres a tenth of the truth or "
+         "less, of what the size of the patches errs" +
          how_to_know_errors + '\n';
 }
 
