@@ -157,11 +157,11 @@ SparseRows rows_of(const Groups& groups, std::size_t group, const SparseRows& am
 
 // Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
 // what is followed is. From (I - F rho) bounces >= 1/2 light is reflected at most twice as often as they say.
-std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, SparseRows form_factors,
+std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const SparseRows& form_factors,
                                 const Eigen::VectorXd& reflectance) {
   Pocket pocket;
   pocket.patches = std::move(patches);
-  pocket.form_factors = std::move(form_factors);
+  pocket.form_factors = form_factors;
   const Eigen::VectorXd reflected = values_at(pocket.patches, reflectance);
   const PocketSystem system = system_within(pocket.form_factors, reflected.array());
   if (!system.is_eliminated()) pocket.nearly_solved = incomplete_factors(pocket.form_factors, reflected);
