@@ -205,19 +205,21 @@ std::string light_tables(const Scene& scene, const std::vector<NamedFloor>& plac
   return luminaire_table(scene, *hull, places) + sky_tables(scene, false);
 }
 
-double cells_of_grid(const Floor& floor, double spacing) {
+constexpr double usual_spacing = 0.5;  // m
+
+// By the usual spacing.
+double cells_over(const Floor& floor) {
   if (floor.outlines.empty()) return 0;
   const auto [corner, x, y] = rectangle_over(floor, 0);
-  return cells_along(x.norm(), spacing) * cells_along(y.norm(), spacing);
+  return cells_along(x.norm(), usual_spacing) * cells_along(y.norm(), usual_spacing);
 }
 
 // Half a metre; where the grids would have more than 20,000 cells so, as many metres as leave about that many.
 double spacing_for(const Scene& scene, const std::vector<NamedFloor>& places) {
-  constexpr double usual = 0.5;
   constexpr double most_cells = 2e4;
-  double cells = scene.rooms.empty() && !places.empty() ? cells_of_grid(places[0].floor, usual) : 0;
-  for (const NamedRoom& room : scene.rooms) cells += cells_of_grid(floor_of(room.faces, scene.up), usual);
-  return cells <= most_cells ? usual : std::ceil(10 * usual * std::sqrt(cells / most_cells)) / 10;
+  double cells = scene.rooms.empty() && !places.empty() ? cells_over(places[0].floor) : 0;
+  for (const NamedRoom& room : scene.rooms) cells += cells_over(floor_of(room.faces, scene.up));
+  return cells <= most_cells ? usual_spacing : std::ceil(10 * usual_spacing * std::sqrt(cells / most_cells)) / 10;
 }
 
 std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {

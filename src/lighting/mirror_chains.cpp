@@ -184,13 +184,10 @@ class ChainQueue {
   double least_ = 0;  // light by a chain that is followed
 };
 
-}  // namespace
-
-namespace {
-
-// The light by all longer chains, none of which is followed, over that by one of n mirrors: each mirror more reflects
-// rho, so that it is rho / (1 - rho) at most; and images come to lie farther off, as k = n + 1, n + 2 ... do between
-// two mirrors, so that it is less than the sum of n^2 / k^2, which is less than n.
+// The light by all longer chains, none of which is followed, over that by one of n mirrors, where each goes on over one
+// mirror, as between two: each mirror more reflects rho, so that it is rho / (1 - rho) at most; and images come to lie
+// farther off, as k = n + 1, n + 2 ... do between two mirrors, so that it is less than the sum of n^2 / k^2, which is
+// less than n.
 double light_beyond(const MirrorChain& chain, double reflectance) {
   const auto mirrors = static_cast<double>(chain.mirrors.size());
   return reflectance < 1 ? std::min(mirrors, reflectance / (1 - reflectance)) : mirrors;

@@ -26,7 +26,7 @@ struct MirrorChain {
   double light_share = 1;  ///< the least of theirs
   Eigen::Affine3d image = Eigen::Affine3d::Identity();
   double beyond = 0;  ///< chains that go on from it and are too long to be followed, as between two mirrors that face
-                      ///< each other, bring at most so many times its own light
+                      ///< each other, bring so many times its own light, at most where each goes on over one mirror
 };
 
 /// The chains that light can take over planar mirrors and clear faces, those first by which most light may go,

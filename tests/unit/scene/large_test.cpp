@@ -2,41 +2,18 @@
 #include "scene/coverings.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
+#include "support/large_shapes.h"
 #include "support/scenes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <numbers>
 #include <random>
 
 namespace patchlight::large_test {
 namespace {
 
 using namespace test;
-
-std::vector<Point> disc(int corners) {
-  std::vector<Point> points;
-  for (int k = 0; k < corners; ++k) {
-    const double angle = 2 * std::numbers::pi * k / corners;
-    points.emplace_back(std::cos(angle), std::sin(angle), 0);
-  }
-  return points;
-}
-
-// A room with triangles that share an edge, like the leaves of a book.
-Scene book(int leaves) {
-  Scene scene = empty_scene({grey(0.5)});
-  scene.vertices = {Point(0, 0, 0), Point(0, 0, 1)};
-  for (int k = 0; k < leaves; ++k) {
-    const double angle = 2 * std::numbers::pi * k / leaves;
-    scene.vertices.emplace_back(std::cos(angle), std::sin(angle), 0.5);
-    Polygon leaf;
-    leaf.corners = {0, 1, static_cast<std::uint32_t>(k + 2)};
-    scene.polygons.push_back(leaf);
-  }
-  return scene;
-}
 
 KeptSides both_sides(const Scene& scene) { return kept_sides(scene, Sides::both); }
 
