@@ -10,6 +10,8 @@
 #include "transport/ray_transport.h"
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
 
@@ -29,24 +31,26 @@ struct SolvedProblem {
 /// these add in each band. Of many bands some are solved, and others are combinations of them where these are as good.
 Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance);
 
-/// What the sampling of form factors does to the irradiance by the light `B`, radiosity in W/m^2: the root mean square
-/// over random draws of the entries' errors (random_errors()), each followed through all reflections,
-/// e = A^-1 D B + F R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums.
-/// docs/accuracy.md. Costs some tens of applications. `raw` has the entries' errors.
-Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                         const SolvedProblem& solved, const FieldView& B);
+/// The mean over draws of their squares, per patch and band.
+Field mean_square(std::span<const Field> draws);
 
-/// The same of light straight from the lamps, where that was found a second time, with other samples: `difference`, in
+/// Equally likely errors of the irradiance by the sampling of form factors, of the light `B`, radiosity in W/m^2: random
+/// draws of the errors of the entries (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In
+/// a closed scene the draws are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens
+/// of applications. `raw` has the errors of the entries.
+std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
+                                           const SolvedProblem& solved, const FieldView& B);
+
+/// The error of light straight from the lamps, where that was found a second time, with other samples: `difference`, in
 /// W/m^2, is how far both are apart.
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference);
 
-/// What the errors of light straight from luminaires, sun and sky come to through all reflections: the root mean square
-/// over random draws of them, those of one patch unrelated to those of the others, each followed; W/m^2.
-/// `standard_error` is that of RadiosityProblem::direct_irradiance. Costs some tens of applications, none where it is
-/// 0.
-Field errors_of_lights(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
-                       const Field& standard_error);
+/// Equally likely errors of the irradiance by those of light straight from luminaires, sun and sky: as many draws, the
+/// errors of patches independent of each other, each followed; W/m^2. `standard_error` is that of
+/// RadiosityProblem::direct_irradiance. Costs some tens of applications, none where it is 0.
+std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTransport& transport,
+                                         const RadiosityProblem& problem, const Field& standard_error);
 
 /// What the share of a patch that is exposed, when it is not all of it, may be off, as a share of it; stratified points
 /// find a straight edge with a variance of their number to the power of -3/2 times the length of the edge, which grows

@@ -83,31 +83,37 @@ Field Draws::of_draw(Eigen::Index draw) const {
   return irradiance;
 }
 
-// The mean square of what the draws come to through all reflections. Few bands are followed one by one with all draws;
-// many by draws, as a few of them tell the others then.
-Field mean_squares(const Draws& draws_of, const SpanningBands& spanning) {
+// Each draw through all reflections. Few bands are followed one by one with all draws; many by draws, as a few of them
+// tell the others then.
+std::vector<Field> follow_draws(const Draws& draws_of, const SpanningBands& spanning) {
   const RadiosityProblem& problem = draws_of.problem;
   const Eigen::Index bands = problem.scattering.reflectance.cols();
-  Field squares = Field::Zero(problem.area.size(), bands);
+  std::vector<Field> followed_draws(draws, Field(problem.area.size(), bands));
   if (spanning.spans_all()) {
     for (Eigen::Index band = 0; band < bands; ++band) {
       const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
       const Field e = followed(draws_of.transport, {of_draws, {}, problem.area}, draws_of.of_band(band));
-      squares.col(band) = e.square().rowwise().sum() / draws;
+      for (std::size_t draw = 0; draw < draws; ++draw)
+        followed_draws[draw].col(band) = e.col(static_cast<Eigen::Index>(draw));
     }
-    return squares;
+    return followed_draws;
   }
-  for (Eigen::Index draw = 0; draw < draws; ++draw) {
-    const Field irradiance = spanning.all_bands(draws_of.of_draw(draw));
-    squares += followed(draws_of.transport, problem, irradiance).square() / draws;
-  }
-  return squares;
+  for (std::size_t draw = 0; draw < draws; ++draw)
+    followed_draws[draw] = followed(draws_of.transport, problem,
+                                    spanning.all_bands(draws_of.of_draw(static_cast<Eigen::Index>(draw))));
+  return followed_draws;
 }
 
 }  // namespace
 
-Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                         const SolvedProblem& solved, const FieldView& B) {
+Field mean_square(std::span<const Field> draws) {
+  Field squares = draws.front().square();
+  for (const Field& draw : draws.subspan(1)) squares += draw.square();
+  return squares / static_cast<double>(draws.size());
+}
+
+std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
+                                           const SolvedProblem& solved, const FieldView& B) {
   constexpr double told = 1e-3;  // of the light, by few bands: less than draws are sure of by far
   const RadiosityProblem& problem = solved.problem;
   const SpanningBands spanning = spanning_bands(B, problem.area, told);
@@ -125,7 +131,7 @@ Field form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTr
     drawn.H = transport.apply(light);
   }
   // 3. Through all reflections.
-  return mean_squares(drawn, spanning).sqrt();
+  return follow_draws(drawn, spanning);
 }
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
@@ -135,19 +141,18 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
   return form_factor_scale * means_around(mesh, problem.area, error);
 }
 
-Field errors_of_lights(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
-                       const Field& standard_error) {
-  if (standard_error.isZero(0)) return standard_error;
+std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTransport& transport,
+                                         const RadiosityProblem& problem, const Field& standard_error) {
+  if (standard_error.isZero(0)) return std::vector<Field>(draws, standard_error);
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
-  Field squares = Field::Zero(standard_error.rows(), standard_error.cols());
+  std::vector<Field> followed_draws;
   for (std::uint64_t draw = 0; draw < draws; ++draw) {
     Field error = standard_error;
     for (PatchIndex i = 0; i < mesh.size(); ++i)
       if ((hash({seed, keys[i], draw, 2}) & 1) != 0) error.row(i) *= -1;
-    squares += followed(transport, problem, error).square() / draws;
+    followed_draws.push_back(followed(transport, problem, error));
   }
-  // The own error is known, and needs no draws.
-  return squares.sqrt().max(standard_error);
+  return followed_draws;
 }
 
 }  // namespace patchlight

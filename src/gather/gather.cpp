@@ -74,16 +74,19 @@ double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from
   return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
 }
 
-// What the errors of the patches come to.
+// The errors of the patches, as the sensor sees them.
 Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<const Source> sources,
                                std::span<const VisibleShare> shares, const Light& light) {
-  const auto& [sampling, mesh, solver, display, reflected] = light.errors;
+  const auto& [sampling, correlated, mesh, solver, display, reflected] = light.errors;
+  Field draws = Field::Zero(static_cast<Eigen::Index>(correlated.size()), reading.mean.size());
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const PatchIndex j = sources[s].patch;
     const double seen = sources[s].form_factor * shares[s].mean();
     if (!(seen > 0)) continue;
     const Spectrum weight = of_bands(Spectrum::Constant(reading.mean.size(), seen), shares[s]);
     if (sampling.size() > 0) reading.sampling += (weight * sampling.row(j)).square();
+    for (Eigen::Index k = 0; k < draws.rows(); ++k)
+      draws.row(k) += weight * correlated[static_cast<std::size_t>(k)].row(j);
     if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
     if (solver.size() > 0) reading.solver += weight * solver.row(j);
     if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
@@ -94,6 +97,7 @@ Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<
         (squared * light.slopes.residual.row(j)).max(std::sqrt(squared) * light.slopes.unknown.row(j));
     reading.unexplained += (weight * by_points).square();
   }
+  if (draws.rows() > 0) reading.sampling += draws.square().colwise().mean();
   return reading;
 }
 

@@ -57,10 +57,13 @@ Spectrum sum_of(const PatchWeights& weights, const FieldView& field, Eigen::Inde
   return sum;
 }
 
-Spectrum sum_of_squares(const PatchWeights& weights, const Field& field, Eigen::Index bands) {
+// Independent errors of patches add up in squares, and each draw of correlated ones as light does.
+Spectrum sampling_variance(const PatchWeights& weights, const RadiosityErrors& errors, Eigen::Index bands) {
   Spectrum sum = Spectrum::Zero(bands);
-  if (field.size() == 0) return sum;
-  for (const auto& [patch, weight] : weights) sum += (weight * field.row(patch)).square();
+  if (errors.sampling.size() == 0) return sum;
+  for (const auto& [patch, weight] : weights) sum += (weight * errors.sampling.row(patch)).square();
+  for (const Field& draw : errors.correlated)
+    sum += sum_of(weights, draw, bands).square() / static_cast<double>(errors.correlated.size());
   return sum;
 }
 
@@ -97,7 +100,7 @@ GatheredIrradiance gather_mirrored(const PatchMesh& mesh, const FieldView& radio
     const Spectrum squares = means.square().colwise().mean();
     found.irradiance.row(row) = mean;
     found.errors.rays.row(row) = ((squares - mean.square()).max(0.0) / (mirrored_replicates - 1)).sqrt();
-    found.errors.sampling.row(row) = sum_of_squares(all, options.errors.sampling, bands).sqrt();
+    found.errors.sampling.row(row) = sampling_variance(all, options.errors, bands).sqrt();
     found.errors.mesh.row(row) = sum_of(all, options.errors.mesh, bands);
     found.errors.solver.row(row) = sum_of(all, options.errors.solver, bands);
   });

@@ -103,18 +103,18 @@ Outline outline_with_marks(const CutPolygon& polygon, const MarksByEdge& all, do
 
 }  // namespace
 
-std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge,
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges,
                                   std::span<const std::uint8_t> is_needed) {
   const MarksByEdge marks = marks_by_edge(polygons);
   std::vector<Outline> outlines(polygons.size());
   parallel_for(polygons.size(), [&](std::size_t p) {
-    if (is_needed[p]) outlines[p] = outline_with_marks(polygons[p], marks, max_edge);
+    if (is_needed[p]) outlines[p] = outline_with_marks(polygons[p], marks, edges.on(p));
   });
   return outlines;
 }
 
-std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, double max_edge) {
-  return cut_outlines(polygons, max_edge, std::vector<std::uint8_t>(polygons.size(), 1));
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges) {
+  return cut_outlines(polygons, edges, std::vector<std::uint8_t>(polygons.size(), 1));
 }
 
 }  // namespace patchlight

@@ -250,15 +250,15 @@ double followed_detail(const ContactLines& contacts, double max_edge) {
 }
 
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
-                                     double max_edge) {
-  return cut_again({}, scene, loose, contacts, max_edge, false);
+                                     const PatchEdges& edges) {
+  return cut_again({}, scene, loose, contacts, edges, false);
 }
 
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
-                                  const ContactLines& contacts, double max_edge, bool same_detail) {
+                                  const ContactLines& contacts, const PatchEdges& edges, bool same_detail) {
   const bool any = !contacts.on.empty();
   const double grid = any ? grid_of_extent * extent_of(scene) : 0;
-  const double detail = any ? followed_detail(contacts, max_edge) : 0;
+  const double detail = any ? followed_detail(contacts, edges.max_edge) : 0;
   static const std::vector<ContactLine> none;
   const bool all = polygons.empty();
   polygons.resize(scene.polygons.size());
@@ -268,7 +268,7 @@ std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene&
     if (!all && !is_loose && (same_detail || lines.empty())) return;
     const auto polygon = static_cast<PolygonIndex>(p);
     polygons[p] =
-        cut_polygon(coarse_outline(scene, loose, polygon, max_edge), front_normal(scene, polygon), lines, detail, grid);
+        cut_polygon(coarse_outline(scene, loose, polygon, edges.on(p)), front_normal(scene, polygon), lines, detail, grid);
   });
   return polygons;
 }

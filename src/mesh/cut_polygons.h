@@ -3,6 +3,7 @@
 #include "patchlight/scene/contact_lines.h"
 
 #include "mesh/coarse_outline.h"
+#include "mesh/patch_edges.h"
 
 #include <array>
 #include <cstddef>
@@ -37,17 +38,17 @@ struct CutPolygon {
 /// ContactLines::detail.
 double followed_detail(const ContactLines& contacts, double max_edge);
 
-/// Every polygon with the lines of contact that matter to patches with edges of `max_edge` at most: those with a gap of
+/// Every polygon with the lines of contact that matter to patches with edges of its length at most: those with a gap of
 /// less than a quarter of the detail that is followed, and of what ends there. Lines that bend have corners only as far
 /// as a hundredth of the detail shows them, and what is smaller than sixteen times that is left out. On both sides of
 /// long edges that are very close there are lines in one and three widths of the gap. Quadratic in the lines of one
 /// polygon.
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
-                                     double max_edge);
+                                     const PatchEdges& edges);
 
 /// What cut_polygons() gives, from what it gave for another edge: those without loose corners stay as they are, and
 /// where that edge had the same followed_detail() those with lines as well.
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
-                                  const ContactLines& contacts, double max_edge, bool same_detail);
+                                  const ContactLines& contacts, const PatchEdges& edges, bool same_detail);
 
 }  // namespace patchlight

@@ -27,16 +27,16 @@ struct Pieces {
 
 bool is_kept(const KeptSides& sides, std::size_t slot) { return (slot % 2 == 0 ? sides.front : sides.back)[slot / 2]; }
 
-Pieces make_pieces(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts,
+Pieces make_pieces(const Scene& scene, const KeptSides& sides, const PatchEdges& edges, const ContactLines& contacts,
                    bool grade) {
   const std::size_t count = scene.polygons.size();
-  Pieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, max_edge), max_edge),
+  Pieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, edges), edges),
                 .meshes = std::vector<PolygonMesh>(count),
                 .first_inner = {},
                 .boundary = {}};
   if (grade) pieces.outlines = graded(std::move(pieces.outlines), sides);
   parallel_for(count, [&](std::size_t p) {
-    if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], max_edge);
+    if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], edges.on(p));
   });
   pieces.boundary = {number_boundary(scene, pieces.outlines, Side::front, sides.front),
                      number_boundary(scene, pieces.outlines, Side::back, sides.back)};
@@ -110,11 +110,11 @@ void require_so_many_patches(const Scene& scene, const KeptSides& sides, double 
   if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 }
 
-PatchMesh tessellate(const Scene& scene, const KeptSides& sides, double max_edge, const ContactLines& contacts,
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdges& edges, const ContactLines& contacts,
                      bool graded_edges) {
-  assert(max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
-  require_so_many_patches(scene, sides, max_edge);
-  Pieces pieces = make_pieces(scene, sides, max_edge, contacts, graded_edges);
+  assert(edges.max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
+  if (edges.coarsest.empty()) require_so_many_patches(scene, sides, edges.max_edge);
+  Pieces pieces = make_pieces(scene, sides, edges, contacts, graded_edges);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);
   const auto& [front, back] = pieces.boundary;

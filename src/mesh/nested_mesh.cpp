@@ -19,10 +19,10 @@ double longest_edge(const PatchMesh& mesh, PatchIndex patch) {
   return longest;
 }
 
-std::vector<std::uint8_t> large_patches(const PatchMesh& mesh) {
+std::vector<std::uint8_t> large_patches(const PatchMesh& mesh, double usual_edge) {
   std::vector<double> edges;
   for (PatchIndex i = 0; i < mesh.size(); ++i) edges.push_back(longest_edge(mesh, i));
-  const double longest = edges.empty() ? 0 : *std::max_element(edges.begin(), edges.end());
+  const double longest = edges.empty() ? 0 : std::min(usual_edge, *std::max_element(edges.begin(), edges.end()));
   std::vector<std::uint8_t> large;
   for (const double edge : edges) large.push_back(parts_of_parent(edge, longest) > 1 ? 1 : 0);
   return large;
@@ -45,8 +45,8 @@ std::size_t parts_of_parent(double edge, double longest) {
   return edge >= small * longest ? 4 : 1;
 }
 
-NestedMesh nest(PatchMesh parents) {
-  const std::vector<std::uint8_t> large = large_patches(parents);
+NestedMesh nest(PatchMesh parents, double usual_edge) {
+  const std::vector<std::uint8_t> large = large_patches(parents, usual_edge);
   return nest(std::move(parents), large);
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,12 @@ struct NestedMesh {
   PatchRange patches_of(PatchIndex of) const { return {first_patch[of], first_patch[of + 1]}; }
 };
 
-/// Every parent in four parts; those whose longest edge is below a quarter of the longest of all, as small faces of a
-/// model are, stay whole.
-NestedMesh nest(PatchMesh parents);
+/// No limit on the edges of parents.
+inline constexpr double any_edge = std::numeric_limits<double>::infinity();
+
+/// Cuts every parent into four parts. A parent stays whole where its longest edge is below a quarter of the longest of
+/// all, or of `usual_edge` if that is less, as on small faces of a model.
+NestedMesh nest(PatchMesh parents, double usual_edge = any_edge);
 
 /// Into how many parts that cuts a parent, from its longest edge and that of all.
 std::size_t parts_of_parent(double edge, double longest);

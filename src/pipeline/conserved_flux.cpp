@@ -2,20 +2,74 @@
 
 #include "base/vectors.h"
 
-#include <limits>
+#include <cstddef>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// The second solution is multiplied by what is missing, some thousandths of the light.
-constexpr double error_of_response = 0.01;  // as its residual tells
-constexpr int most_iterations = 100;        // where light is caught between white faces, its flux is left as it is
+// The response is multiplied by the missing flux, which is some thousandths of the light.
+constexpr double error_of_response = 0.01;  // by its residual
+constexpr int most_iterations = 100;        // between white faces that trap light the flux stays uncorrected
 
-// sum_j A_j s_j B_j - sum_i A_i (F B)_i, W per band.
-Eigen::ArrayXd missing(const ConservedFlux& flux, const Field& gathered, const Field& radiosity,
-                       const Eigen::VectorXd& area) {
-  return area_sum(radiosity, flux.seen_area) - area_sum(gathered, area);
+// A space that loses more of its light is open.
+constexpr double max_loss_of_closed = 1e-3;
+
+// Sets of patches that exchange light (union-find with path halving).
+class Components {
+ public:
+  explicit Components(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
+
+  PatchIndex root(PatchIndex i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  void join(PatchIndex i, PatchIndex j) {
+    const PatchIndex a = root(i);
+    const PatchIndex b = root(j);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<PatchIndex> parent_;
+};
+
+void join_patches(Components& components, const RayRows& rows) {
+  for (PatchIndex i = 0; i + 1 < rows.first_hit.size(); ++i) {
+    for (std::uint64_t k = rows.first_hit[i]; k < rows.first_hit[i + 1]; ++k) components.join(i, rows.hits[k]);
+    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
+      if (rows.entries[k].form_factor > 0) components.join(i, rows.entries[k].patch);
+  }
+}
+
+// Sums over the patches of each closed space: a row for each space, a column for each band.
+Field sum_by_space(const ClosedSpaces& spaces, const Field& values, const Eigen::VectorXd& weight) {
+  Field sums = Field::Zero(spaces.count, values.cols());
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    const std::uint32_t space = spaces.space_of[static_cast<std::size_t>(i)];
+    if (space != ClosedSpaces::open) sums.row(space) += weight[i] * values.row(i);
+  }
+  return sums;
+}
+
+// Each patch gets the value of its space, times its own.
+Field times_of_space(const ClosedSpaces& spaces, Field values, const Field& of_spaces) {
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    const std::uint32_t space = spaces.space_of[static_cast<std::size_t>(i)];
+    if (space == ClosedSpaces::open)
+      values.row(i) = 0;
+    else
+      values.row(i) *= of_spaces.row(space);
+  }
+  return values;
+}
+
+// sum_j A_j s_j B_j - sum_i A_i (F B)_i, W per space and band.
+Field missing(const ConservedFlux& flux, const Field& gathered, const Field& radiosity, const Eigen::VectorXd& area) {
+  return sum_by_space(flux.spaces, radiosity, flux.seen_area) - sum_by_space(flux.spaces, gathered, area);
 }
 
 std::array<Field, 2> gathered_by_halves(const RaysWithPockets& transport, const Field& radiosity) {
@@ -26,29 +80,59 @@ Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + ha
 
 }  // namespace
 
+ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd& area, const Eigen::VectorXd& row_sum) {
+  // 1. Connected components.
+  const PatchIndex size = rays.size();
+  Components components(size);
+  for (const std::size_t half : {0U, 1U}) join_patches(components, rays.rows(half));
+
+  // 2. The area and the loss of each, by its root.
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd lost = Eigen::VectorXd::Zero(size);
+  for (PatchIndex i = 0; i < size; ++i) {
+    all[components.root(i)] += area[i];
+    lost[components.root(i)] += area[i] * (1 - row_sum[i]);
+  }
+
+  // 3. Number those that are closed.
+  ClosedSpaces found;
+  std::map<PatchIndex, std::uint32_t> number;
+  for (PatchIndex i = 0; i < size; ++i) {
+    const PatchIndex root = components.root(i);
+    const bool is_closed = lost[root] <= max_loss_of_closed * all[root];
+    found.space_of.push_back(
+        is_closed ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
+                  : ClosedSpaces::open);
+  }
+  found.count = static_cast<Eigen::Index>(number.size());
+  return found;
+}
+
 Field ConservedFlux::completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const {
-  gathered += scaled(shape, missing(*this, gathered, radiosity, area));
+  if (spaces.count == 0) return gathered;
+  const Field watts = missing(*this, gathered, radiosity, area);
+  gathered += times_of_space(spaces, shape, watts);
   return gathered;
 }
 
 ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer) {
-  // 1. What is missing, and where it goes.
+  // 1. The missing flux of each closed space, and its distribution.
   const Eigen::VectorXd& area = problem.area;
   std::array<Field, 2> halves = gathered_by_halves(transport, solution.radiosity);
   const Field gathered = mean_of(halves);
-  const Eigen::ArrayXd arriving = area_sum(gathered, area);
-  ConservedFlux flux{area.cwiseProduct(row_sum),
-                     scaled(gathered, quotient(Eigen::ArrayXd::Ones(arriving.size()), arriving))};
-  const Eigen::ArrayXd lacking = missing(flux, gathered, solution.radiosity, area);
-
-  const auto as_it_was = [&] {
-    flux.shape.setZero();
+  ConservedFlux flux{find_closed_spaces(transport.rays(), area, row_sum), area.cwiseProduct(row_sum), {}};
+  const auto unchanged = [&] {
+    flux.shape = Field::Zero(gathered.rows(), gathered.cols());
     return ConservingSolution{std::move(solution), std::move(flux), std::move(halves)};
   };
-  if (!solution.converged) return as_it_was();
+  if (flux.spaces.count == 0 || !solution.converged) return unchanged();
+  const Field arriving = sum_by_space(flux.spaces, gathered, area);
+  flux.shape = times_of_space(flux.spaces, gathered, (arriving > 0).select(arriving.inverse(), 0.0));
+  const Field lacking = missing(flux, gathered, solution.radiosity, area);
 
-  // 2. What a watt of it changes: B' = R shape + R F B', of which some is missing again.
+  // 2. The response to a watt in each space, B' = R shape + R F B', which lacks some flux again. Closed spaces exchange
+  //    no light, so that one solution has the responses of all.
   const RadiosityProblem of_a_watt{problem.scattering, problem.scattering.reflect(flux.shape), area};
   const SolverOptions loosely{.solver = Solver::gmres,
                               .relative_error = error_of_response,
@@ -57,15 +141,15 @@ ConservingSolution conserving_flux(const RaysWithPockets& transport, const Radio
                               .patch_bounds = false};
   const Solution response = solve(transport, of_a_watt, loosely, observer);
   const std::array<Field, 2> by_a_watt = gathered_by_halves(transport, response.radiosity);
-  const Eigen::ArrayXd lacking_again = missing(flux, mean_of(by_a_watt), response.radiosity, area);
+  const Field lacking_again = missing(flux, mean_of(by_a_watt), response.radiosity, area);
   constexpr double most_again = 0.5;
-  if (!response.converged || (lacking_again > most_again).any()) return as_it_was();
+  if (!response.converged || (lacking_again > most_again).any()) return unchanged();
 
-  // 3. All of it together.
-  const Eigen::ArrayXd watts = lacking / (1 - lacking_again);
-  const Field added = scaled(response.radiosity, watts);
+  // 3. The corrected solution.
+  const Field watts = lacking / (1 - lacking_again);
+  const Field added = times_of_space(flux.spaces, response.radiosity, watts);
   solution.radiosity += added;
-  for (std::size_t half = 0; half < 2; ++half) halves[half] += scaled(by_a_watt[half], watts);
+  for (std::size_t half = 0; half < 2; ++half) halves[half] += times_of_space(flux.spaces, by_a_watt[half], watts);
   if (solution.error.size() > 0) solution.error += error_of_response * added.abs();
   return {std::move(solution), std::move(flux), std::move(halves)};
 }

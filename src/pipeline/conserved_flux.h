@@ -6,33 +6,49 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
 
 namespace patchlight {
 
-/// What of the flux between patches gets lost, or is made, by the errors of rows: each row sums up to what its patch
-/// sees, but the columns do not. By reciprocity sum_i A_i (F B)_i = sum_j A_j s_j B_j, with s_j the share of patch j's
-/// hemisphere in which there are patches. What is missing is shared out as the light is that arrives from patches:
-/// H = F B + shape (sum_j A_j s_j B_j - sum_i A_i (F B)_i). In a room of reflectance rho it would otherwise change the
-/// level of the light 1 / (1 - rho) times as much.
-struct ConservedFlux {
-  Eigen::VectorXd seen_area;  ///< A_j s_j, m^2
-  Field shape;                ///< of what is missing, 1/m^2: its mean times the area of all patches is 1, or 0
+/// The closed spaces of a mesh. The patches of a closed space exchange light with each other alone, and lose at most a
+/// thousandth of it.
+struct ClosedSpaces {
+  static constexpr std::uint32_t open = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> space_of;  ///< per patch: its closed space, or `open`
+  Eigen::Index count = 0;
+};
 
-  /// F B with the flux that is missing; `gathered` is F B.
+/// Finds the connected components of the rows, and keeps those that lose at most a thousandth of their light. `row_sum`
+/// is the fraction s_j of the hemisphere of patch j that other patches fill. O(rays).
+ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd& area, const Eigen::VectorXd& row_sum);
+
+/// The flux that sampling errors of the rows lose or add in each closed space. Each row sums to s_j, but the columns do
+/// not: by reciprocity sum_i A_i (F B)_i = sum_j A_j s_j B_j within a space. The correction distributes the missing
+/// flux of a space in proportion to the irradiance: H = F B + shape (sum_j A_j s_j B_j - sum_i A_i (F B)_i). Without it
+/// a room of reflectance rho changes its level 1 / (1 - rho) times as much. An open space gets no correction: the errors
+/// of its rows would be paid by others. In a room with a window those of the ground outside are larger than its own.
+struct ConservedFlux {
+  ClosedSpaces spaces;
+  Eigen::VectorXd seen_area;  ///< A_j s_j, m^2
+  Field shape;                ///< of the missing flux, 1/m^2: sum_i A_i shape_i = 1 in each closed space; 0 elsewhere
+
+  /// F B with the missing flux of each space; `gathered` is F B.
   Field completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const;
 };
 
-/// A solution and what it conserves. `solution` has the radiosity B of that; its irradiance is the one before.
+/// A solution and the flux that it conserves. `solution` has the corrected radiosity B, and the irradiance before.
 struct ConservingSolution {
   Solution solution;
   ConservedFlux flux;
-  std::array<Field, 2> gathered;  ///< F B by each half of the rays, W/m^2; F E of light that is not reflected twice
+  std::array<Field, 2> gathered;  ///< F B by each half of the rays, W/m^2; F E where light is reflected once
 };
 
-/// A solution B = E + R (F B + H_direct) made one that conserves flux, by the Sherman-Morrison formula: a second
-/// solution, of `shape` reflected, tells what a missing watt changes. What its residual leaves of the second, an
-/// estimate, is added to the error of the first. `row_sum` is s_j. Where one of both does not converge, the solution
-/// stays as it is, and `shape` is 0. \throws Cancelled.
+/// Corrects a solution B = E + R (F B + H_direct) so that each closed space conserves flux, by the Sherman-Morrison
+/// formula: a second solution, of `shape` reflected, is the response to a missing watt. The residual of the second
+/// solution is added to the error of the first. `row_sum` is s_j. Returns the solution unchanged, with a `shape` of 0,
+/// where there is no closed space or one of both solutions does not converge. \throws Cancelled.
 ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
 

@@ -5,6 +5,7 @@
 #include "mesh/kept_patches.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"
 
@@ -18,17 +19,25 @@ namespace {
 // A patch is covered when every one of sixteen places on it is.
 constexpr int rays_for_cover = 128;
 
+// The surroundings of the goal are cut after it, as parents where there are some.
 NestedMesh nested_as_planned(const Plan& plan, const auto& patches_with_edge) {
-  if (plan.accuracy.error_bars) return nest(patches_with_edge(2 * plan.max_edge));
+  const auto cut = [&](PatchMesh mesh, std::size_t around) {
+    return plan.goal ? cut_by_importance(std::move(mesh), *plan.goal, around) : mesh;
+  };
+  if (plan.accuracy.error_bars) {
+    const double longest = 2 * plan.max_edge;
+    return nest(cut(patches_with_edge(longest), plan.patches_around / 4), plan.goal ? longest : any_edge);
+  }
   NestedMesh mesh;
-  mesh.patches = patches_with_edge(plan.max_edge);
+  mesh.patches = cut(patches_with_edge(plan.max_edge), plan.patches_around);
   return mesh;
 }
 
 }  // namespace
 
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, const Occluder& occluder) {
-  PatchMesh mesh = tessellate(scene, plan.sides, max_edge, plan.contacts, plan.graded_edges);
+  const PatchEdges edges = edges_for(scene, max_edge, plan.goal.get());
+  PatchMesh mesh = tessellate(scene, plan.sides, edges, plan.contacts, plan.graded_edges);
   if (plan.contacts.on.empty()) return mesh;
   // Only where faces touch can others be covered. The rest counts as known: open.
   LostShare open;
@@ -53,7 +62,8 @@ PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, co
 }
 
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge) {
-  if (plan.contacts.on.empty()) return tessellate(scene, plan.sides, max_edge, {}, plan.graded_edges);
+  if (plan.contacts.on.empty())
+    return tessellate(scene, plan.sides, edges_for(scene, max_edge, plan.goal.get()), {}, plan.graded_edges);
   const Tracing tracing(scene, find_coverings(scene, plan.sides), blockers_of(plan), reflections_of(plan));
   return open_patches(scene, plan, max_edge, tracing.between_patches());
 }

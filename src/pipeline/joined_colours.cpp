@@ -147,6 +147,9 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
     put_bars(into.error_bars, part.error_bars, columns);
     columns.put(into.direct_standard_error, part.direct_standard_error);
     columns.put(into.ray_standard_error, part.ray_standard_error);
+    into.correlated_errors.resize(part.correlated_errors.size());
+    for (std::size_t draw = 0; draw < part.correlated_errors.size(); ++draw)
+      columns.put(into.correlated_errors[draw], part.correlated_errors[draw]);
     add_facts(into.transport, weight, part.transport);
     const double tolerance = part.plan.solver.relative_error.value_or(default_tolerance);
     into.plan.solver.relative_error = k == 0 ? tolerance : std::min(tolerance, *into.plan.solver.relative_error);

@@ -12,7 +12,14 @@ RadiosityErrors radiosity_errors(const Simulation& simulation) {
   errors.reflected = solution.radiosity - problem.exitance;
   errors.solver = solution.error;
   if (simulation.error_bars) {
-    errors.sampling = problem.scattering.reflect(simulation.error_bars->form_factor);
+    // The error of each patch alone is the rest of its variance.
+    Field single = simulation.error_bars->form_factor.square();
+    const auto draws = static_cast<double>(simulation.correlated_errors.size());
+    for (const Field& draw : simulation.correlated_errors) {
+      single -= draw.square() / draws;
+      errors.correlated.push_back(problem.scattering.reflect(draw));
+    }
+    errors.sampling = problem.scattering.reflect(single.max(0.0).sqrt());
     errors.mesh = problem.scattering.reflect(simulation.error_bars->mesh);
     errors.display = problem.scattering.reflect(simulation.error_bars->display);
     return errors;

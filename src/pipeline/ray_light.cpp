@@ -1,7 +1,6 @@
 #include "pipeline/ray_light.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/refinement.h"
 #include "base/doublings.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
@@ -86,28 +85,47 @@ Eigen::ArrayXd bias_over_variance(const SmoothedHalves& smooth, const std::array
   return quotient(bias, weighted(smooth.variance));
 }
 
-// Errors of single patches' irradiances that do not depend on each other.
-struct SingleVariances {
-  Field of_rows;    // of which all that gets lost is shared out again
-  Field of_lights;  // of lamps and lights that are no patches
+// The parts of a last gather.
+struct Gather {
+  const PatchMesh& mesh;
+  const RaysWithPockets& transport;
+  const RayLight& light;
+  const NeededLight& needed;
+  const TransportFacts& facts;
 };
 
-// The variance of the flux that all patches reflect of light from other patches, relative to its square, per band. What
-// a patch sends is reflected by others psi - 1 times as much as by itself, psi = 1 + F R psi. In a bright room that is
-// more than its own error; but for rows only how far it is from the mean counts, as no flux gets lost.
-Eigen::ArrayXd variance_of_level(const RaysWithPockets& transport, const RadiosityProblem& problem,
-                                 const Field& from_patches, const ConservedFlux& flux,
-                                 const SingleVariances& variances) {
-  const Eigen::VectorXd& area = problem.area;
-  // Where no light gets to nothing errs; in there psi might grow without end.
-  const Eigen::VectorXd lit = (from_patches + problem.direct_irradiance > 0).rowwise().any().cast<double>().matrix();
-  const Eigen::VectorXd psi = importance(transport, problem, lit);
-  const Field again = (psi - lit).array().replicate(1, problem.exitance.cols());
-  const Field gain = problem.scattering.reflect(again);
-  const Field beyond_mean = gain.rowwise() - area_sum(flux.shape * gain, area).transpose();
-  const Field variance = beyond_mean.square() * variances.of_rows + gain.square() * variances.of_lights;
-  const Eigen::ArrayXd reflected = area_sum(problem.scattering.reflect(from_patches), area);
-  return quotient(area_sum(variance.colwise() * area.array(), area), reflected.square());
+// Independent errors of single patches' irradiances, W/m^2.
+struct SingleErrors {
+  Field of_rows;      // half of the difference of the two halves
+  Field of_lights;    // standard errors of lamps and of lights that are no patches
+};
+
+// A mean square over n draws has a relative standard error of sqrt(2 / n). Of many patches each draw costs more.
+std::uint64_t number_of_draws(PatchIndex patches) {
+  constexpr PatchIndex very_many_patches = 100'000;
+  return patches > very_many_patches ? 4 : patches > many_patches ? 8 : 16;
+}
+
+// Equally likely errors by reflection: each draw gives the error n_i of every patch a random sign, and follows it,
+// e = n + F R e. The part F R e is common to all patches that see the same light, so that it does not average out over
+// a room. Closed spaces have shared out the flux that n adds. Signs are common to all bands.
+std::vector<Field> draw_reflected_errors(const Gather& by, const ConservedFlux& flux, const SingleErrors& single) {
+  enum Purpose : std::uint64_t { of_rows = 0x64726177, of_lights };
+  const RadiosityProblem& problem = by.needed.problem;
+  const std::vector<std::uint32_t> keys = patch_keys(by.mesh);
+  const auto with_signs = [&](Field error, std::uint64_t draw, Purpose purpose) {
+    for (PatchIndex i = 0; i < by.mesh.size(); ++i)
+      if ((hash({keys[i], draw, purpose}) & 1U) != 0) error.row(i) *= -1;
+    return error;
+  };
+  const Field none = Field::Zero(single.of_rows.rows(), single.of_rows.cols());
+  std::vector<Field> draws;
+  for (std::uint64_t draw = 0; draw < number_of_draws(by.mesh.size()); ++draw) {
+    const Field error = flux.completed(with_signs(single.of_rows, draw, of_rows), none, problem.area) +
+                        with_signs(single.of_lights, draw, of_lights);
+    draws.push_back(followed(by.transport, problem, error) - error);
+  }
+  return draws;
 }
 
 // The variance of the irradiance by bright patches that no ray was sent towards, of n rays over the hemisphere: its
@@ -168,19 +186,12 @@ Observer without_iterates(const Observer& observer) {
   };
 }
 
-// The irradiance from other patches in the bands that need it, and its variance with that of all lights.
+// The irradiance from other patches in the bands that need it, its variance with that of all lights, and the part of its
+// error that patches have in common, as equally likely draws.
 struct GatheredLight {
   Field irradiance;
   Field variance;
-};
-
-// What is gathered, and by what.
-struct Gather {
-  const PatchMesh& mesh;
-  const RaysWithPockets& transport;
-  const RayLight& light;
-  const NeededLight& needed;
-  const TransportFacts& facts;
+  std::vector<Field> correlated_errors;
 };
 
 // A solution in the needed bands; flux is null where no light is reflected twice.
@@ -204,7 +215,7 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
 
   // 2. What that scatters, and how far it is off where irradiance is not linear.
   const Eigen::ArrayXd bias = bias_over_variance(smooth, raw, problem);
-  GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0), scaled(smooth.variance, 1 + bias)};
+  GatheredLight found{(0.5 * (smooth.halves[0] + smooth.halves[1])).max(0.0), scaled(smooth.variance, 1 + bias), {}};
   // Two halves may agree by chance, or both miss a bright gap that rays of patches around meet. Variances are compared
   // by as many rays; those to lamps are as many for all.
   const Field& of_lamps = by.needed.of_lamps;
@@ -214,16 +225,16 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
       found.variance.max(around.colwise() / times) + of_lamps.max(mean_around(by.mesh, problem.area, of_lamps));
   if (!by.light.is_missed.empty())
     found.variance.rowwise() += variance_of_missed(by.light, sources, row_sum).transpose();
-  SingleVariances single{(0.5 * (raw[0] - raw[1])).square(), by.needed.of_lamps};
+  Field of_lights = by.needed.of_lamps;
   if (by.needed.of_others.size() > 0) {
     found.variance += by.needed.of_others;
-    single.of_lights += by.needed.of_others;
+    of_lights += by.needed.of_others;
   }
   if (!solved.flux || !solved.solution.trapped.empty()) return found;
 
-  // 3. What single rows err is in the light of all bounces, the mean of which is reflected as often as it is.
-  const Eigen::ArrayXd level = variance_of_level(by.transport, problem, found.irradiance, *solved.flux, single);
-  found.variance += scaled(found.irradiance.square(), level);
+  // 3. Errors of single patches are in the light of all bounces.
+  found.correlated_errors = draw_reflected_errors(by, *solved.flux, {0.5 * (raw[0] - raw[1]), of_lights.sqrt()});
+  found.variance += mean_square(found.correlated_errors);
   return found;
 }
 
@@ -251,7 +262,9 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWit
     *field = expanded(*field, needed.bands);
   solution.irradiance = expanded(gathered.irradiance + problem.direct_irradiance, needed.bands);
   solution.radiosity = radiosity_from(all, solution.irradiance);
-  return {std::move(solution), expanded(gathered.variance.sqrt(), needed.bands)};
+  RaySolution found{std::move(solution), expanded(gathered.variance.sqrt(), needed.bands), {}};
+  for (const Field& draw : gathered.correlated_errors) found.correlated_errors.push_back(expanded(draw, needed.bands));
+  return found;
 }
 
 }  // namespace patchlight

@@ -28,6 +28,7 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   simulation.plan.solver.relative_error = best.relative_error;
   simulation.solution = std::move(best.solution);
   simulation.ray_standard_error = std::move(found.standard_error);
+  simulation.correlated_errors = std::move(found.correlated_errors);
   simulation.balance = energy_balance(simulation.problem, simulation.solution, facts.row_sum, facts.lost);
   return simulation;
 }

@@ -59,23 +59,37 @@ Field direct_difference(const Run& run, const Simulation& simulation, const Asse
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 
-// What the sampling of form factors errs. Light straight from the lamps is found twice, unless lamps are too many.
-Field sampling_errors_in_bands(const Run& run, const Simulation& simulation, const Assembly& raw,
-                               const RowTransport& transport, const SolvedProblem& solved) {
+// The sampling error of form factors, and equally likely draws of the part that patches have in common.
+struct SamplingErrors {
+  Field error;
+  std::vector<Field> draws;
+};
+
+// Light straight from the lamps is found twice, unless lamps are too many.
+SamplingErrors sampling_errors_in_bands(const Run& run, const Simulation& simulation, const Assembly& raw,
+                                        const RowTransport& transport, const SolvedProblem& solved) {
   const Field& B = solved.solution.radiosity;
-  if (share_of_lamps(solved.problem) > most_lamps)
-    return form_factor_errors(simulation.mesh, raw, transport, solved, B);
+  if (share_of_lamps(solved.problem) > most_lamps) {
+    std::vector<Field> draws = draw_form_factor_errors(simulation.mesh, raw, transport, solved, B);
+    Field error = mean_square(draws).sqrt();
+    return {std::move(error), std::move(draws)};
+  }
   const Field difference = direct_difference(run, simulation, raw, solved.problem.exitance);
   const Field direct = direct_light_errors(simulation.mesh, transport, solved.problem, difference);
-  const Field other = form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
-  return (direct.square() + other.square()).sqrt();
+  std::vector<Field> draws =
+      draw_form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
+  Field error = (direct.square() + mean_square(draws)).sqrt();
+  return {std::move(error), std::move(draws)};
 }
 
-Field sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw, const RowTransport& transport,
-                      const SolvedProblem& solved) {
+SamplingErrors sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw,
+                               const RowTransport& transport, const SolvedProblem& solved) {
   const InNeededBands needed = in_needed_bands(solved);
   const SolvedProblem in_bands{needed.problem, needed.solution, solved.closed};
-  return expanded(sampling_errors_in_bands(run, simulation, raw, transport, in_bands), needed.bands);
+  SamplingErrors found = sampling_errors_in_bands(run, simulation, raw, transport, in_bands);
+  found.error = expanded(found.error, needed.bands);
+  for (Field& draw : found.draws) draw = expanded(draw, needed.bands);
+  return found;
 }
 
 // What it does to the irradiance that the exposed shares of patches may be off. Where closure brings the entries of a
@@ -269,11 +283,17 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
 
   // 2. What patches, samples and solver err.
   const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));
-  const Field sampled = sampling_errors(run, simulation, *result.raw, rows, solved);
+  auto [sampled, draws] = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
   Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
-  if (has_point_or_daylight(run.scene))
-    squares += errors_of_lights(mesh, rows, solved.problem, simulation.direct_standard_error).square();
+  if (has_point_or_daylight(run.scene)) {
+    const Field& of_lights = simulation.direct_standard_error;
+    const std::vector<Field> by_lights = draw_errors_of_lights(mesh, rows, solved.problem, of_lights);
+    // The error of a patch's own direct light is known without draws.
+    squares += mean_square(by_lights).max(of_lights.square());
+    for (std::size_t k = 0; k < draws.size(); ++k) draws[k] += by_lights[k];
+  }
+  simulation.correlated_errors = std::move(draws);
   simulation.error_bars = {.mesh = of_mesh.total(),
                            .mesh_noise = {},
                            .form_factor = squares.sqrt(),

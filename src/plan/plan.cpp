@@ -8,6 +8,7 @@
 #include "plan/effect_facts.h"
 #include "plan/fine_outlines.h"
 #include "plan/first_light.h"
+#include "plan/goal.h"
 #include "plan/left_out_sides.h"
 #include "plan/luminaires_behind.h"
 #include "plan/memory.h"
@@ -104,15 +105,17 @@ std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {
 struct PatchSize {
   double max_edge = 0;      // metres
   std::size_t patches = 0;  // about so many, or the least that the edge allows
+  std::size_t around = 0;   // of these those of the surroundings of the goal
   std::vector<std::string> notes;
 };
 
 // The kept sides with their lines, and what is known of the number of their patches.
 struct Outlined {
   const Scene& scene;
-  const KeptSides& sides;
+  const KeptSides& sides;  // those of the goal
   const ContactLines& contacts;
   EdgeSearch& search;
+  const Goal* goal = nullptr;
 };
 
 // The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
@@ -152,11 +155,14 @@ std::size_t kept_side_count(const KeptSides& sides) {
 // The largest edge for the number of patches that is asked for.
 PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& request) {
   const std::size_t least = of.search.least_patches();
-  const std::size_t wanted = patches_wanted(asked, least, request);
+  const double share = of.goal != nullptr ? of.goal->share_of_surroundings : 0;
+  const auto around = static_cast<std::size_t>(std::lround(share * static_cast<double>(asked)));
+  const std::size_t wanted = patches_wanted(asked - around, least, request);
   // A nested mesh is made from parents with edges twice as long.
   PatchSize size{
       has_error_bars(request.accuracy) ? parents_edge_for(of.search, wanted) / 2 : of.search.edge_for(wanted),
-      wanted,
+      wanted + around,
+      around,
       {}};
   if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(of.scene, asked, wanted));
   return size;
@@ -165,7 +171,7 @@ PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& r
 PatchSize patch_size(const Outlined& of, const Request& request) {
   assert(!request.mesh.max_edge || *request.mesh.max_edge > 0);
   const std::size_t asked = request.mesh.max_edge ? 0 : patches_asked(request);
-  PatchSize size = request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, expected_patches(of, request), {}}
+  PatchSize size = request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, expected_patches(of, request), 0, {}}
                                          : patch_size_for(asked, of, request);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
   std::vector<std::string> of_size;
@@ -222,14 +228,18 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   KeptSides sides = sides_for(scene, asked);
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
+  // An edge that is asked for is that of all patches.
+  const bool has_goal = knows_lights && !asked.mesh.max_edge && asked.accuracy.interest.empty();
+  const std::shared_ptr<const Goal> goal = has_goal ? find_goal(scene, sides, asked.assembly.seed) : nullptr;
+  const KeptSides of_goal = sides_of_goal(sides, goal.get());
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   // Pairs let the same share of all bands through what is clear.
   const bool mirrors =
       (has_reflections(facts) || facts.coloured_specular > 0) && !contains(asked.effects.skip, Effect::mirrors);
-  EdgeSearch search(scene, sides, contacts);
-  const Outlined outlined{scene, sides, contacts, search};
+  EdgeSearch search(scene, of_goal, contacts);
+  const Outlined outlined{scene, of_goal, contacts, search, goal.get()};
   const auto [request, note_on_storage] =
       choose_storage(asked, given, {expected_patches(outlined, asked), kept_side_count(sides), reflects, mirrors});
   PatchSize size = patch_size(outlined, request);
@@ -245,6 +255,8 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .contacts = std::move(contacts),
           .graded_edges = asked.mesh.graded_edges,
           .max_edge = size.max_edge,
+          .goal = goal,
+          .patches_around = size.around,
           .assembly = decided(request, facts, decisions, given),
           .solver = decided(request.solver, in_colour && one_colour, request.assembly, facts),
           .accuracy = decided(request.accuracy),

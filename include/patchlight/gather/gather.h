@@ -7,15 +7,17 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace patchlight {
 
 class LightPaths;
 class Occluder;
 
-/// What may be wrong with the radiosities that are gathered, per patch and band, W/m^2. Empty fields: nothing.
+/// Errors of the radiosities that are gathered, per patch and band, W/m^2. Empty fields: none.
 struct RadiosityErrors {
-  Field sampling;   ///< standard deviations of errors that have nothing to do with each other
+  Field sampling;   ///< standard deviations of errors that are independent of each other
+  std::vector<Field> correlated = {};  ///< equally likely draws of the sampling errors that patches have in common
   Field mesh;       ///< standard deviations of errors that patches share; empty where not known
   Field solver;     ///< bounds
   Field display;    ///< root mean square of how far points of a patch are from its mean; empty where not known
@@ -65,8 +67,8 @@ struct GatheredIrradiance {
 /// sides with four patches or fewer, which symmetry may make alike, all that they reflect is one where `display` is not
 /// known.
 ///
-/// The patches' own errors are gathered as their light is: sampling errors add up in squares, mesh errors and the
-/// solver's bounds as they are. Where the patches' mesh errors are not known, what they reflect is taken to be off by
+/// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
+/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the patches' mesh errors are not known, what they reflect is taken to be off by
 /// what planes do not explain, root mean square over all sensors, as a share. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},

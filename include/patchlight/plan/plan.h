@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,13 +68,17 @@ struct Request {
   Resources resources = {};
 };
 
+struct Goal;
+
 /// How a scene is going to be solved: the parts of the request with nothing left open, and what was decided in place of
 /// mesh and effects.
 struct Plan {
   KeptSides sides;
   ContactLines contacts;      ///< where patches end besides the outlines of their polygons
   bool graded_edges = false;  ///< as asked for
-  double max_edge = 0;        ///< metres
+  double max_edge = 0;        ///< metres; by daylight of the enclosed spaces
+  std::shared_ptr<const Goal> goal = {};  ///< the surfaces that the run is about; null: all, each by its area
+  std::size_t patches_around = 0;         ///< patches of the surroundings of the goal
   AssemblyOptions assembly;   ///< stored as asked for, else as pairs, rays or rows of the lamps
   SolverOptions solver;       ///< of a mesh on the way to an accuracy: its own relative error
   AccuracyOptions accuracy;   ///< with error bars where patches are refined

@@ -1,0 +1,301 @@
+#include "plan/goal.h"
+
+#include "accuracy/enclosed.h"
+#include "accuracy/errors.h"
+#include "base/sampling.h"
+#include "base/vectors.h"
+#include "mesh/mesher.h"
+#include "mesh/refine.h"
+#include "scene/coverings.h"
+#include "visibility/occluder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Particles start in batches, until enough of them have arrived in the surroundings, or so many batches have started.
+constexpr std::uint32_t particles_of_batch = 1 << 14;
+constexpr std::uint32_t max_batches = 12;
+constexpr std::size_t enough_hits = 1 << 14;
+constexpr std::uint32_t max_bounces = 16;
+
+// A side with less of its area in an enclosed space belongs to the surroundings, as the ground below a house does.
+constexpr double least_enclosed_part = 0.25;
+
+double area_of(const Scene& scene, PolygonIndex polygon) { return area_vector(corner_points(scene, polygon)).norm(); }
+
+// The width of a polygon, if it is a rectangle about as long as its bounds.
+double width_of(const Scene& scene, PolygonIndex polygon) {
+  Box box;
+  for (const Point& corner : corner_points(scene, polygon)) box.extend(corner);
+  return area_of(scene, polygon) / box.diagonal().norm();
+}
+
+// Some patches on each large polygon, and at least one on each other.
+PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
+  constexpr double patches = 4000;
+  const double usual = std::sqrt(kept_area(scene, sides) / patches);
+  std::vector<double> coarsest;
+  double smallest = usual;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    coarsest.push_back(std::max(usual, 0.5 * width_of(scene, p)));
+    smallest = std::min(smallest, coarsest.back());
+  }
+  return tessellate(scene, sides, {smallest, std::move(coarsest)});
+}
+
+// Per polygon whether a side has a part in an enclosed space.
+std::vector<std::uint8_t> polygons_with(const Eigen::VectorXd& enclosed, const PatchMesh& mesh) {
+  std::vector<std::uint8_t> is_goal(mesh.first_patch.size() / 2, 0);
+  for (PolygonIndex p = 0; p < is_goal.size(); ++p) {
+    for (const Side side : {Side::front, Side::back}) {
+      const auto [begin, end] = mesh.patches_on(p, side);
+      double all = 0;
+      double inside = 0;
+      for (PatchIndex i = begin; i < end; ++i) all += mesh.area[i], inside += enclosed[i] * mesh.area[i];
+      if (inside > 0 && inside >= least_enclosed_part * all) is_goal[p] = 1;
+    }
+  }
+  return is_goal;
+}
+
+// A particle of importance on its way.
+struct Particle {
+  Ray ray;
+  bool has_left = false;  // it has met the surroundings
+};
+
+// The places where particles start: the enclosed patches by their area, and the sensors, which take a half.
+class Sources {
+ public:
+  Sources(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) : mesh_(mesh) {
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      if (enclosed[i] == 0) continue;
+      patches_.push_back(i);
+      area_before_.push_back(area_);
+      area_ += mesh.area[i];
+    }
+    sensors_ = all_sensors(scene.sensors);
+  }
+
+  Particle at(const std::array<double, 4>& u) const {
+    if (!sensors_.empty() && u[0] < 0.5) {
+      const auto k = std::min(sensors_.size() - 1, static_cast<std::size_t>(2 * u[0] * static_cast<double>(sensors_.size())));
+      return {{sensors_[k].point, cosine_direction(sensors_[k].normal, u[1], u[2]), no_polygon}};
+    }
+    const double place = sensors_.empty() ? u[0] : 2 * u[0] - 1;
+    const auto next = std::upper_bound(area_before_.begin(), area_before_.end(), place * area_);
+    const auto k = static_cast<std::size_t>(next - area_before_.begin()) - 1;
+    const PatchIndex i = patches_[k];
+    const double rest = std::clamp((place * area_ - area_before_[k]) / mesh_.area[i], 0.0, 1.0);
+    return {{square_to_quad(mesh_.corner_points(i).points, rest, u[3]), cosine_direction(mesh_.normal[i], u[1], u[2]),
+             mesh_.polygon[i]}};
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  std::vector<PatchIndex> patches_;
+  std::vector<double> area_before_;
+  double area_ = 0;
+  std::vector<Sensor> sensors_;
+};
+
+double mean_of(const Spectrum& spectrum) { return spectrum.size() > 0 ? spectrum.mean() : 0; }
+
+// The particle after a hit; none where it is absorbed. Mirrors scatter as matt faces do: this steers effort alone.
+std::optional<Particle> scattered(const Scene& scene, const Hit& hit, const Particle& before, bool is_goal,
+                                  std::uint32_t key) {
+  const auto uniform = [&](std::uint32_t k) { return (hash({key, k}) + 0.5) * 0x1p-32; };
+  const Polygon& polygon = scene.polygons[hit.polygon];
+  if (is_opening(scene, hit.polygon)) return Particle{{hit.point, before.ray.direction, hit.polygon}, before.has_left};
+  const Material& material = scene.materials[material_on(polygon, hit.side)];
+  const double back = mean_of(material.reflectance) + mean_of(material.specular_reflectance);
+  const double drawn = uniform(0);
+  if (drawn >= back + mean_of(material.diffuse_transmittance)) return {};
+  const Vector front = front_normal(scene, hit.polygon);
+  const bool leaves_front = (hit.side == Side::front) == (drawn < back);
+  const Vector direction = cosine_direction(leaves_front ? front : Vector(-front), uniform(1), uniform(2));
+  return Particle{{hit.point, direction, hit.polygon}, before.has_left || !is_goal};
+}
+
+// Importance that arrives in the surroundings, and that gets out into the open without meeting these.
+struct Arrived {
+  std::vector<ImportanceHit> hits;
+  std::size_t escaped = 0;
+};
+
+void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
+                 std::vector<Particle> particles, std::uint32_t seed, Arrived& arrived) {
+  for (std::uint32_t bounce = 0; bounce < max_bounces && !particles.empty(); ++bounce) {
+    std::vector<Ray> rays;
+    for (const Particle& particle : particles) rays.push_back(particle.ray);
+    const auto hits = faces.first_hits(rays);
+    std::vector<Particle> next;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      if (!hits[k]) {
+        arrived.escaped += particles[k].has_left ? 0 : 1;
+        continue;
+      }
+      const Hit& hit = *hits[k];
+      const bool is_in_goal = is_goal[hit.polygon] != 0;
+      if (!is_in_goal && !is_opening(scene, hit.polygon))
+        arrived.hits.push_back({{hit.polygon, hit.side, hit.point}, hit.distance > 0 ? 1 / hit.distance : 0});
+      const std::uint32_t key = hash({seed, bounce, k});
+      if (auto particle = scattered(scene, hit, particles[k], is_in_goal, key)) next.push_back(*particle);
+    }
+    particles = std::move(next);
+  }
+}
+
+Arrived trace_importance(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
+                         const Sources& sources, std::uint64_t seed) {
+  Arrived arrived;
+  for (std::uint32_t batch = 0; batch < max_batches && arrived.hits.size() < enough_hits; ++batch) {
+    const std::uint32_t key = hash({seed, batch, 0x676f616c});
+    std::vector<Particle> particles;
+    for (const auto& u : scrambled_sobol(particles_of_batch, key)) particles.push_back(sources.at(u));
+    trace_batch(scene, faces, is_goal, std::move(particles), key, arrived);
+  }
+  return arrived;
+}
+
+std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const PatchMesh& mesh) {
+  std::vector<SidePoint> places;
+  for (const ImportanceHit& hit : hits) places.push_back(hit.at);
+  return PatchLookup(mesh).patches_at(places);
+}
+
+}  // namespace
+
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, std::uint64_t seed) {
+  if (!scene.sky && !scene.sun) return {};
+
+  // 1. The polygons of enclosed spaces.
+  const PatchMesh mesh = coarse_mesh(scene, sides);
+  const Occluder faces(scene, Occluder::Blockers::all, find_coverings(scene, sides));
+  const Eigen::VectorXd enclosed = enclosed_patches(scene, faces, mesh);
+  Goal goal{polygons_with(enclosed, mesh), {}, 0, 0};
+  double around = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    (goal.is_goal[mesh.polygon[i]] != 0 ? goal.goal_area : around) += mesh.area[i];
+  if (goal.goal_area == 0 || around == 0) return {};
+
+  // 2. Importance of the surroundings.
+  Arrived arrived = trace_importance(scene, faces, goal.is_goal, Sources(scene, mesh, enclosed), seed);
+  goal.hits = std::move(arrived.hits);
+
+  // 3. Light of the brightness outside gets in from the open, and by the surroundings. So the goal has about (escaped +
+  //    hits) / particles of that brightness, and effort is shared as importance times brightness is.
+  const auto hits = static_cast<double>(goal.hits.size());
+  goal.share_of_surroundings = hits > 0 ? hits / (static_cast<double>(arrived.escaped) + 2 * hits) : 0;
+  return std::make_shared<const Goal>(std::move(goal));
+}
+
+KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal) {
+  KeptSides kept = sides;
+  if (goal == nullptr) return kept;
+  for (std::size_t p = 0; p < goal->is_goal.size(); ++p)
+    if (goal->is_goal[p] == 0) kept.front[p] = kept.back[p] = 0;
+  return kept;
+}
+
+PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal) {
+  if (goal == nullptr) return max_edge;
+  std::vector<double> coarsest(scene.polygons.size(), 0);
+  for (PolygonIndex p = 0; p < coarsest.size(); ++p)
+    if (goal->is_goal[p] == 0) coarsest[p] = 2 * width_of(scene, p);
+  return {max_edge, std::move(coarsest)};
+}
+
+namespace {
+
+// Below so many hits the parts of a patch share its importance alike: their own hits would be chance.
+constexpr double few_hits = 8;
+
+// Importance of patches, as their hits tell it; and whether these are enough for the parts to differ.
+struct PatchImportance {
+  std::vector<double> of_patch;
+  std::vector<std::uint8_t> has_many_hits;
+};
+
+PatchImportance importance_of(const PatchMesh& mesh, const std::vector<ImportanceHit>& hits) {
+  PatchImportance found{std::vector<double>(mesh.size(), 0), {}};
+  std::vector<double> number(mesh.size(), 0);
+  const std::vector<PatchIndex> met = patches_of(hits, mesh);
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    if (met[k] == no_patch) continue;
+    const double size = std::sqrt(mesh.area[met[k]]);
+    number[met[k]] += 1;
+    found.of_patch[met[k]] += std::pow(std::min(1.0, size * hits[k].closeness), mesh_order);
+  }
+  for (const double n : number) found.has_many_hits.push_back(n >= few_hits ? 1 : 0);
+  return found;
+}
+
+// That of the parts of patches.
+PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
+                                 const std::vector<ImportanceHit>& hits) {
+  const double left = std::pow(0.5, mesh_order) / 4;
+  PatchImportance now = importance_of(refined.mesh, hits);
+  std::vector<int> parts(before.of_patch.size(), 0);
+  for (const PatchIndex parent : refined.parent) ++parts[parent];
+  for (PatchIndex i = 0; i < refined.mesh.size(); ++i) {
+    const PatchIndex parent = refined.parent[i];
+    if (before.has_many_hits[parent] != 0) continue;
+    now.of_patch[i] = before.of_patch[parent] * (parts[parent] > 1 ? left : 1);
+    now.has_many_hits[i] = 0;
+  }
+  return now;
+}
+
+}  // namespace
+
+PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches) {
+  const auto is_around = [&](const PatchMesh& of, PatchIndex i) { return goal.is_goal[of.polygon[i]] == 0; };
+  PatchImportance importance = importance_of(mesh, goal.hits);
+  for (;;) {
+    std::size_t count = 0;
+    std::vector<PatchIndex> order;
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      count += is_around(mesh, i) ? 1 : 0;
+      if (is_around(mesh, i) && importance.of_patch[i] > 0) order.push_back(i);
+    }
+    if (count >= patches || order.empty()) return mesh;
+
+    // The most important ones, down to a quarter of the first, each of which becomes four.
+    std::stable_sort(order.begin(), order.end(), [&](PatchIndex a, PatchIndex b) {
+      return importance.of_patch[a] > importance.of_patch[b];
+    });
+    const double least = importance.of_patch[order.front()] / 4;
+    std::vector<std::uint8_t> is_cut(mesh.size(), 0);
+    for (std::size_t k = 0; k < order.size() && importance.of_patch[order[k]] >= least && count + 3 * k < patches; ++k)
+      is_cut[order[k]] = 1;
+    Refinement refined = refine(mesh, is_cut);
+    importance = importance_after(importance, refined, goal.hits);
+    mesh = std::move(refined.mesh);
+  }
+}
+
+std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal) {
+  if (goal == nullptr || goal->hits.empty()) return mesh.area;
+  std::vector<double> hits(mesh.size(), 0.5);  // patches that none has met by chance count as well
+  for (const PatchIndex i : patches_of(goal->hits, mesh))
+    if (i != no_patch) hits[i] += 1;
+  const auto is_around = [&](PatchIndex i) { return goal->is_goal[mesh.polygon[i]] == 0; };
+  double all = 0;
+  double area = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) (is_around(i) ? all : area) += is_around(i) ? hits[i] : mesh.area[i];
+  const double of_hit = area * goal->share_of_surroundings / (1 - goal->share_of_surroundings) / all;
+  std::vector<double> areas = mesh.area;
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    if (is_around(i)) areas[i] = hits[i] * of_hit;
+  return areas;
+}
+
+}  // namespace patchlight

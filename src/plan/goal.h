@@ -1,0 +1,56 @@
+#pragma once
+
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
+
+#include "mesh/mesher.h"
+#include "mesh/patch_edges.h"
+#include "mesh/patch_lookup.h"
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace patchlight {
+
+/// A place of the surroundings where importance arrives.
+struct ImportanceHit {
+  SidePoint at;
+  double closeness = 0;  ///< 1 / length of the ray that arrives, 1/m
+};
+
+/// The surfaces that a run is about, and how much the rest of the scene matters to the light on these. By daylight the
+/// goal is the enclosed spaces, and all else is their surroundings: the ground, facades, neighbors, terrain.
+///
+/// Importance is the solution of the adjoint equation psi = goal + F R psi (Smits, Arvo and Salesin 1992). Particles
+/// start on the surfaces of the goal, and at sensors, and scatter as light does. No mesh is needed, so that a small room
+/// in a wide terrain is not missed.
+struct Goal {
+  std::vector<std::uint8_t> is_goal;    ///< per polygon: 1 where a side has a part in an enclosed space
+  std::vector<ImportanceHit> hits;      ///< equal parts of the importance of the surroundings
+  double goal_area = 0;                 ///< m^2, of the kept sides of goal polygons
+  double share_of_surroundings = 0;     ///< of the patches, and of the rays
+};
+
+/// The goal of a scene by daylight. Null where there is no sky and no sun, no enclosed space, or nothing but enclosed
+/// spaces: then every surface counts by its area. Costs some hundred thousand rays.
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, std::uint64_t seed);
+
+/// The kept sides of the polygons of the goal; all where `goal` is null.
+KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal);
+
+/// The edges of patches before the surroundings are cut by importance: there as coarse as each polygon allows.
+PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal);
+
+/// The mesh with patches of the surroundings cut in four, the most important first, until these are `patches`.
+/// Importance of a patch is the number of its hits times (size / distance)^1.2, which is how the error by its size goes.
+PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches);
+
+/// By how much each patch counts when rays are shared out, m^2: its area on goal polygons, and on the others the area
+/// times their importance. The area of all patches where `goal` is null.
+std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal);
+
+}  // namespace patchlight
