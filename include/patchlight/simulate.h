@@ -83,12 +83,12 @@ struct Simulation {
   Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
                                   ///< the solver err, which are not known; else empty
-  std::vector<Field> correlated_errors = {};  ///< equally likely draws of the sampling error of the irradiance that
-                                              ///< patches have in common, W/m^2: their mean square is part of the
-                                              ///< square of the sampling error. Sums over many patches need them, as
-                                              ///< in a room the level of the light is common to all. Empty where none
-                                              ///< are known
-  bool unfinished = false;        ///< stopped by the observer, with Steps::keeps_unfinished
+  std::vector<Field> correlated_errors = {};    ///< equally likely draws of the sampling error of the irradiance that
+                                                ///< patches have in common, W/m^2: their mean square is part of the
+                                                ///< square of the sampling error. Sums over many patches need them, as
+                                                ///< in a room the level of the light is common to all. Empty where none
+                                                ///< are known
+  bool unfinished = false;                      ///< stopped by the observer, with Steps::keeps_unfinished
   std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
                                                 ///< the solution; never null after simulate()
 };

@@ -34,10 +34,10 @@ Field followed(const TransportOperator& transport, const RadiosityProblem& probl
 /// The mean over draws of their squares, per patch and band.
 Field mean_square(std::span<const Field> draws);
 
-/// Equally likely errors of the irradiance by the sampling of form factors, of the light `B`, radiosity in W/m^2: random
-/// draws of the errors of the entries (random_errors()), each followed through all reflections, e = A^-1 D B + F R e. In
-/// a closed scene the draws are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens
-/// of applications. `raw` has the errors of the entries.
+/// Equally likely errors of the irradiance by the sampling of form factors, of the light `B`, radiosity in W/m^2:
+/// random draws of the errors of the entries (random_errors()), each followed through all reflections, e = A^-1 D B + F
+/// R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs
+/// some tens of applications. `raw` has the errors of the entries.
 std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                                            const SolvedProblem& solved, const FieldView& B);
 

@@ -99,8 +99,8 @@ std::vector<Field> follow_draws(const Draws& draws_of, const SpanningBands& span
     return followed_draws;
   }
   for (std::size_t draw = 0; draw < draws; ++draw)
-    followed_draws[draw] = followed(draws_of.transport, problem,
-                                    spanning.all_bands(draws_of.of_draw(static_cast<Eigen::Index>(draw))));
+    followed_draws[draw] =
+        followed(draws_of.transport, problem, spanning.all_bands(draws_of.of_draw(static_cast<Eigen::Index>(draw))));
   return followed_draws;
 }
 

@@ -183,9 +183,10 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
                                    const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const std::span<const std::uint8_t> more = options.doublings;
-  const auto doublings = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh)](std::size_t k) {
+  const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
+  const auto doublings = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(areas)](std::size_t k) {
     constexpr double most = most_doublings;
-    const auto by_area = static_cast<int>(std::lround(std::clamp(std::log2(mesh.area[k] / usual) / 2, -most, most)));
+    const auto by_area = static_cast<int>(std::lround(std::clamp(std::log2(areas[k] / usual) / 2, -most, most)));
     return more.empty() ? by_area : std::min(by_area + more[k], most_asked);
   };
   int most = most_doublings;

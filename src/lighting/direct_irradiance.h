@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace patchlight {
 
@@ -20,7 +21,8 @@ struct LightingOptions {
   int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
   int sky_samples = 1024;     ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
-  double usual_area = 0;  ///< area of the patch that takes just these numbers of rays, m^2; 0: the mean of all
+  std::vector<double> areas = {};  ///< per patch: in proportion to which it matters, m^2; empty: its own area
+  double usual_area = 0;           ///< area of the patch that takes just these numbers of rays, m^2; 0: the mean of all
   std::span<const std::uint8_t> doublings = {};  ///< per patch: how often that number is doubled; empty: never
   std::uint32_t alike = 1;  ///< 1 or more: so many patches that follow each other take the same samples, so that little
                             ///< noise is in their differences

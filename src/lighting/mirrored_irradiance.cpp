@@ -284,11 +284,12 @@ Mirrors::Mirrors(const Scene& scene, const Tracing& tracing) : paths(scene), vie
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
-  const double usual = options.usual_area > 0 ? options.usual_area : mean_area(mesh);
+  const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
+  const double usual = options.usual_area > 0 ? options.usual_area : mean_area(areas);
   const std::span<const std::uint8_t> more = options.doublings;
   const auto share = [&](std::size_t k) {
     constexpr double least = 0.25;
-    return std::clamp(std::sqrt(mesh.area[k] / usual), least, 1.0);
+    return std::clamp(std::sqrt(areas[k] / usual), least, 1.0);
   };
   const auto doublings = [&](std::size_t k) -> unsigned { return more.empty() ? 0 : more[k]; };
   const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());

@@ -112,7 +112,8 @@ void require_so_many_patches(const Scene& scene, const KeptSides& sides, double 
 
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdges& edges, const ContactLines& contacts,
                      bool graded_edges) {
-  assert(edges.max_edge > 0 && sides.front.size() == scene.polygons.size() && sides.back.size() == scene.polygons.size());
+  assert(edges.max_edge > 0 && sides.front.size() == scene.polygons.size() &&
+         sides.back.size() == scene.polygons.size());
   if (edges.coarsest.empty()) require_so_many_patches(scene, sides, edges.max_edge);
   Pieces pieces = make_pieces(scene, sides, edges, contacts, graded_edges);
   PatchMesh mesh;

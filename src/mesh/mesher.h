@@ -20,8 +20,8 @@ void require_so_many_patches(const Scene& scene, const KeptSides& sides, double 
 
 /// Subdivides the kept sides of every polygon into patches no edge of which is longer than `edges` says.
 ///
-/// An edge is cut into ceil(length / max_edge) equal parts, so neighbors of one longest edge that share an edge share its
-/// points. Where an outline that no third face meets is finer than that it becomes coarser first, see
+/// An edge is cut into ceil(length / max_edge) equal parts, so neighbors of one longest edge that share an edge share
+/// its points. Where an outline that no third face meets is finer than that it becomes coarser first, see
 /// coarse_outline(). Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
 /// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
 /// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
@@ -31,8 +31,8 @@ void require_so_many_patches(const Scene& scene, const KeptSides& sides, double 
 /// sides of a polygon have their own vertices. With graded edges patches of grids of quadrilaterals shrink towards
 /// edges where lit faces meet, see graded(): there are as many, and edges in the middle are longer than `max_edge` by
 /// up to pi / 2. \throws MemoryError when more than 2^31 patches would be needed.
-PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdges& edges, const ContactLines& contacts = {},
-                     bool graded_edges = false);
+PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdges& edges,
+                     const ContactLines& contacts = {}, bool graded_edges = false);
 
 /// The number of patches when no edge is cut: the least there can be.
 std::size_t least_patches(const Scene& scene, const KeptSides& sides, const ContactLines& contacts = {});

@@ -2,7 +2,12 @@
 
 #include "patchlight/mesh/patch_mesh.h"
 
+#include <span>
+
 namespace patchlight {
+
+/// The mean of areas, m^2.
+double mean_area(std::span<const double> areas);
 
 /// The mean area of the patches, m^2.
 double mean_area(const PatchMesh& mesh);

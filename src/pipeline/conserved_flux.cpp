@@ -100,9 +100,9 @@ ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd&
   for (PatchIndex i = 0; i < size; ++i) {
     const PatchIndex root = components.root(i);
     const bool is_closed = lost[root] <= max_loss_of_closed * all[root];
-    found.space_of.push_back(
-        is_closed ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
-                  : ClosedSpaces::open);
+    found.space_of.push_back(is_closed
+                                 ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
+                                 : ClosedSpaces::open);
   }
   found.count = static_cast<Eigen::Index>(number.size());
   return found;

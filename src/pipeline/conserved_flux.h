@@ -27,8 +27,9 @@ ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd&
 /// The flux that sampling errors of the rows lose or add in each closed space. Each row sums to s_j, but the columns do
 /// not: by reciprocity sum_i A_i (F B)_i = sum_j A_j s_j B_j within a space. The correction distributes the missing
 /// flux of a space in proportion to the irradiance: H = F B + shape (sum_j A_j s_j B_j - sum_i A_i (F B)_i). Without it
-/// a room of reflectance rho changes its level 1 / (1 - rho) times as much. An open space gets no correction: the errors
-/// of its rows would be paid by others. In a room with a window those of the ground outside are larger than its own.
+/// a room of reflectance rho changes its level 1 / (1 - rho) times as much. An open space gets no correction: the
+/// errors of its rows would be paid by others. In a room with a window those of the ground outside are larger than its
+/// own.
 struct ConservedFlux {
   ClosedSpaces spaces;
   Eigen::VectorXd seen_area;  ///< A_j s_j, m^2

@@ -6,6 +6,7 @@
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"
+#include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "transport/bright_patches.h"
 #include "transport/row_blocks.h"
@@ -27,6 +28,7 @@ RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
   constexpr int packets = 32;
   constexpr int to_backs_of_many = 64;
   return {.rays = assembly.rays,
+          .areas = important_areas(mesh, plan.goal.get()),
           .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
           .lost_share_rays = takes_few_rays(plan, mesh.size()) ? std::min(assembly.lost_share_rays, to_backs_of_many)
                                                                : assembly.lost_share_rays,

@@ -6,6 +6,7 @@
 #include "mesh/small_patches.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/second_mesh.h"
+#include "plan/goal.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ namespace patchlight {
 namespace {
 
 DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
-                                              const LightingOptions& options) {
+                                              LightingOptions options) {
+  options.areas = important_areas(mesh, plan.goal.get());
   const auto trace = [&](const Scene& scene) {
     const Lighting lighting = lighting_of(scene, *run.tracing);
     DirectIrradiance direct = direct_irradiance(lighting, mesh, options, run.observer);
@@ -66,7 +68,7 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
   }
   PatchMesh whole = mesh;
   whole.middles.clear();
-  options.usual_area = mean_area(mesh);
+  options.usual_area = mean_area(important_areas(mesh, plan.goal.get()));
   options.doublings = doublings;
   options.seed = seed_on(known, options.seed);
   const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);

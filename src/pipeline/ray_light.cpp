@@ -96,8 +96,8 @@ struct Gather {
 
 // Independent errors of single patches' irradiances, W/m^2.
 struct SingleErrors {
-  Field of_rows;      // half of the difference of the two halves
-  Field of_lights;    // standard errors of lamps and of lights that are no patches
+  Field of_rows;    // half of the difference of the two halves
+  Field of_lights;  // standard errors of lamps and of lights that are no patches
 };
 
 // A mean square over n draws has a relative standard error of sqrt(2 / n). Of many patches each draw costs more.
@@ -186,8 +186,8 @@ Observer without_iterates(const Observer& observer) {
   };
 }
 
-// The irradiance from other patches in the bands that need it, its variance with that of all lights, and the part of its
-// error that patches have in common, as equally likely draws.
+// The irradiance from other patches in the bands that need it, its variance with that of all lights, and the part of
+// its error that patches have in common, as equally likely draws.
 struct GatheredLight {
   Field irradiance;
   Field variance;

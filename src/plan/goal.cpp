@@ -2,6 +2,7 @@
 
 #include "accuracy/enclosed.h"
 #include "accuracy/errors.h"
+#include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/mesher.h"
@@ -50,6 +51,27 @@ PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
   return tessellate(scene, sides, {smallest, std::move(coarsest)});
 }
 
+// A space that is much lower than its faces are wide is a gap, as below a building that does not touch the ground: the
+// harmonic mean of the lengths of its rays over the size of the face.
+constexpr double least_height = 0.02;
+
+// The enclosed patches but for those of gaps.
+Eigen::VectorXd in_rooms(Eigen::VectorXd enclosed, const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
+  constexpr std::uint32_t rays_of_patch = 16;
+  parallel_for(mesh.size(), [&](std::size_t k) {
+    const auto i = static_cast<PatchIndex>(k);
+    if (enclosed[i] == 0) return;
+    std::vector<Ray> rays;
+    for (const auto& u : scrambled_sobol(rays_of_patch, hash({k, 0x67617073})))
+      rays.push_back({mesh.centroid[i], cosine_direction(mesh.normal[i], u[0], u[1]), mesh.polygon[i]});
+    double inverse = 0;
+    for (const std::optional<Hit>& hit : faces.first_hits(rays))
+      if (hit && hit->distance > 0) inverse += 1 / (hit->distance * rays_of_patch);
+    if (inverse * least_height * std::sqrt(area_of(scene, mesh.polygon[i])) > 1) enclosed[i] = 0;
+  });
+  return enclosed;
+}
+
 // Per polygon whether a side has a part in an enclosed space.
 std::vector<std::uint8_t> polygons_with(const Eigen::VectorXd& enclosed, const PatchMesh& mesh) {
   std::vector<std::uint8_t> is_goal(mesh.first_patch.size() / 2, 0);
@@ -86,7 +108,8 @@ class Sources {
 
   Particle at(const std::array<double, 4>& u) const {
     if (!sensors_.empty() && u[0] < 0.5) {
-      const auto k = std::min(sensors_.size() - 1, static_cast<std::size_t>(2 * u[0] * static_cast<double>(sensors_.size())));
+      const auto k =
+          std::min(sensors_.size() - 1, static_cast<std::size_t>(2 * u[0] * static_cast<double>(sensors_.size())));
       return {{sensors_[k].point, cosine_direction(sensors_[k].normal, u[1], u[2]), no_polygon}};
     }
     const double place = sensors_.empty() ? u[0] : 2 * u[0] - 1;
@@ -179,7 +202,7 @@ std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides
   // 1. The polygons of enclosed spaces.
   const PatchMesh mesh = coarse_mesh(scene, sides);
   const Occluder faces(scene, Occluder::Blockers::all, find_coverings(scene, sides));
-  const Eigen::VectorXd enclosed = enclosed_patches(scene, faces, mesh);
+  const Eigen::VectorXd enclosed = in_rooms(enclosed_patches(scene, faces, mesh), scene, faces, mesh);
   Goal goal{polygons_with(enclosed, mesh), {}, 0, 0};
   double around = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i)
@@ -269,9 +292,8 @@ PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patche
     if (count >= patches || order.empty()) return mesh;
 
     // The most important ones, down to a quarter of the first, each of which becomes four.
-    std::stable_sort(order.begin(), order.end(), [&](PatchIndex a, PatchIndex b) {
-      return importance.of_patch[a] > importance.of_patch[b];
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](PatchIndex a, PatchIndex b) { return importance.of_patch[a] > importance.of_patch[b]; });
     const double least = importance.of_patch[order.front()] / 4;
     std::vector<std::uint8_t> is_cut(mesh.size(), 0);
     for (std::size_t k = 0; k < order.size() && importance.of_patch[order[k]] >= least && count + 3 * k < patches; ++k)
@@ -288,10 +310,8 @@ std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal) {
   for (const PatchIndex i : patches_of(goal->hits, mesh))
     if (i != no_patch) hits[i] += 1;
   const auto is_around = [&](PatchIndex i) { return goal->is_goal[mesh.polygon[i]] == 0; };
-  double all = 0;
-  double area = 0;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) (is_around(i) ? all : area) += is_around(i) ? hits[i] : mesh.area[i];
-  const double of_hit = area * goal->share_of_surroundings / (1 - goal->share_of_surroundings) / all;
+  const double all = static_cast<double>(goal->hits.size()) + 0.5 * mesh.size();
+  const double of_hit = goal->goal_area * goal->share_of_surroundings / (1 - goal->share_of_surroundings) / all;
   std::vector<double> areas = mesh.area;
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     if (is_around(i)) areas[i] = hits[i] * of_hit;

@@ -26,13 +26,13 @@ struct ImportanceHit {
 /// goal is the enclosed spaces, and all else is their surroundings: the ground, facades, neighbors, terrain.
 ///
 /// Importance is the solution of the adjoint equation psi = goal + F R psi (Smits, Arvo and Salesin 1992). Particles
-/// start on the surfaces of the goal, and at sensors, and scatter as light does. No mesh is needed, so that a small room
-/// in a wide terrain is not missed.
+/// start on the surfaces of the goal, and at sensors, and scatter as light does. No mesh is needed, so that a small
+/// room in a wide terrain is not missed.
 struct Goal {
-  std::vector<std::uint8_t> is_goal;    ///< per polygon: 1 where a side has a part in an enclosed space
-  std::vector<ImportanceHit> hits;      ///< equal parts of the importance of the surroundings
-  double goal_area = 0;                 ///< m^2, of the kept sides of goal polygons
-  double share_of_surroundings = 0;     ///< of the patches, and of the rays
+  std::vector<std::uint8_t> is_goal;  ///< per polygon: 1 where a side has a part in an enclosed space
+  std::vector<ImportanceHit> hits;    ///< equal parts of the importance of the surroundings
+  double goal_area = 0;               ///< m^2, of the kept sides of goal polygons
+  double share_of_surroundings = 0;   ///< of the patches, and of the rays
 };
 
 /// The goal of a scene by daylight. Null where there is no sky and no sun, no enclosed space, or nothing but enclosed
@@ -46,7 +46,8 @@ KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal);
 PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal);
 
 /// The mesh with patches of the surroundings cut in four, the most important first, until these are `patches`.
-/// Importance of a patch is the number of its hits times (size / distance)^1.2, which is how the error by its size goes.
+/// Importance of a patch is the number of its hits times (size / distance)^1.2, which is how the error by its size
+/// goes.
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches);
 
 /// By how much each patch counts when rays are shared out, m^2: its area on goal polygons, and on the others the area

@@ -18,10 +18,10 @@ std::uint32_t rounded(double rays) {
 
 }  // namespace
 
-std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean) {
+std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
   std::vector<double> size;
-  size.reserve(mesh.size());
-  for (const double area : mesh.area) size.push_back(std::pow(area, exponent));
+  size.reserve(areas.size());
+  for (const double area : areas) size.push_back(std::pow(area, exponent));
   const auto sum = [&](double factor) {
     double all = 0;
     for (const double s : size) all += rounded(factor * s);
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean) {
   };
   // The largest factor with which there are no more rays than wanted, by bisection of its logarithm; sizes are
   // positive.
-  const double wanted = 0.5 * mean * static_cast<double>(mesh.size());
+  const double wanted = 0.5 * mean * static_cast<double>(areas.size());
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   double low = std::log(fewest_rays / (2 * *most));
   double high = std::log(2 * most_rays / *least);
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> ray_counts(const PatchMesh& mesh, int mean) {
     (sum(std::exp(middle)) > wanted ? high : low) = middle;
   }
   std::vector<std::uint32_t> counts;
-  counts.reserve(mesh.size());
+  counts.reserve(areas.size());
   for (const double s : size) counts.push_back(rounded(std::exp(low) * s));
   return counts;
 }

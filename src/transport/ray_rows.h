@@ -38,9 +38,10 @@ struct RayRows {
 
 /// How rows of rays are found.
 struct RayOptions {
-  int rays = 64;              ///< mean number of a patch, see ray_counts()
-  int toward_bright = 32;     ///< and towards bright patches; a multiple of 32
-  int lost_share_rays = 256;  ///< of patches from which backs are seen, LostShare; of small ones mostly a quarter
+  int rays = 64;                   ///< mean number of a patch, see ray_counts()
+  std::vector<double> areas = {};  ///< in proportion to which patches matter, m^2; empty: their own
+  int toward_bright = 32;          ///< and towards bright patches; a multiple of 32
+  int lost_share_rays = 256;       ///< of patches from which backs are seen, LostShare; of small ones mostly a quarter
   std::uint64_t seed = 1;
   std::vector<std::uint8_t> doublings = {};  ///< per patch: how often its rays over the hemisphere are doubled; empty:
                                              ///< never

@@ -70,7 +70,7 @@ RowTracer::RowTracer(const PatchMesh& mesh, const Occluder& occluder, const Brig
       sights_(mesh, occluder),
       lookup_(mesh),
       keys_(patch_keys(mesh)),
-      counts_(doubled(ray_counts(mesh, options.rays), options.doublings)),
+      counts_(doubled(ray_counts(options.areas.empty() ? mesh.area : options.areas, options.rays), options.doublings)),
       table_(std::max(*std::max_element(counts_.begin(), counts_.end()), toward_bright_), options.seed) {
   assert(toward_bright_ % ShadowPacket::size == 0);
 }

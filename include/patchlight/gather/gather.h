@@ -16,10 +16,10 @@ class Occluder;
 
 /// Errors of the radiosities that are gathered, per patch and band, W/m^2. Empty fields: none.
 struct RadiosityErrors {
-  Field sampling;   ///< standard deviations of errors that are independent of each other
+  Field sampling;                      ///< standard deviations of errors that are independent of each other
   std::vector<Field> correlated = {};  ///< equally likely draws of the sampling errors that patches have in common
-  Field mesh;       ///< standard deviations of errors that patches share; empty where not known
-  Field solver;     ///< bounds
+  Field mesh;                          ///< standard deviations of errors that patches share; empty where not known
+  Field solver;                        ///< bounds
   Field display;    ///< root mean square of how far points of a patch are from its mean; empty where not known
   Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
 };
@@ -68,8 +68,9 @@ struct GatheredIrradiance {
 /// known.
 ///
 /// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
-/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the patches' mesh errors are not known, what they reflect is taken to be off by
-/// what planes do not explain, root mean square over all sensors, as a share. O(points x patches). \throws Cancelled.
+/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the patches' mesh
+/// errors are not known, what they reflect is taken to be off by what planes do not explain, root mean square over all
+/// sensors, as a share. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});

@@ -309,7 +309,7 @@ TEST(RayRows, LoseWhatMeetsBacks) {
 TEST(RayCounts, ArePowersOfTwoThatGrowWithTheArea) {
   PatchMesh mesh;
   for (int k = 0; k < 2000; ++k) mesh.area.push_back(std::exp(0.0025 * k));
-  const std::vector<std::uint32_t> counts = ray_counts(mesh, 64);
+  const std::vector<std::uint32_t> counts = ray_counts(mesh.area, 64);
   double sum = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     EXPECT_TRUE(std::has_single_bit(counts[i]));
@@ -325,9 +325,9 @@ TEST(RayCounts, ArePowersOfTwoThatGrowWithTheArea) {
 TEST(RayCounts, OfEqualPatchesAreEqual) {
   PatchMesh mesh;
   mesh.area.assign(100, 0.3);
-  EXPECT_EQ(ray_counts(mesh, 64), std::vector<std::uint32_t>(100, 32));
-  EXPECT_EQ(ray_counts(mesh, 256), std::vector<std::uint32_t>(100, 128));
-  EXPECT_EQ(ray_counts(mesh, 1 << 20), std::vector<std::uint32_t>(100, most_rays));
+  EXPECT_EQ(ray_counts(mesh.area, 64), std::vector<std::uint32_t>(100, 32));
+  EXPECT_EQ(ray_counts(mesh.area, 256), std::vector<std::uint32_t>(100, 128));
+  EXPECT_EQ(ray_counts(mesh.area, 1 << 20), std::vector<std::uint32_t>(100, most_rays));
 }
 
 }  // namespace
