@@ -135,6 +135,23 @@ TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
   EXPECT_NEAR(errors.total()(0, 0), std::sqrt((errors.rays.square() + errors.sampling.square()).value() + 0.13), 1e-9);
 }
 
+// A sampling error that all patches have in common does not average out: each of two draws is the level of the room.
+TEST(SensorErrors, HaveTheLevelThatPatchesShare) {
+  const Scene scene = cube_room(0.5, 0.5);
+  const PatchMesh mesh = fronts(scene, 0.2);
+  const Field ones = Field::Ones(mesh.size(), 1);
+  GatherOptions options;
+  options.errors = {.sampling = {},
+                    .correlated = {0.1 * ones, -0.1 * ones},
+                    .mesh = {},
+                    .solver = {},
+                    .display = {},
+                    .reflected = {}};
+  const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.5), Vector::UnitZ()}};
+  const SensorErrors errors = gather_irradiance(mesh, ones, Occluder(scene), sensors, options).errors;
+  EXPECT_NEAR(errors.sampling(0, 0), 0.1, 1e-9);
+}
+
 // A sheet hides half of a floor on which the radiosity grows to one side, so that what is seen of each patch, and where
 // on it, is found by rays: over many seeds the readings scatter as is stated, a variance of 200 to some 10 %, that of
 // eight replicates to 4 % in their mean.

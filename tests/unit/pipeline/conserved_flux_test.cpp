@@ -7,8 +7,8 @@
 namespace patchlight::conserved_flux_test {
 namespace {
 
-// Rows that sum up to what is seen; columns do not.
-const Eigen::Matrix3d factors{{0, 0.7, 0.3}, {0.45, 0, 0.55}, {0.35, 0.5, 0}};
+// Rows of a closed space. They sum to 1, but area-weighted columns do not.
+const Eigen::Matrix3d factors{{0, 0.7, 0.3}, {0.45, 0, 0.55}, {0.4, 0.6, 0}};
 const Eigen::VectorXd row_sum = factors.rowwise().sum();
 
 // One half of them, the other one of which has what this one lacks.
@@ -74,6 +74,16 @@ TEST(ConservedFlux, LeavesWhatHasNotConverged) {
   const auto [solution, flux, gathered] = conserving_flux(rows, problem, plain, row_sum);
   EXPECT_TRUE((solution.radiosity == plain.radiosity).all());
   EXPECT_EQ(flux.shape.abs().maxCoeff(), 0);
+}
+
+// A space that loses a tenth of its light is open, as a room with a window is: it keeps its solution.
+TEST(ConservedFlux, LeavesOpenSpaces) {
+  const RaysWithPockets rows = two_halves();
+  const Eigen::VectorXd open = 0.9 * row_sum;
+  EXPECT_EQ(find_closed_spaces(rows.rays(), area, open).count, 0);
+  const RadiosityProblem problem = lit(0.8);
+  const Solution plain = solved(rows, problem);
+  EXPECT_TRUE((conserving_flux(rows, problem, plain, open).solution.radiosity == plain.radiosity).all());
 }
 
 }  // namespace
