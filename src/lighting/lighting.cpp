@@ -91,7 +91,7 @@ Lighting lighting_of(const Scene& scene, const Tracing& tracing) {
     lighting.openings = sky_openings(scene, lighting.paths);
   }
   if (tracing.reflections() == Reflections::followed && tracing.has_specular_faces())
-    lighting.mirrors = std::make_shared<const Mirrors>(scene, tracing);
+    lighting.mirrors = std::make_shared<const Mirrors>(scene, tracing, lighting);
   return lighting;
 }
 

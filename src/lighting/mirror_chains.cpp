@@ -1,12 +1,17 @@
 #include "lighting/mirror_chains.h"
 
+#include "base/sampling.h"
+#include "form_factor/solid_angle.h"
+#include "lighting/mirrored_sources.h"
 #include "scene/transmittance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <queue>
+#include <optional>
+#include <set>
 #include <utility>
 
 namespace patchlight {
@@ -15,9 +20,22 @@ namespace {
 constexpr std::size_t most_mirrors = 16;
 constexpr std::size_t most_chains = 1024;
 constexpr double least_reflectance = 1e-3;
-constexpr double least_share = 1e-3;
 
-// What a material reflects at most in a band; of a clear one, of light from all directions alike.
+// Beams with a smaller share of the flux of their source are not followed.
+constexpr double least_share = 1e-7;
+
+// Points of a mirror at which the irradiance by a source is evaluated, and directions of equal flux of a source: points
+// resolve small mirrors, directions resolve narrow sources.
+constexpr std::uint32_t points_of_mirror = 16;
+constexpr int directions_of_source = 64;
+
+// Rings of directions around the axis of a source, and cells of a ring. Rings become narrower towards the axis, by this
+// factor in all.
+constexpr int rings = 40;
+constexpr int cells_of_ring = 16;
+constexpr double narrowing = 1000;
+
+// The largest reflectance over the bands; for a clear material that of light from all directions alike.
 double reflectance_of(const Material& material) {
   if (material.specular_reflectance.size() > 0) return material.specular_reflectance.maxCoeff();
   const std::vector<Pane> panes = panes_of(material);
@@ -31,46 +49,58 @@ double reflectance_of(const Material& material) {
   return most;
 }
 
-// Lamps of a scene with very many are looked at up to here.
-constexpr std::size_t most_lamps = 256;
+// A source, its flux, and directions each of which stands for the same share of it.
+struct SourceFlux {
+  const MirroredSource* source;
+  Spectrum flux;  // W; of the sun: onto all mirrors
+  std::vector<Vector> directions;
+};
 
-Point middle_of(const std::vector<Point>& corners) {
-  Point middle = Point::Zero();
-  for (const Point& corner : corners) middle += corner / static_cast<double>(corners.size());
-  return middle;
-}
+struct DirectionCell {
+  Vector direction;
+  Spectrum flux;
+};
 
-std::vector<Point> places_of_lamps(const Scene& scene) {
-  std::vector<Point> places;
-  for (const Luminaire& luminaire : scene.luminaires) places.push_back(luminaire.position);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_lamp(scene, p)) places.push_back(middle_of(corner_points(scene, p)));
+// I dOmega in cells of directions, each evaluated at its middle. Light with extent is seen from afar.
+std::vector<DirectionCell> direction_cells(const MirroredSource& source) {
+  const auto& [direction, ball] = source.extent;
+  const double distance = ball.radius > 0 ? 100 * ball.radius : 1;
+  const Vector across = source.axis.unitOrthogonal();
+  const Vector third = source.axis.cross(across);
+  const auto angle_of = [](double ring) {
+    return std::numbers::pi * std::expm1(std::log(narrowing) * ring / rings) / (narrowing - 1);
+  };
+  std::vector<DirectionCell> cells;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double middle = (angle_of(ring) + angle_of(ring + 1)) / 2;
+    const double half_width = (angle_of(ring + 1) - angle_of(ring)) / 2;
+    const double solid_angle = 4 * std::numbers::pi / cells_of_ring * std::sin(middle) * std::sin(half_width);
+    for (int cell = 0; cell < cells_of_ring; ++cell) {
+      const double turn = 2 * std::numbers::pi * (cell + 0.5) / cells_of_ring;
+      const Vector toward =
+          std::cos(middle) * source.axis + std::sin(middle) * (std::cos(turn) * across + std::sin(turn) * third);
+      const SurfacePoint at{ball.centre + distance * toward, -toward, no_polygon};
+      if (const auto arrival = source.arrival(at, at, {0.5, 0.5}))
+        cells.push_back({toward, distance * distance * solid_angle * arrival->irradiance});
+    }
   }
-  places.resize(std::min(places.size(), most_lamps));
-  return places;
+  return cells;
 }
 
-// Of the light of a lamp all around it: A cos / (4 pi d^2), one half at most.
-double share_seen_from(const Point& lamp, const Point& middle, const Vector& normal, double area) {
-  const Vector way = lamp - middle;
-  const double before = normal.dot(way);
-  if (!(before > 0)) return 0;
-  return std::min(0.5, area * before / std::pow(way.norm(), 3) / (4 * std::numbers::pi));
-}
-
-std::vector<MirrorSide> with_light_shares(const Scene& scene, std::vector<MirrorSide> sides) {
-  const std::vector<Point> lamps = places_of_lamps(scene);
-  const auto area_of = [&](const MirrorSide& side) { return area_vector(corner_points(scene, side.polygon)).norm(); };
-  double all = 0;
-  for (const MirrorSide& side : sides) all += area_of(side);
-  for (MirrorSide& side : sides) {
-    const Point middle = middle_of(corner_points(scene, side.polygon));
-    const double area = area_of(side);
-    side.light_share = area / all;
-    for (const Point& lamp : lamps)
-      side.light_share = std::max(side.light_share, share_seen_from(lamp, middle, side.normal, area));
+SourceFlux flux_of(const MirroredSource& source, Eigen::Index bands) {
+  SourceFlux found{&source, Spectrum::Zero(bands), {}};
+  if (source.extent.direction) return found;
+  const std::vector<DirectionCell> cells = direction_cells(source);
+  for (const DirectionCell& cell : cells) found.flux += cell.flux;
+  const double step = found.flux.mean() / directions_of_source;
+  double sum = 0;
+  for (const DirectionCell& cell : cells) {
+    sum += cell.flux.mean();
+    while (found.directions.size() < directions_of_source &&
+           sum > (static_cast<double>(found.directions.size()) + 0.5) * step)
+      found.directions.push_back(cell.direction);
   }
-  return sides;
+  return found;
 }
 
 // So far before a plane something has to be to count.
@@ -98,13 +128,44 @@ std::vector<MirrorSide> mirror_sides(const Scene& scene) {
       if (has_scene_before(scene, mirror, tolerance)) sides.push_back(mirror);
     }
   }
-  return with_light_shares(scene, std::move(sides));
+  return sides;
 }
 
-bool has_corner_before(const Scene& scene, PolygonIndex polygon, const MirrorSide& mirror, double tolerance) {
-  return std::any_of(
-      scene.polygons[polygon].corners.begin(), scene.polygons[polygon].corners.end(),
-      [&](std::uint32_t corner) { return mirror.normal.dot(scene.vertices[corner] - mirror.on_plane) > tolerance; });
+// Counter-clockwise from the side.
+std::vector<Point> corners_of(const Scene& scene, const MirrorSide& side) {
+  std::vector<Point> corners = corner_points(scene, side.polygon);
+  if (side.side == Side::back) std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
+// The convex hull of points of a plane, counter-clockwise around its normal. Andrew's monotone chain.
+std::vector<Point> convex_hull(std::vector<Point> points, const Vector& normal) {
+  const Vector u = normal.unitOrthogonal();
+  const Vector v = normal.cross(u);
+  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) {
+    return std::pair(u.dot(a), v.dot(a)) < std::pair(u.dot(b), v.dot(b));
+  });
+  std::vector<Point> hull;
+  const auto add_half = [&](auto first, auto last) {
+    const std::size_t start = hull.size();
+    for (; first != last; ++first) {
+      const auto turns_right = [&](const Point& a, const Point& b) {
+        return normal.dot((b - a).cross(*first - b)) <= 0;
+      };
+      while (hull.size() >= start + 2 && turns_right(hull[hull.size() - 2], hull.back())) hull.pop_back();
+      hull.push_back(*first);
+    }
+    hull.pop_back();
+  };
+  add_half(points.begin(), points.end());
+  add_half(points.rbegin(), points.rend());
+  return hull;
+}
+
+Point middle_of(std::span<const Point> corners) {
+  Point middle = Point::Zero();
+  for (const Point& corner : corners) middle += corner / static_cast<double>(corners.size());
+  return middle;
 }
 
 // x - 2 n n . (x - p)
@@ -115,102 +176,273 @@ Eigen::Affine3d reflection_at(const MirrorSide& mirror) {
   return reflection;
 }
 
-MirrorChain lengthened(const MirrorChain& chain, const MirrorSide& by) {
-  MirrorChain longer = chain;
-  longer.mirrors.push_back(by);
-  longer.reflectance *= by.reflectance;
-  longer.light_share = std::min(chain.light_share, by.light_share);
-  longer.image = reflection_at(by) * chain.image;
-  return longer;
+// A source as one sees it in the mirrors of a chain.
+SourceExtent image_of(const SourceExtent& source, const Eigen::Affine3d& image) {
+  const Eigen::Affine3d back = image.inverse(Eigen::Isometry);
+  SourceExtent seen = source;
+  if (seen.direction) seen.direction = back.linear() * *source.direction;
+  seen.ball.centre = back * source.ball.centre;
+  return seen;
 }
 
-// About so much light goes by it.
-double light_by(const MirrorChain& chain) { return chain.reflectance * chain.light_share; }
+// The half-space of the light that leaves a source and passes a mirror inside of one of its edges: its plane contains
+// the edge and touches the ball of the source. Nothing where the edge does not limit the light.
+std::optional<Vector> normal_inside(const Point& a, const Point& b, const Point& inside, const SourceExtent& source) {
+  const Vector edge = b - a;
+  Vector way = source.direction ? *source.direction : Vector(source.ball.centre - a);
+  way -= edge * (edge.dot(way) / edge.squaredNorm());
+  const double distance = way.norm();
+  const double sine = source.direction ? 0 : source.ball.radius / distance;
+  if (!(edge.squaredNorm() > 0 && sine < 1)) return std::nullopt;
+  Vector normal = edge.cross(way).normalized();
+  if (normal.dot(inside - a) < 0) normal = -normal;
+  return std::sqrt(1 - sine * sine) * normal - sine * (way / distance);
+}
 
-// Those by which most light goes come first, of equal ones those that were found first.
+// The light of one source that meets the first mirror of a chain from the receiver: where, and the flux if all mirrors
+// before it reflected all light.
+struct Beam {
+  std::size_t source = 0;
+  std::vector<Point> section;  // convex, in the plane of the mirror
+  Spectrum flux;
+};
+
+// The part of a convex polygon that light of the source reaches by way of a section of a mirror.
+std::vector<Point> lit_part(std::vector<Point> polygon, const MirrorSide& mirror, std::span<const Point> section,
+                            const SourceExtent& source) {
+  polygon = clip_to_half_space(polygon, mirror.on_plane, mirror.normal);
+  const Point inside = middle_of(section);
+  for (std::size_t k = 0; k < section.size() && !polygon.empty(); ++k) {
+    const Point& next = section[(k + 1) % section.size()];
+    if (const auto normal = normal_inside(section[k], next, inside, source))
+      polygon = clip_to_half_space(polygon, section[k], *normal);
+  }
+  return polygon;
+}
+
+bool is_lit_from(const MirrorSide& side, const SourceExtent& source) {
+  if (source.direction) return side.normal.dot(*source.direction) > 0;
+  return side.normal.dot(source.ball.centre - side.on_plane) > -source.ball.radius;
+}
+
+bool meets(const std::vector<Point>& section, const Vector& normal, const Point& from, const Vector& direction) {
+  const double facing = -normal.dot(direction);
+  const double height = normal.dot(from - section[0]);
+  if (!(facing > 0 && height > 0)) return false;
+  const Point place = from + height / facing * direction;
+  for (std::size_t k = 0; k < section.size(); ++k) {
+    const Point& next = section[(k + 1) % section.size()];
+    if (normal.dot((next - section[k]).cross(place - section[k])) < 0) return false;
+  }
+  return true;
+}
+
+// The integral of E d^2 / cos theta over the solid angle of a section, seen from the source; from afar above its middle
+// where light is parallel or the source reaches the plane of the mirror.
+Spectrum flux_by_points(const SourceFlux& light, const SourceExtent& seen, std::span<const Point> section,
+                        const MirrorSide& side, const Eigen::Affine3d& image,
+                        std::span<const std::array<double, 4>> points) {
+  const Ball around = ball_around(section);
+  const double height = side.normal.dot(seen.ball.centre - side.on_plane);
+  const bool is_before = !seen.direction && height > seen.ball.radius;
+  const Point eye = is_before ? seen.ball.centre : Point(around.centre + 1000 * around.radius * side.normal);
+  Spectrum sum = Spectrum::Zero(light.flux.size());
+  for (const auto& [u, v, s, t] : points) {
+    const SeenPoint sample = sample_seen_point(eye, section, u, v);
+    if (!(sample.solid_angle > 0)) continue;
+    const SurfacePoint at{sample.point, side.normal, side.polygon};
+    const SurfacePoint reflected{image * at.point, image.linear() * at.normal, side.polygon};
+    const auto arrival = light.source->arrival(at, reflected, {s, t});
+    if (!arrival) continue;
+    const Vector way = eye - at.point;
+    const double area_per_angle = way.squaredNorm() * way.norm() / side.normal.dot(way);
+    sum += sample.solid_angle * sample.weight * area_per_angle * arrival->irradiance;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+Spectrum flux_by_directions(const SourceFlux& light, const SourceExtent& seen, const std::vector<Point>& section,
+                            const MirrorSide& side, const Eigen::Affine3d& image) {
+  if (seen.direction || seen.ball.radius > 0) return Spectrum::Zero(light.flux.size());
+  const Eigen::Matrix3d back = image.linear().transpose();
+  const auto met = std::count_if(light.directions.begin(), light.directions.end(), [&](const Vector& direction) {
+    return meets(section, side.normal, seen.ball.centre, back * direction);
+  });
+  return light.flux * (static_cast<double>(met) / directions_of_source);
+}
+
+bool has_corner_before(std::span<const Point> corners, const MirrorSide& mirror, double tolerance) {
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](const Point& corner) { return mirror.normal.dot(corner - mirror.on_plane) > tolerance; });
+}
+
+// Bound of the light of all longer chains, relative to that of a chain of n mirrors, where each longer one adds one
+// mirror, as between two: each reflects rho, so that the sum is rho / (1 - rho) at most. Images recede, as
+// k = n + 1, n + 2 ... do between two mirrors, so that it is less than the sum of n^2 / k^2, which is less than n.
+double light_beyond(std::size_t mirrors, double reflectance) {
+  const auto n = static_cast<double>(mirrors);
+  return reflectance < 1 ? std::min(n, reflectance / (1 - reflectance)) : n;
+}
+
+// A chain that may be followed. Those with the largest share come first, of equal ones those that were found first.
 struct QueuedChain {
   MirrorChain chain;
+  std::size_t first = 0;  // of its mirrors from the receiver, among all sides
+  std::vector<Beam> beams;
+  double share = 0;
   std::size_t number = 0;
 
   bool operator<(const QueuedChain& other) const {
-    if (light_by(chain) != light_by(other.chain)) return light_by(chain) < light_by(other.chain);
-    return number > other.number;
+    return share != other.share ? share > other.share : number < other.number;
   }
 };
 
-class ChainQueue {
+class ChainSearch {
  public:
-  ChainQueue(const Scene& scene, std::vector<MirrorSide> sides)
-      : scene_(scene), sides_(std::move(sides)), tolerance_(tolerance_in(scene)) {
-    for (const MirrorSide& side : sides_) least_ = std::max(least_, least_share * light_by(lengthened({}, side)));
-    for (const MirrorSide& side : sides_) add(lengthened({}, side));
-  }
-
-  bool empty() const { return queue_.empty(); }
-
-  MirrorChain next() {
-    MirrorChain chain = queue_.top().chain;
-    queue_.pop();
-    return chain;
-  }
-
-  // The same with one mirror more. Returns the highest reflectance of one with which it is too long to be followed.
-  double add_longer(const MirrorChain& chain) {
-    const MirrorSide& last = chain.mirrors.back();
-    double too_long = 0;
-    for (const MirrorSide& side : sides_) {
-      if (!has_corner_before(scene_, side.polygon, last, tolerance_)) continue;
-      if (!has_corner_before(scene_, last.polygon, side, tolerance_)) continue;
-      const bool is_followed =
-          chain.mirrors.size() < most_mirrors && chain.reflectance * side.reflectance >= least_reflectance;
-      if (is_followed)
-        add(lengthened(chain, side));
-      else
-        too_long = std::max(too_long, side.reflectance);
-    }
-    return too_long;
-  }
+  ChainSearch(const Scene& scene, std::span<const MirroredSource> sources);
+  MirrorChains run();
 
  private:
-  void add(MirrorChain chain) {
-    if (light_by(chain) >= least_) queue_.push({std::move(chain), number_++});
-  }
+  QueuedChain continued(const QueuedChain& before, std::size_t side) const;
+  double share_of(const Beam& beam) const { return beam.flux.mean() / sources_[beam.source].flux.mean(); }
+  void add(QueuedChain candidate);
+  double add_longer(const QueuedChain& candidate);
+  void leave_out(const QueuedChain& candidate, const Beam& beam);
 
-  const Scene& scene_;
-  std::vector<MirrorSide> sides_;
   double tolerance_;
-  std::priority_queue<QueuedChain> queue_;
+  std::vector<MirrorSide> sides_;
+  std::vector<std::vector<Point>> corners_;  // of each side
+  std::vector<std::vector<Point>> hulls_;
+  std::vector<SourceFlux> sources_;
+  std::vector<std::array<double, 4>> points_ = scrambled_sobol(points_of_mirror, 1);
+  double most_reflectance_ = 0;
+  double reflected_ = 0;        // W, straight from the sources, mean of the bands
+  std::vector<Spectrum> left_;  // W, from each side
+  std::set<QueuedChain> queue_;
   std::size_t number_ = 0;
-  double least_ = 0;  // light by a chain that is followed
+  MirrorChains found_;
 };
 
-// The light by all longer chains, none of which is followed, over that by one of n mirrors, where each goes on over one
-// mirror, as between two: each mirror more reflects rho, so that it is rho / (1 - rho) at most; and images come to lie
-// farther off, as k = n + 1, n + 2 ... do between two mirrors, so that it is less than the sum of n^2 / k^2, which is
-// less than n.
-double light_beyond(const MirrorChain& chain, double reflectance) {
-  const auto mirrors = static_cast<double>(chain.mirrors.size());
-  return reflectance < 1 ? std::min(mirrors, reflectance / (1 - reflectance)) : mirrors;
+ChainSearch::ChainSearch(const Scene& scene, std::span<const MirroredSource> sources)
+    : tolerance_(tolerance_in(scene)), sides_(mirror_sides(scene)) {
+  const Eigen::Index bands = number_of_bands(scene);
+  for (const MirrorSide& side : sides_) {
+    corners_.push_back(corners_of(scene, side));
+    hulls_.push_back(convex_hull(corners_.back(), side.normal));
+    most_reflectance_ = std::max(most_reflectance_, side.reflectance);
+  }
+  left_.assign(sides_.size(), Spectrum::Zero(bands));
+  for (const MirroredSource& source : sources) {
+    sources_.push_back(flux_of(source, bands));
+    found_.ranked.push_back(source.id);
+  }
+  std::sort(found_.ranked.begin(), found_.ranked.end());
+}
+
+// With one mirror more, nearest to the receiver; and the beams that get there.
+QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number) const {
+  const MirrorSide& side = sides_[number];
+  QueuedChain longer;
+  longer.chain = before.chain;
+  longer.chain.mirrors.insert(longer.chain.mirrors.begin(), side);
+  longer.chain.reflectance *= side.reflectance;
+  longer.chain.image = before.chain.image * reflection_at(side);
+  longer.first = number;
+  for (const Beam& beam : before.beams) {
+    const SourceFlux& light = sources_[beam.source];
+    const SourceExtent seen = image_of(light.source->extent, before.chain.image);
+    if (!is_lit_from(side, seen)) continue;
+    std::vector<Point> section = hulls_[number];
+    if (!beam.section.empty()) section = lit_part(std::move(section), before.chain.mirrors.front(), beam.section, seen);
+    if (section.empty()) continue;
+    const Spectrum by_points = flux_by_points(light, seen, section, side, before.chain.image, points_);
+    const Spectrum by_directions = flux_by_directions(light, seen, section, side, before.chain.image);
+    longer.beams.push_back({beam.source, std::move(section), by_points.max(by_directions)});
+  }
+  return longer;
+}
+
+// Chains that continue it are counted with it.
+void ChainSearch::leave_out(const QueuedChain& candidate, const Beam& beam) {
+  const double all = 1 + light_beyond(candidate.chain.mirrors.size(), most_reflectance_);
+  left_[candidate.first] += all * candidate.chain.reflectance * beam.flux;
+}
+
+// No more wait than may be followed yet: what a chain continues is never below it.
+void ChainSearch::add(QueuedChain candidate) {
+  std::vector<Beam> beams;
+  for (Beam& beam : candidate.beams) {
+    const double share = candidate.chain.reflectance * share_of(beam);
+    candidate.share = std::max(candidate.share, share);
+    if (share >= least_share)
+      beams.push_back(std::move(beam));
+    else
+      leave_out(candidate, beam);
+  }
+  if (beams.empty()) return;
+  candidate.beams = std::move(beams);
+  candidate.number = number_++;
+  queue_.insert(std::move(candidate));
+  if (found_.chains.size() + queue_.size() <= most_chains) return;
+  found_.is_cut = true;
+  const auto last = std::prev(queue_.end());
+  for (const Beam& beam : last->beams) leave_out(*last, beam);
+  queue_.erase(last);
+}
+
+// The same with one mirror more. Returns the highest reflectance of one with which it is too long to be followed.
+double ChainSearch::add_longer(const QueuedChain& candidate) {
+  const MirrorSide& first = sides_[candidate.first];
+  double too_long = 0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const MirrorSide& side = sides_[k];
+    if (!has_corner_before(corners_[k], first, tolerance_)) continue;
+    if (!has_corner_before(corners_[candidate.first], side, tolerance_)) continue;
+    const bool is_followed = candidate.chain.mirrors.size() < most_mirrors &&
+                             candidate.chain.reflectance * side.reflectance >= least_reflectance;
+    if (is_followed)
+      add(continued(candidate, k));
+    else
+      too_long = std::max(too_long, side.reflectance);
+  }
+  return too_long;
+}
+
+// Light of all sources that goes to each side of a mirror.
+MirrorChains ChainSearch::run() {
+  QueuedChain straight;
+  for (std::size_t k = 0; k < sources_.size(); ++k) straight.beams.push_back({k, {}, sources_[k].flux});
+  std::vector<QueuedChain> single;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    single.push_back(continued(straight, k));
+    for (const Beam& beam : single.back().beams) {
+      reflected_ += sides_[k].reflectance * beam.flux.mean();
+      SourceFlux& light = sources_[beam.source];
+      if (light.source->extent.direction) light.flux += beam.flux;
+    }
+  }
+  for (QueuedChain& candidate : single) add(std::move(candidate));
+  while (!queue_.empty()) {
+    QueuedChain next = std::move(queue_.extract(queue_.begin()).value());
+    for (const Beam& beam : next.beams) next.chain.sources.push_back(sources_[beam.source].source->id);
+    std::sort(next.chain.sources.begin(), next.chain.sources.end());
+    found_.chains.push_back(next.chain);
+    found_.chains.back().beyond = light_beyond(next.chain.mirrors.size(), add_longer(next));
+  }
+  double left = 0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    if (!(left_[k] > 0).any()) continue;
+    left += left_[k].mean();
+    found_.unfollowed.push_back({corners_[k], left_[k] / area_vector(corners_[k]).norm()});
+  }
+  found_.unfollowed_share = reflected_ > 0 ? left / reflected_ : 0;
+  return found_;
 }
 
 }  // namespace
 
-MirrorChains mirror_chains(const Scene& scene) {
-  const std::vector<MirrorSide> sides = mirror_sides(scene);
-  ChainQueue queued(scene, sides);
-  MirrorChains found;
-  while (!queued.empty() && found.chains.size() < most_chains) {
-    MirrorChain chain = queued.next();
-    chain.beyond = light_beyond(chain, queued.add_longer(chain));
-    found.chains.push_back(std::move(chain));
-  }
-  found.is_cut = !queued.empty();
-  double all = 0;
-  for (const MirrorSide& side : sides) all += side.reflectance * side.light_share;
-  double followed = 0;
-  for (const MirrorChain& chain : found.chains) followed += chain.mirrors.size() == 1 ? light_by(chain) : 0;
-  found.left_out = all > 0 ? std::max(0.0, 1 - followed / all) : 0;
-  return found;
+MirrorChains mirror_chains(const Scene& scene, std::span<const MirroredSource> sources) {
+  return ChainSearch(scene, sources).run();
 }
 
 }  // namespace patchlight

@@ -3,9 +3,13 @@
 #include "patchlight/scene/scene.h"
 
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
+
+struct MirroredSource;
 
 /// A side of a polygon that reflects light without scattering it: of a mirror, or of a clear polygon.
 struct MirrorSide {
@@ -14,31 +18,39 @@ struct MirrorSide {
   Vector normal;  ///< unit, out of this side
   Point on_plane;
   double reflectance = 0;  ///< at most, over all bands; of a clear one that of light from all directions alike
-  double light_share = 0;  ///< the share of the light that may meet it: by its area among these, or by the solid angle
-                           ///< in which lamps and luminaires see it, of that around them, whichever is larger
 };
 
-/// Mirrors one after the other on the way from a receiver to a source, and what becomes of a receiver's place when it
-/// is reflected at each of them: seen from the source the receiver is there, straight behind the last mirror.
+/// Mirrors one after the other on the way from a receiver to a source. `image` reflects the place of a receiver at each
+/// of them: seen from the source the receiver is there, straight behind the last mirror.
 struct MirrorChain {
   std::vector<MirrorSide> mirrors;
   double reflectance = 1;  ///< the product of theirs
-  double light_share = 1;  ///< the least of theirs
   Eigen::Affine3d image = Eigen::Affine3d::Identity();
-  double beyond = 0;  ///< chains that go on from it and are too long to be followed, as between two mirrors that face
-                      ///< each other, bring so many times its own light, at most where each goes on over one mirror
+  std::vector<std::uint32_t> sources;  ///< MirroredSource::id of those whose beams get through, ascending
+  double beyond = 0;  ///< bound of the light of longer chains that are not followed, as a multiple of its own light:
+                      ///< images between two mirrors that face each other go on without end
 };
 
-/// The chains that light can take over planar mirrors and clear faces, those first by which most light may go,
-/// reflectance times light_share: up to 16 mirrors in a row, as long as the product of their reflectances is 1e-3 or
-/// more, and that with the share is 1e-3 or more of the largest; 1,024 chains at most. Each mirror has something before
-/// the plane of the next, and the other way round. O(mirrors x lamps).
+/// Light that reaches a mirror by chains that are not followed.
+struct UnfollowedLight {
+  std::vector<Point> corners;  ///< of the mirror, counter-clockwise from the side that reflects
+  Spectrum exitance;           ///< W/m^2, after the reflection at this mirror and at later ones
+};
+
+/// The chains that light can take over planar mirrors and clear faces, those with the largest share first: of the flux
+/// of a source the part that gets through the chain, after all reflections, for the source where it is largest. Each
+/// source sends a beam to a mirror, which the outlines of the mirrors before it limit; occlusion is not considered.
 struct MirrorChains {
   std::vector<MirrorChain> chains;
-  double left_out = 0;  ///< reflectance times light_share of the mirrors from which none of them goes straight to a
-                        ///< light, of that of all
-  bool is_cut = false;  ///< there are more of them than 1,024
+  std::vector<std::uint32_t> ranked;  ///< MirroredSource::id of the sources that were given, ascending
+  std::vector<UnfollowedLight> unfollowed;
+  double unfollowed_share = 0;  ///< its flux, relative to the flux that mirrors reflect straight from the sources
+  bool is_cut = false;          ///< there are more chains than are followed
 };
-MirrorChains mirror_chains(const Scene& scene);
+
+/// Up to 1,024 chains of up to 16 mirrors, the product of whose reflectances is 1e-3 or more. Best-first search over
+/// beams (Heckbert and Hanrahan 1984): a chain carries no more than the shorter one that it continues.
+/// O(chains x mirrors x sources).
+MirrorChains mirror_chains(const Scene& scene, std::span<const MirroredSource> sources);
 
 }  // namespace patchlight

@@ -1,5 +1,7 @@
 #include "lighting/mirror_paths.h"
 
+#include "form_factor/point_polygon.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -29,20 +31,36 @@ Ball ball_around(std::span<const Point> points) {
   return ball;
 }
 
-MirrorPaths::MirrorPaths(const Scene& scene)
-    : chains_(mirror_chains(scene)),
+MirrorPaths::MirrorPaths(const Scene& scene, MirrorChains chains)
+    : chains_(std::move(chains)),
       sides_(scene),
       bands_(number_of_bands(scene)),
       least_height_(on_plane_share * bounds(scene).diagonal().norm()),
       flat_(scene.polygons.size()),
       balls_(scene.polygons.size()) {
   for (const MirrorChain& chain : chains_.chains) {
-    const PolygonIndex p = chain.mirrors.back().polygon;
-    if (!flat_[p].corners.empty()) continue;
-    const std::vector<Point> corners = corner_points(scene, p);
-    flat_[p] = flat_polygon(corners);
-    balls_[p] = ball_around(corners);
+    for (const MirrorSide& mirror : chain.mirrors) {
+      const PolygonIndex p = mirror.polygon;
+      if (!flat_[p].corners.empty()) continue;
+      const std::vector<Point> corners = corner_points(scene, p);
+      flat_[p] = flat_polygon(corners);
+      balls_[p] = ball_around(corners);
+    }
   }
+}
+
+bool MirrorPaths::carries(const MirrorChain& chain, std::uint32_t source) const {
+  const auto holds = [&](const std::vector<std::uint32_t>& ids) {
+    return std::binary_search(ids.begin(), ids.end(), source);
+  };
+  return holds(chain.sources) || !holds(chains_.ranked);
+}
+
+Spectrum MirrorPaths::unfollowed_irradiance(const Point& place, const Vector& normal) const {
+  Spectrum irradiance = Spectrum::Zero(bands_);
+  for (const auto& [corners, exitance] : chains_.unfollowed)
+    irradiance += point_to_polygon(place, normal, corners) * exitance;
+  return irradiance;
 }
 
 // All these lines lie in the hull of the two balls, no farther from the segment between the centres than the larger

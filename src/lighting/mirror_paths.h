@@ -7,6 +7,7 @@
 #include "visibility/flat_polygon.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,16 @@ Ball ball_around(std::span<const Point> points);
 /// LightPaths lets through between them.
 class MirrorPaths {
  public:
-  explicit MirrorPaths(const Scene& scene);
+  MirrorPaths(const Scene& scene, MirrorChains chains);
 
+  const MirrorChains& found() const { return chains_; }
   const std::vector<MirrorChain>& chains() const { return chains_.chains; }
+
+  /// False where no light of a source, by its MirroredSource::id, gets through a chain.
+  bool carries(const MirrorChain& chain, std::uint32_t source) const;
+
+  /// Irradiance at a place if the light that is not followed left each mirror diffusely and nothing were in the way.
+  Spectrum unfollowed_irradiance(const Point& place, const Vector& normal) const;
 
   /// Per segment (row), from a receiver to a source, and band (column), by way of the mirrors of a chain: 0 where the
   /// straight line from the receiver's image to the source misses one of them.

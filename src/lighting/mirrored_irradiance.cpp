@@ -76,7 +76,7 @@ struct MirrorEffort {
 // Irradiance of each replicate.
 struct OverChains {
   Field light;
-  Field beyond;  // what chains that are not followed bring at most
+  Field beyond;  // bound of the light of chains that are not followed
 };
 
 struct MirrorSampler {
@@ -96,10 +96,13 @@ struct MirrorSampler {
 
 std::vector<WantedChain> MirrorSampler::all_chains() const {
   std::vector<WantedChain> all;
-  if (sources.empty()) return all;
-  std::vector<const MirroredSource*> each;
-  for (const MirroredSource& source : sources) each.push_back(&source);
-  for (const MirrorChain& chain : lighting.mirrors->paths.chains()) all.push_back({&chain, each});
+  const MirrorPaths& paths = lighting.mirrors->paths;
+  for (const MirrorChain& chain : paths.chains()) {
+    WantedChain one{&chain, {}};
+    for (const MirroredSource& source : sources)
+      if (paths.carries(chain, source.id)) one.sources.push_back(&source);
+    if (!one.sources.empty()) all.push_back(std::move(one));
+  }
   return all;
 }
 
@@ -205,11 +208,13 @@ std::vector<SampledPlace> MirrorSampler::places_on(const Receiver& receiver, std
   return places;
 }
 
-// One row each, of those with a place over which no other polygon lies.
+// One row for each replicate that has a place over which no other polygon lies.
 OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                                         std::span<const WantedChain> among) const {
   const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
-  if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), Field::Zero(1, lighting.bands)};
+  const SurfacePoint middle = receiver.place(0.5, 0.5);
+  const Spectrum unfollowed = lighting.mirrors->paths.unfollowed_irradiance(middle.point, middle.normal);
+  if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), unfollowed};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
   OverChains found = over_chains(chains, places);
   const std::span all(places);
@@ -220,18 +225,21 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
       field->row(first->replicate) /= static_cast<double>(last - first);
     first = last;
   }
+  found.beyond.rowwise() += unfollowed;
   return found;
 }
 
-// The mean of replicates and its standard error, as large as itself where there is one alone, with what is not
-// followed; 0 where there is none.
+// The mean of replicates, and its standard error with the bound of the light that is not followed. The mean of one
+// replicate has an error as large as itself; without replicates both are 0.
 MirroredEstimate estimate_from(const OverChains& replicates) {
   const Field& light = replicates.light;
   const Eigen::Index count = light.rows();
   if (count == 0) return {Spectrum::Zero(light.cols()), Spectrum::Zero(light.cols())};
   const Spectrum mean = light.colwise().mean();
-  if (count == 1) return {mean, mean};
-  const Spectrum variance = (light.square().colwise().mean() - mean.square()).max(0.0) / static_cast<double>(count - 1);
+  const Spectrum variance =
+      count == 1
+          ? Spectrum(mean.square())
+          : Spectrum((light.square().colwise().mean() - mean.square()).max(0.0) / static_cast<double>(count - 1));
   const Spectrum beyond = replicates.beyond.colwise().mean();
   return {mean, (variance + beyond.square()).sqrt()};
 }
@@ -277,9 +285,42 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
   return direct;
 }
 
+// Faces of emitting polygons whose chains are ranked; others are sampled by all chains.
+constexpr std::size_t most_ranked_faces = 256;
+
+// Those of the strongest polygons, each polygon with both sides, as a chain does not distinguish them.
+std::vector<LampFace> ranked_faces(const Scene& scene) {
+  struct Emitter {
+    std::vector<LampFace> faces;
+    double flux = 0;
+  };
+  std::vector<Emitter> emitters;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!is_lamp(scene, p)) continue;
+    Emitter emitter;
+    for (const Side side : {Side::front, Side::back}) {
+      if (!emits(scene, p, side)) continue;
+      for (const LampFace& face : lamp_faces(scene, p, side)) {
+        emitter.faces.push_back(face);
+        emitter.flux += face.area * face.exitance.mean();
+      }
+    }
+    emitters.push_back(std::move(emitter));
+  }
+  std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
+  std::vector<LampFace> ranked;
+  for (const Emitter& emitter : emitters) {
+    if (ranked.size() + emitter.faces.size() > most_ranked_faces) break;
+    ranked.insert(ranked.end(), emitter.faces.begin(), emitter.faces.end());
+  }
+  return ranked;
+}
+
 }  // namespace
 
-Mirrors::Mirrors(const Scene& scene, const Tracing& tracing) : paths(scene), view(scene, paths.sides(), tracing) {}
+Mirrors::Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting)
+    : paths(scene, mirror_chains(scene, mirrored_sources(lighting, ranked_faces(scene)))),
+      view(scene, paths.sides(), tracing) {}
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {

@@ -18,7 +18,8 @@ struct Mirrors {
   MirrorPaths paths;
   MirrorView view;
 
-  Mirrors(const Scene& scene, const Tracing& tracing);
+  /// Chains of the lighting's luminaires and sun, and of the strongest emitting polygons.
+  Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting);
   Mirrors(const Mirrors&) = delete;  // the view refers to the paths
 };
 

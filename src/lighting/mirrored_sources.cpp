@@ -28,24 +28,31 @@ std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const Point& y, c
 
 std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
   std::vector<MirroredSource> sources;
-  for (const Luminaire& luminaire : lighting.luminaires) {
+  const auto luminaires = static_cast<std::uint32_t>(lighting.luminaires.size());
+  for (std::uint32_t k = 0; k < luminaires; ++k) {
+    const Luminaire& luminaire = lighting.luminaires[k];
     const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
-    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
+    sources.push_back({k,
+                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
                          return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
                        },
-                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}}});
+                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}},
+                       luminaire.aim});
   }
   if (lighting.sun)
-    sources.push_back({[&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
+    sources.push_back({luminaires,
+                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
                          return arrived(at, from_sun(lighting, image));
                        },
                        {lighting.sun->direction, {}}});
   for (const LampFace& lamp : lamps)
-    sources.push_back({[&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
+    sources.push_back({luminaires + 1 + lamp.polygon,
+                       [&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
                                                                   const Eigen::Vector2d& uv) {
                          return from_lamp(lamp, points.at(uv.x(), uv.y()), at, image);
                        },
-                       {{}, ball_around(lamp.corners)}});
+                       {{}, ball_around(lamp.corners)},
+                       lamp.normal});
   return sources;
 }
 

@@ -7,6 +7,7 @@
 #include "lighting/mirror_paths.h"
 #include "visibility/occluder.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -32,8 +33,10 @@ struct SourceExtent {
 
 /// A source and how its light arrives by way of mirrors.
 struct MirroredSource {
+  std::uint32_t id = 0;  ///< the same for a source in every list of one lighting; faces of one polygon share theirs
   ArrivalAtImage arrival;
   SourceExtent extent;
+  Vector axis = -Vector::UnitZ();  ///< unit; narrow beams lie around it
 };
 
 /// Luminaires and sun of a lighting, and lamps; both have to live as long.

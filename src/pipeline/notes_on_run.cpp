@@ -1,8 +1,9 @@
 #include "pipeline/notes_on_run.h"
 
-#include "lighting/mirror_chains.h"
+#include "lighting/mirrored_irradiance.h"
 #include "plan/close_lamps.h"
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -11,31 +12,21 @@ namespace patchlight {
 
 namespace {
 
-// The light of a sky comes by rays from where it falls.
-bool has_lamps_apart_from_sky(const Scene& scene) {
-  if (scene.sun || !scene.luminaires.empty()) return true;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (is_lamp(scene, p)) return true;
-  }
-  return false;
-}
-
+// Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
 std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& tracing) {
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
-  if (!has_lamps_apart_from_sky(scene)) return {};
-  const MirrorChains found = mirror_chains(scene);
-  constexpr double too_little = 0.01;
-  const bool misses_mirrors = found.left_out >= too_little;
-  if (!found.is_cut && !misses_mirrors) return {};
+  Scene without_sky = scene;
+  without_sky.sky.reset();
+  const Lighting lighting = lighting_of(without_sky, tracing);
+  const MirrorChains& found = lighting.mirrors->paths.found();
+  constexpr double noticeable = 0.01;
+  if (found.unfollowed_share < noticeable) return {};
   std::ostringstream text;
   text.precision(2);
-  text << "light of lamps, luminaires and sun is followed on " << found.chains.size()
-       << " ways over mirrors and clear faces" << (found.is_cut ? ", and there are more" : "");
-  if (misses_mirrors) {
-    text << "; " << 100 * found.left_out
-         << " % of the light that these faces may reflect meets some that are on none of them, as small ones are";
-  }
-  text << "; no error bar has what other ways would bring";
+  text << "patchlight follows " << found.chains.size() << " chains of mirrors and clear faces; up to "
+       << 100 * std::min(1.0, found.unfollowed_share)
+       << " % of the light that lamps, luminaires and sun send to these faces goes on by other chains. Error bars "
+          "include it as if each face scattered it evenly";
   return {text.str()};
 }
 
