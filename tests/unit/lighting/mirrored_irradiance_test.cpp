@@ -5,8 +5,12 @@
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <span>
+#include <vector>
 
 namespace patchlight::mirrored_irradiance_test {
 namespace {
@@ -81,6 +85,90 @@ TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
     EXPECT_GE(missing, -3 * found.standard_error(0, 0));
     EXPECT_LE(missing, found.standard_error(0, 0)) << reflectance;
     EXPECT_LE(found.standard_error(0, 0), 0.01 * exact) << reflectance;
+  }
+}
+
+// A spot and mirrors of any size that it may be aimed at, one after the other; and a point that the last one lights.
+struct AimedSpot {
+  Scene scene;
+  SurfacePoint at;
+  double expected = 0;  // by the image of the spot: I cos / d^2 along the unfolded path, times the reflectances
+};
+
+// A square around a point that reflects light from one point to another.
+Quad square_mirror(const Point& middle, const Point& from, const Point& to, double edge) {
+  const Vector normal = ((from - middle).normalized() + (to - middle).normalized()).normalized();
+  const Vector u = edge / 2 * normal.unitOrthogonal();
+  const Vector v = normal.cross(u);
+  return {Point(middle - u - v), Point(middle + u - v), Point(middle + u + v), Point(middle - u + v)};
+}
+
+AimedSpot aimed_spot(std::mt19937& random, std::size_t mirrors) {
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  Material material = grey(0);
+  material.specular_reflectance = Spectrum::Constant(1, 0.9);
+  AimedSpot spot{empty_scene({grey(0.5), material}), {}, 50};
+  // Above a mirror on the floor of 12 m, from corner to corner of a room.
+  spot.scene =
+      with_quad(std::move(spot.scene), {Point(-3, -3, 0), Point(9, -3, 0), Point(9, 9, 0), Point(-3, 9, 0)}, 1);
+  spot.scene =
+      with_quad(std::move(spot.scene), {Point(-3, -3, 5), Point(-3, 9, 5), Point(9, 9, 5), Point(9, -3, 5)}, 0);
+  std::vector<Point> places;
+  for (std::size_t k = 0; k < mirrors + 2; ++k)
+    places.push_back(Point(k % 2 == 0 ? between(0, 1) : between(5, 6), between(0, 6), between(1.5, 3)));
+  double length = 0;
+  for (std::size_t k = 1; k < places.size(); ++k) length += (places[k] - places[k - 1]).norm();
+  for (std::size_t k = 1; k <= mirrors; ++k) {
+    const Quad square = square_mirror(places[k], places[k - 1], places[k + 1], between(0.01, 0.1));
+    spot.scene = with_quad(std::move(spot.scene), square, 1);
+    spot.expected *= 0.9;
+  }
+  Luminaire lamp;
+  lamp.position = places[0];
+  lamp.aim = (places[1] - places[0]).normalized();
+  const double beam = between(1, 4);
+  const SpotLight light{Spectrum::Constant(1, 50), beam, between(1.5, 2.2) * beam};
+  lamp.light = light;
+  spot.scene.luminaires = {lamp};
+  const Vector arriving = (places[mirrors] - places.back()).normalized();
+  const Vector normal = (arriving + 0.5 * Vector::UnitY()).normalized();
+  spot.at = {places.back(), normal, no_polygon};
+  spot.expected *= normal.dot(arriving) / (length * length);
+  // The floor shows the tail of the beam.
+  const Point image(places.back().x(), places.back().y(), -places.back().z());
+  const Vector way = image - places[0];
+  const Vector normal_there(normal.x(), normal.y(), -normal.z());
+  spot.expected += 0.9 * 50 * spot_profile(light, lamp.aim.dot(way.normalized())) *
+                   std::max(0.0, -normal_there.dot(way)) / std::pow(way.norm(), 3);
+  return spot;
+}
+
+// Turned, and as large as models in millimetres that are read as metres: irradiance falls by the square of lengths.
+TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 40; ++trial) {
+    const AimedSpot spot = aimed_spot(random, trial % 3 == 2 ? 2 : 1);
+    for (const double scale : {1.0, 1000.0}) {
+      Eigen::Affine3d motion = Eigen::Affine3d::Identity();
+      if (scale != 1)
+        motion = Eigen::Scaling(scale) * Eigen::AngleAxisd(0.7, Vector(1, 2, -1).normalized()) *
+                 Eigen::Translation3d(0.3, -5, 2);
+      const Eigen::Matrix3d rotation = motion.linear() / scale;
+      Scene scene = moved(spot.scene, motion);
+      Luminaire& lamp = scene.luminaires[0];
+      lamp.position = motion * spot.scene.luminaires[0].position;
+      lamp.aim = rotation * spot.scene.luminaires[0].aim;
+      const SurfacePoint at{motion * spot.at.point, rotation * spot.at.normal, no_polygon};
+      const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
+      const Lighting lighting = lighting_of(scene, tracing);
+      const DirectIrradiance found = mirrored_irradiance(lighting, {}, std::span(&at, 1), {});
+      const double expected = spot.expected / (scale * scale);
+      // The profile of a spot around its axis magnifies rounding of the cosine, 1e-16: 2^-(1e-8 / 0.02)^1.5 is 1 -
+      // 2e-10. Tails of beams by way of two mirrors are smaller than 1e-6.
+      EXPECT_NEAR(found.irradiance(0, 0), expected, 1e-6 * expected + 3 * found.standard_error(0, 0))
+          << "trial " << trial << ", scale " << scale;
+      EXPECT_LT(found.standard_error(0, 0), 0.01 * expected);
+    }
   }
 }
 
