@@ -101,6 +101,19 @@ Outline outline_with_marks(const CutPolygon& polygon, const MarksByEdge& all, do
   return outline;
 }
 
+// Polygons that share an edge share its points: as many parts as the finest of them takes.
+std::vector<Outline> with_shared_parts(std::vector<Outline> outlines) {
+  std::map<EdgeKey, std::uint32_t> parts;
+  for (const Outline& outline : outlines)
+    for (std::size_t k = 0; k < outline.corners.size(); ++k) {
+      std::uint32_t& finest = parts[key_of(outline.corners, k)];
+      finest = std::max(finest, outline.parts[k]);
+    }
+  for (Outline& outline : outlines)
+    for (std::size_t k = 0; k < outline.corners.size(); ++k) outline.parts[k] = parts.at(key_of(outline.corners, k));
+  return outlines;
+}
+
 }  // namespace
 
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges,
@@ -110,7 +123,7 @@ std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const
   parallel_for(polygons.size(), [&](std::size_t p) {
     if (is_needed[p]) outlines[p] = outline_with_marks(polygons[p], marks, edges.on(p));
   });
-  return outlines;
+  return edges.coarsest.empty() ? outlines : with_shared_parts(std::move(outlines));
 }
 
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges) {

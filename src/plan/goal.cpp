@@ -150,6 +150,7 @@ std::optional<Particle> scattered(const Scene& scene, const Hit& hit, const Part
 // Importance that arrives in the surroundings, and that gets out into the open without meeting these.
 struct Arrived {
   std::vector<ImportanceHit> hits;
+  double reflected = 0;  // sum of the reflectances where they arrive
   std::size_t escaped = 0;
 };
 
@@ -167,8 +168,11 @@ void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<st
       }
       const Hit& hit = *hits[k];
       const bool is_in_goal = is_goal[hit.polygon] != 0;
-      if (!is_in_goal && !is_opening(scene, hit.polygon))
+      if (!is_in_goal && !is_opening(scene, hit.polygon)) {
+        const Material& material = scene.materials[material_on(scene.polygons[hit.polygon], hit.side)];
+        arrived.reflected += mean_of(material.reflectance) + mean_of(material.specular_reflectance);
         arrived.hits.push_back({{hit.polygon, hit.side, hit.point}, hit.distance > 0 ? 1 / hit.distance : 0});
+      }
       const std::uint32_t key = hash({seed, bounce, k});
       if (auto particle = scattered(scene, hit, particles[k], is_in_goal, key)) next.push_back(*particle);
     }
@@ -213,10 +217,10 @@ std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides
   Arrived arrived = trace_importance(scene, faces, goal.is_goal, Sources(scene, mesh, enclosed), seed);
   goal.hits = std::move(arrived.hits);
 
-  // 3. Light of the brightness outside gets in from the open, and by the surroundings. So the goal has about (escaped +
-  //    hits) / particles of that brightness, and effort is shared as importance times brightness is.
-  const auto hits = static_cast<double>(goal.hits.size());
-  goal.share_of_surroundings = hits > 0 ? hits / (static_cast<double>(arrived.escaped) + 2 * hits) : 0;
+  // 3. Light of one brightness comes from the open, and the surroundings reflect their part of it. So light in the goal
+  //    is to that outside as (escaped + reflected) to the particles, and effort is shared as importance times light is.
+  const double sum = static_cast<double>(arrived.escaped) + 2 * arrived.reflected;
+  goal.share_of_surroundings = sum > 0 ? arrived.reflected / sum : 0;
   return std::make_shared<const Goal>(std::move(goal));
 }
 
@@ -305,7 +309,7 @@ PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patche
 }
 
 std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal) {
-  if (goal == nullptr || goal->hits.empty()) return mesh.area;
+  if (goal == nullptr || goal->share_of_surroundings == 0) return mesh.area;
   std::vector<double> hits(mesh.size(), 0.5);  // patches that none has met by chance count as well
   for (const PatchIndex i : patches_of(goal->hits, mesh))
     if (i != no_patch) hits[i] += 1;
