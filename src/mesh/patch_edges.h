@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -10,8 +11,7 @@ namespace patchlight {
 /// The longest edge of the patches of each polygon, metres.
 struct PatchEdges {
   double max_edge = 0;
-  std::vector<double> coarsest =
-      {};  ///< per polygon: its patches have edges up to this where it is more; empty: nowhere
+  std::vector<double> coarsest = {};  ///< per polygon: a longer edge that its patches may have; empty: none
 
   PatchEdges(double edge) : max_edge(edge) {}  // NOLINT(google-explicit-constructor): one edge for all polygons
   PatchEdges(double edge, std::vector<double> of_polygons) : max_edge(edge), coarsest(std::move(of_polygons)) {}

@@ -1,10 +1,10 @@
 #include "pipeline/conserved_flux.h"
 
+#include "base/disjoint_sets.h"
 #include "base/vectors.h"
 
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace patchlight {
@@ -17,27 +17,7 @@ constexpr int most_iterations = 100;        // between white faces that trap lig
 // A space that loses more of its light is open.
 constexpr double max_loss_of_closed = 1e-3;
 
-// Sets of patches that exchange light (union-find with path halving).
-class Components {
- public:
-  explicit Components(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  PatchIndex root(PatchIndex i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(PatchIndex i, PatchIndex j) {
-    const PatchIndex a = root(i);
-    const PatchIndex b = root(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<PatchIndex> parent_;
-};
-
-void join_patches(Components& components, const RayRows& rows) {
+void join_patches(DisjointSets& components, const RayRows& rows) {
   for (PatchIndex i = 0; i + 1 < rows.first_hit.size(); ++i) {
     for (std::uint64_t k = rows.first_hit[i]; k < rows.first_hit[i + 1]; ++k) components.join(i, rows.hits[k]);
     for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
@@ -83,7 +63,7 @@ Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + ha
 ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd& area, const Eigen::VectorXd& row_sum) {
   // 1. Connected components.
   const PatchIndex size = rays.size();
-  Components components(size);
+  DisjointSets components(size);
   for (const std::size_t half : {0U, 1U}) join_patches(components, rays.rows(half));
 
   // 2. The area and the loss of each, by its root.

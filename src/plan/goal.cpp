@@ -2,6 +2,7 @@
 
 #include "accuracy/enclosed.h"
 #include "accuracy/errors.h"
+#include "accuracy/interest.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -93,12 +93,12 @@ struct Particle {
   bool has_left = false;  // it has met the surroundings
 };
 
-// The places where particles start: the enclosed patches by their area, and the sensors, which take a half.
+// The places where particles start: the patches of the goal by their area, and the sensors, which take a half.
 class Sources {
  public:
-  Sources(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) : mesh_(mesh) {
+  Sources(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& goal) : mesh_(mesh) {
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
-      if (enclosed[i] == 0) continue;
+      if (goal[i] == 0) continue;
       patches_.push_back(i);
       area_before_.push_back(area_);
       area_ += mesh.area[i];
@@ -200,21 +200,24 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
 
 }  // namespace
 
-std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, std::uint64_t seed) {
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides,
+                                      const std::vector<std::string>& interest, std::uint64_t seed) {
   if (!scene.sky && !scene.sun) return {};
 
-  // 1. The polygons of enclosed spaces.
+  // 1. The polygons of enclosed spaces, and those that are named.
   const PatchMesh mesh = coarse_mesh(scene, sides);
   const Occluder faces(scene, Occluder::Blockers::all, find_coverings(scene, sides));
   const Eigen::VectorXd enclosed = in_rooms(enclosed_patches(scene, faces, mesh), scene, faces, mesh);
-  Goal goal{polygons_with(enclosed, mesh), {}, 0, 0};
+  const Eigen::VectorXd named = interest_of(scene, mesh, interest, enclosed);
+  if (total(enclosed) == 0 || total(named) == 0) return {};
+  Goal goal{polygons_with(enclosed.cwiseMax(named), mesh), {}, 0, 0};
   double around = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     (goal.is_goal[mesh.polygon[i]] != 0 ? goal.goal_area : around) += mesh.area[i];
-  if (goal.goal_area == 0 || around == 0) return {};
+  if (around == 0) return {};
 
   // 2. Importance of the surroundings.
-  Arrived arrived = trace_importance(scene, faces, goal.is_goal, Sources(scene, mesh, enclosed), seed);
+  Arrived arrived = trace_importance(scene, faces, goal.is_goal, Sources(scene, mesh, named), seed);
   goal.hits = std::move(arrived.hits);
 
   // 3. Light of one brightness comes from the open, and the surroundings reflect their part of it. So light in the goal

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -29,15 +30,17 @@ struct ImportanceHit {
 /// start on the surfaces of the goal, and at sensors, and scatter as light does. No mesh is needed, so that a small
 /// room in a wide terrain is not missed.
 struct Goal {
-  std::vector<std::uint8_t> is_goal;  ///< per polygon: 1 where a side has a part in an enclosed space
+  std::vector<std::uint8_t> is_goal;  ///< per polygon: 1 where a side has a part in an enclosed space, or is named
   std::vector<ImportanceHit> hits;    ///< equal parts of the importance of the surroundings
   double goal_area = 0;               ///< m^2, of the kept sides of goal polygons
   double share_of_surroundings = 0;   ///< of the patches, and of the rays
 };
 
-/// The goal of a scene by daylight. Null where there is no sky and no sun, no enclosed space, or nothing but enclosed
-/// spaces: then every surface counts by its area. Costs some hundred thousand rays.
-std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, std::uint64_t seed);
+/// The goal of a scene by daylight: the enclosed spaces, or the patches that `interest` names (interest_of()), which
+/// are meshed as finely as these. Null where there is no sky and no sun, no goal, or no surroundings: then every
+/// surface counts by its area. Naming the enclosed spaces gives the goal of no names. Costs some hundred thousand rays.
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides,
+                                      const std::vector<std::string>& interest, std::uint64_t seed);
 
 /// The kept sides of the polygons of the goal; all where `goal` is null.
 KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal);

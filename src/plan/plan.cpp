@@ -229,8 +229,9 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
   // An edge that is asked for is that of all patches.
-  const bool has_goal = knows_lights && !asked.mesh.max_edge && asked.accuracy.interest.empty();
-  const std::shared_ptr<const Goal> goal = has_goal ? find_goal(scene, sides, asked.assembly.seed) : nullptr;
+  const bool has_goal = knows_lights && !asked.mesh.max_edge;
+  const std::shared_ptr<const Goal> goal =
+      has_goal ? find_goal(scene, sides, asked.accuracy.interest, asked.assembly.seed) : nullptr;
   const KeptSides of_goal = sides_of_goal(sides, goal.get());
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);

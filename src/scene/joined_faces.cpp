@@ -1,5 +1,6 @@
 #include "scene/joined_faces.h"
 
+#include "base/disjoint_sets.h"
 #include "scene/extent.h"
 #include "scene/pieces.h"
 #include "scene/weld.h"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -102,28 +102,6 @@ void find_mates(Loops& loops, const Scene& scene, const std::vector<Vector>& nor
   }
 }
 
-// Which polygons have become one: a forest in which every link leads to a smaller index or to itself.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : link_(count) { std::iota(link_.begin(), link_.end(), PolygonIndex{0}); }
-
-  PolygonIndex root(PolygonIndex polygon) {
-    while (link_[polygon] != polygon) polygon = link_[polygon] = link_[link_[polygon]];
-    return polygon;
-  }
-
-  // False when the two are one already.
-  bool join(PolygonIndex a, PolygonIndex b) {
-    const PolygonIndex root_a = root(a);
-    const PolygonIndex root_b = root(b);
-    link_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-    return root_a != root_b;
-  }
-
- private:
-  std::vector<PolygonIndex> link_;
-};
-
 // Leaves out an edge of two loops, which become one, or a spike out and back of one loop.
 void leave_out(Loops& loops, Slot a, Slot b) {
   const auto link = [&loops](Slot from, Slot to) {
@@ -155,7 +133,7 @@ void leave_out_spikes(Loops& loops) {
 
 // The polygons that become one, each list with its first in front.
 std::vector<std::vector<PolygonIndex>> joined_groups(Loops& loops, std::size_t polygons) {
-  Groups groups(polygons);
+  DisjointSets groups(polygons);
   for (Slot a = 0; a < loops.vertex.size(); ++a) {
     const Slot b = loops.mate[a];
     if (b != no_slot && a < b && groups.join(loops.polygon[a], loops.polygon[b])) leave_out(loops, a, b);

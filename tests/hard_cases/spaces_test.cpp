@@ -148,7 +148,7 @@ TEST(Spaces, ErrorsAreStatedApart) {
   // Each as an interest in that side alone states it, on the same mesh. Of the light the room has less than a tenth.
   const Scene scene = daylight_office();
   Request request;
-  request.mesh.max_edge = 0.7;
+  request.mesh.patches = 600;
   request.accuracy.error_bars = true;
   const Simulation simulation = simulate(scene, request);
   ASSERT_EQ(simulation.spaces.size(), 2U);

@@ -28,7 +28,7 @@ Scene office_on(double ground) {
 }
 
 std::shared_ptr<const Goal> goal_of(const Scene& scene) {
-  return find_goal(scene, kept_sides(scene, Sides::automatic), 1);
+  return find_goal(scene, kept_sides(scene, Sides::automatic), {}, 1);
 }
 
 TEST(Goal, IsTheRoomAndNotTheGround) {
