@@ -14,8 +14,9 @@ namespace {
 constexpr double error_of_response = 0.01;  // by its residual
 constexpr int most_iterations = 100;        // between white faces that trap light the flux stays uncorrected
 
-// A space that loses more of its light is open.
-constexpr double max_loss_of_closed = 1e-3;
+// A space that loses more of its light is open. Patches that reach into solids lose some tenths of a percent at their
+// backs, and rooms with a window some percent.
+constexpr double max_loss_of_closed = 0.02;
 
 void join_patches(DisjointSets& components, const RayRows& rows) {
   for (PatchIndex i = 0; i + 1 < rows.first_hit.size(); ++i) {
@@ -60,11 +61,16 @@ Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + ha
 
 }  // namespace
 
-ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd& area, const Eigen::VectorXd& row_sum) {
+ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem& problem,
+                                const Eigen::VectorXd& row_sum) {
+  const Eigen::VectorXd& area = problem.area;
   // 1. Connected components.
   const PatchIndex size = rays.size();
   DisjointSets components(size);
   for (const std::size_t half : {0U, 1U}) join_patches(components, rays.rows(half));
+  const Scattering& scattering = problem.scattering;
+  if (!scattering.is_diagonal())
+    for (PatchIndex i = 0; i < size; ++i) components.join(i, scattering.other_side[i]);
 
   // 2. The area and the loss of each, by its root.
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
@@ -101,7 +107,7 @@ ConservingSolution conserving_flux(const RaysWithPockets& transport, const Radio
   const Eigen::VectorXd& area = problem.area;
   std::array<Field, 2> halves = gathered_by_halves(transport, solution.radiosity);
   const Field gathered = mean_of(halves);
-  ConservedFlux flux{find_closed_spaces(transport.rays(), area, row_sum), area.cwiseProduct(row_sum), {}};
+  ConservedFlux flux{find_closed_spaces(transport.rays(), problem, row_sum), area.cwiseProduct(row_sum), {}};
   const auto unchanged = [&] {
     flux.shape = Field::Zero(gathered.rows(), gathered.cols());
     return ConservingSolution{std::move(solution), std::move(flux), std::move(halves)};

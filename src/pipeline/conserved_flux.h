@@ -12,17 +12,18 @@
 
 namespace patchlight {
 
-/// The closed spaces of a mesh. The patches of a closed space exchange light with each other alone, and lose at most a
-/// thousandth of it.
+/// The closed spaces of a mesh. The patches of a closed space exchange light with each other alone, directly or through
+/// translucent sheets, and lose at most a fiftieth of it.
 struct ClosedSpaces {
   static constexpr std::uint32_t open = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> space_of;  ///< per patch: its closed space, or `open`
   Eigen::Index count = 0;
 };
 
-/// Finds the connected components of the rows, and keeps those that lose at most a thousandth of their light. `row_sum`
-/// is the fraction s_j of the hemisphere of patch j that other patches fill. O(rays).
-ClosedSpaces find_closed_spaces(const RayTransport& rays, const Eigen::VectorXd& area, const Eigen::VectorXd& row_sum);
+/// Finds the connected components of the rows and of the sheets, and keeps those that lose at most a thousandth of
+/// their light. `row_sum` is the fraction s_j of the hemisphere of patch j that other patches fill. O(rays).
+ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem& problem,
+                                const Eigen::VectorXd& row_sum);
 
 /// The flux that sampling errors of the rows lose or add in each closed space. Each row sums to s_j, but the columns do
 /// not: by reciprocity sum_i A_i (F B)_i = sum_j A_j s_j B_j within a space. The correction distributes the missing

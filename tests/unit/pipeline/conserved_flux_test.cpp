@@ -80,8 +80,8 @@ TEST(ConservedFlux, LeavesWhatHasNotConverged) {
 TEST(ConservedFlux, LeavesOpenSpaces) {
   const RaysWithPockets rows = two_halves();
   const Eigen::VectorXd open = 0.9 * row_sum;
-  EXPECT_EQ(find_closed_spaces(rows.rays(), area, open).count, 0);
   const RadiosityProblem problem = lit(0.8);
+  EXPECT_EQ(find_closed_spaces(rows.rays(), problem, open).count, 0);
   const Solution plain = solved(rows, problem);
   EXPECT_TRUE((conserving_flux(rows, problem, plain, open).solution.radiosity == plain.radiosity).all());
 }
