@@ -289,6 +289,8 @@ PatchImportance importance_after(const PatchImportance& before, const Refinement
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches) {
   const auto is_around = [&](const PatchMesh& of, PatchIndex i) { return goal.is_goal[of.polygon[i]] == 0; };
   PatchImportance importance = importance_of(mesh, goal.hits);
+  // They come on top of those that the outlines of faces take, which may be many.
+  for (PatchIndex i = 0; i < mesh.size(); ++i) patches += is_around(mesh, i) ? 1 : 0;
   for (;;) {
     std::size_t count = 0;
     std::vector<PatchIndex> order;

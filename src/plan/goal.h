@@ -48,9 +48,9 @@ KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal);
 /// The edges of patches before the surroundings are cut by importance: there as coarse as each polygon allows.
 PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal);
 
-/// The mesh with patches of the surroundings cut in four, the most important first, until these are `patches`.
-/// Importance of a patch is the number of its hits times (size / distance)^1.2, which is how the error by its size
-/// goes.
+/// The mesh with patches of the surroundings cut in four, the most important first, until there are about `patches`
+/// more. Importance of a patch is the sum over its hits of min(1, size / distance)^1.2, which is how the error by its
+/// size goes.
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches);
 
 /// By how much each patch counts when rays are shared out, m^2: its area on goal polygons, and on the others the area

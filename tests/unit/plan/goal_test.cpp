@@ -49,8 +49,8 @@ TEST(Goal, IsEverythingWithoutDaylight) {
   EXPECT_FALSE(goal_of(scene));
 }
 
-// Patches close to the window matter most, and are cut first. The ground gets 200 patches, and at most as many again by
-// balance.
+// Patches close to the window matter most, and are cut first. The ground gets 200 patches more than its outline takes,
+// and at most as many again by balance.
 TEST(Goal, CutsTheGroundBeforeTheWindow) {
   const Scene scene = office_on(300);
   const KeptSides sides = kept_sides(scene, Sides::automatic);

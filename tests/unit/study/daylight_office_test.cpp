@@ -34,7 +34,8 @@ TEST(VerifyByDaylight, OfficeAgreesUntilTheSunIsTenPercentOff) {
     const Scene scene = unit == 1 ? daylight_office() : turned(daylight_office(), unit);
     const Simulation simulation = simulate(scene, with_error_bars(1200));
     const Field bar = simulation.error_bars->total();
-    // Deep in the room few paths find the spot in the sun: more of them, whose scatter is then a fair estimate of their noise.
+    // Deep in the room few paths find the spot in the sun: more of them, whose scatter is then a fair estimate of their
+    // noise.
     const Verification right = verify(scene, simulation, bar, {.paths = 8192});
     EXPECT_EQ(right.verdict, Verdict::agrees) << right.probability;
     EXPECT_EQ(part(right, "inside").rows.size(), 32U);
