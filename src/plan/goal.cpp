@@ -26,12 +26,12 @@ constexpr std::uint32_t max_batches = 12;
 constexpr std::size_t enough_hits = 1 << 14;
 constexpr std::uint32_t max_bounces = 16;
 
-// A side with less of its area in an enclosed space belongs to the surroundings, as the ground below a house does.
+// A side with less of its area in an enclosed space belongs to the surroundings, e.g. the ground below a house.
 constexpr double least_enclosed_part = 0.25;
 
 double area_of(const Scene& scene, PolygonIndex polygon) { return area_vector(corner_points(scene, polygon)).norm(); }
 
-// The width of a polygon, if it is a rectangle about as long as its bounds.
+// The width of a rectangle with the area of a polygon, as long as its bounds.
 double width_of(const Scene& scene, PolygonIndex polygon) {
   Box box;
   for (const Point& corner : corner_points(scene, polygon)) box.extend(corner);
@@ -51,11 +51,11 @@ PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
   return tessellate(scene, sides, {smallest, std::move(coarsest)});
 }
 
-// A space that is much lower than its faces are wide is a gap, as below a building that does not touch the ground: the
-// harmonic mean of the lengths of its rays over the size of the face.
+// A space that is much lower than its faces are wide is a gap, e.g. below a building that does not touch the ground.
+// The limit is the harmonic mean of its ray lengths over the size of the face.
 constexpr double least_height = 0.02;
 
-// The enclosed patches but for those of gaps.
+// Removes the patches of gaps from the enclosed ones.
 Eigen::VectorXd in_rooms(Eigen::VectorXd enclosed, const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
   constexpr std::uint32_t rays_of_patch = 16;
   parallel_for(mesh.size(), [&](std::size_t k) {
@@ -72,7 +72,7 @@ Eigen::VectorXd in_rooms(Eigen::VectorXd enclosed, const Scene& scene, const Occ
   return enclosed;
 }
 
-// Per polygon whether a side has a part in an enclosed space.
+// Marks the polygons that have a side with such patches.
 std::vector<std::uint8_t> polygons_with(const Eigen::VectorXd& enclosed, const PatchMesh& mesh) {
   std::vector<std::uint8_t> is_goal(mesh.first_patch.size() / 2, 0);
   for (PolygonIndex p = 0; p < is_goal.size(); ++p) {
@@ -131,7 +131,8 @@ class Sources {
 
 double mean_of(const Spectrum& spectrum) { return spectrum.size() > 0 ? spectrum.mean() : 0; }
 
-// The particle after a hit; none where it is absorbed. Mirrors scatter as matt faces do: this steers effort alone.
+// The particle after a hit, or none where it is absorbed. Mirrors scatter like matt faces, because importance steers
+// effort alone.
 std::optional<Particle> scattered(const Scene& scene, const Hit& hit, const Particle& before, bool is_goal,
                                   std::uint32_t key) {
   const auto uniform = [&](std::uint32_t k) { return (hash({key, k}) + 0.5) * 0x1p-32; };
@@ -147,7 +148,7 @@ std::optional<Particle> scattered(const Scene& scene, const Hit& hit, const Part
   return Particle{{hit.point, direction, hit.polygon}, before.has_left || !is_goal};
 }
 
-// Importance that arrives in the surroundings, and that gets out into the open without meeting these.
+// Particles that arrive in the surroundings, and the number that leave the scene without meeting these.
 struct Arrived {
   std::vector<ImportanceHit> hits;
   double reflected = 0;  // sum of the reflectances where they arrive
@@ -245,10 +246,10 @@ PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal) {
 
 namespace {
 
-// Below so many hits the parts of a patch share its importance alike: their own hits would be chance.
+// A patch with fewer hits shares its importance equally among its parts, whose own hits would be chance.
 constexpr double few_hits = 8;
 
-// Importance of patches, as their hits tell it; and whether these are enough for the parts to differ.
+// The importance of each patch, and whether it has enough hits to tell its parts apart.
 struct PatchImportance {
   std::vector<double> of_patch;
   std::vector<std::uint8_t> has_many_hits;
@@ -268,7 +269,7 @@ PatchImportance importance_of(const PatchMesh& mesh, const std::vector<Importanc
   return found;
 }
 
-// That of the parts of patches.
+// The importance of the patches of a refined mesh.
 PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
                                  const std::vector<ImportanceHit>& hits) {
   const double left = std::pow(0.5, mesh_order) / 4;
@@ -289,7 +290,7 @@ PatchImportance importance_after(const PatchImportance& before, const Refinement
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches) {
   const auto is_around = [&](const PatchMesh& of, PatchIndex i) { return goal.is_goal[of.polygon[i]] == 0; };
   PatchImportance importance = importance_of(mesh, goal.hits);
-  // They come on top of those that the outlines of faces take, which may be many.
+  // The cuts come on top of the patches that the outlines of faces take, which may be many.
   for (PatchIndex i = 0; i < mesh.size(); ++i) patches += is_around(mesh, i) ? 1 : 0;
   for (;;) {
     std::size_t count = 0;

@@ -68,9 +68,9 @@ struct GatheredIrradiance {
 /// known.
 ///
 /// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
-/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the patches' mesh
-/// errors are not known, what they reflect is taken to be off by what planes do not explain, root mean square over all
-/// sensors, as a share. O(points x patches). \throws Cancelled.
+/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the mesh errors
+/// of the patches are not known, the relative error of the reflected light is estimated: the residual of the planes,
+/// root mean square over all sensors. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});
