@@ -7,12 +7,14 @@
 #include "verify/lamps.h"
 #include "verify/lights.h"
 #include "verify/ray_end.h"
+#include "verify/sensor_point.h"
 #include "verify/surfaces.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -53,7 +55,8 @@ constexpr double asked_of_many = 1.0 / 16;
 // A place where light arrives on its way to the receiver.
 struct Vertex {
   Point point;
-  PolygonIndex polygon = 0;
+  Vector normal;                      // unit, out of the side that receives
+  PolygonIndex polygon = no_polygon;  // no_polygon: a sensor
   Side side = Side::front;
   std::uint32_t path = 0;
   Spectrum throughput;  // share of the irradiance here that gets to the receiver
@@ -119,7 +122,8 @@ struct PathTracer {
   std::vector<std::uint8_t> specular;  // per polygon: 1 for an opening, and for a mirror
   Eigen::Index bands;
 
-  Batch trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
+  Batch trace(std::vector<Vertex> vertices, std::uint32_t paths, std::uint64_t seed) const;
+  Spectrum relative_held_at(const Vertex& vertex, const Vector& direction) const;
   std::uint64_t rays_of(std::size_t count, double asked) const;
   std::vector<Vertex> starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
   Spectrum light_from_lamps(const std::vector<Vertex>& vertices, const Samples& samples) const;
@@ -140,11 +144,19 @@ std::vector<Vertex> PathTracer::starts(const PathReceiver& receiver, std::uint32
     points.push_back(square_to_quad(receiver.corners, u[0], u[1]));
   }
   const std::vector<std::uint8_t> counts = exposed(occluder, surfaces, receiver, points, hash({seed, 1}));
+  const Vector& normal = surfaces.at(receiver.polygon, receiver.side).normal;
   std::vector<Vertex> vertices;
   for (std::uint32_t k = 0; k < paths; ++k) {
-    if (counts[k] != 0) vertices.push_back({points[k], receiver.polygon, receiver.side, k, Spectrum::Ones(bands)});
+    if (counts[k] != 0)
+      vertices.push_back({points[k], normal, receiver.polygon, receiver.side, k, Spectrum::Ones(bands)});
   }
   return vertices;
+}
+
+// The relative response of a clear receiver to light from a unit direction; 1 at all other places.
+Spectrum PathTracer::relative_held_at(const Vertex& vertex, const Vector& direction) const {
+  if (vertex.polygon == no_polygon || clear[vertex.polygon] == 0) return Spectrum::Ones(bands);
+  return relative_held(surfaces.at(vertex.polygon, vertex.side), vertex.normal.dot(direction));
 }
 
 // Light by points y on lamps, one for each vertex x: E(y) G / p with G = cos cos' / (pi |x - y|^2) and the density p of
@@ -158,15 +170,14 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
     const Vertex& vertex = vertices[k];
     const LampPoint lamp = sample(lamps, samples[k][0], samples[k][1]);
     const Surface& there = surfaces.at(lamp.polygon, lamp.side);
-    const Surface& here = surfaces.at(vertex.polygon, vertex.side);
     const Vector toward = lamp.point - vertex.point;
-    const double cosine = here.normal.dot(toward);          // times |x - y|
+    const double cosine = vertex.normal.dot(toward);        // times |x - y|
     const double cosine_there = -there.normal.dot(toward);  // times |x - y|
     if (!(cosine > 0 && cosine_there > 0)) continue;
     const double g = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
     segments.push_back({vertex.point, lamp.point, vertex.polygon, lamp.polygon});
     unoccluded.emplace_back(vertex.throughput * there.exitance * g / (sampling_density(lamps, there) + g));
-    if (clear[vertex.polygon] != 0) unoccluded.back() *= relative_held(here, cosine / toward.norm());
+    unoccluded.back() *= relative_held_at(vertex, toward.normalized());
     if (clear[lamp.polygon] != 0) unoccluded.back() *= relative_held(there, cosine_there / toward.norm());
   }
   const Field transmittance = straight.transmittance(segments);
@@ -186,7 +197,7 @@ Spectrum PathTracer::light_from_luminaires(const std::vector<Vertex>& vertices, 
     const Vertex& vertex = vertices[k];
     if (asked < 1 && uniform({seed, vertex.path, 10}) >= asked) continue;
     weights.emplace_back(vertex.throughput / asked);
-    places.push_back({{vertex.point, surfaces.at(vertex.polygon, vertex.side).normal, vertex.polygon},
+    places.push_back({{vertex.point, vertex.normal, vertex.polygon},
                       uniform({seed, vertex.path, 5}),
                       {samples[k][0], samples[k][1]}});
   }
@@ -238,8 +249,7 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Vertex& vertex = vertices[k];
     const Vector direction = square_to_cosine_hemisphere(samples[k][2], samples[k][3]);
-    const Vector& normal = surfaces.at(vertex.polygon, vertex.side).normal;
-    rays.push_back({vertex.point, frame_around(normal) * direction, vertex.polygon});
+    rays.push_back({vertex.point, frame_around(vertex.normal) * direction, vertex.polygon});
   }
   const auto hits = occluder.first_hits(rays);
 
@@ -253,16 +263,14 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
     if (!end.hit || !surfaces.at(end.hit->polygon, end.hit->side).kept) continue;
     const Vertex& vertex = vertices[k];
     const Hit& hit = *end.hit;
-    const Surface& here = surfaces.at(vertex.polygon, vertex.side);
-    Spectrum throughput = vertex.throughput * end.factor;
-    if (clear[vertex.polygon] != 0) throughput *= relative_held(here, here.normal.dot(rays[k].direction));
+    const Spectrum throughput = vertex.throughput * end.factor * relative_held_at(vertex, rays[k].direction);
     const Surface& there = surfaces.at(hit.polygon, hit.side);
 
     // 1. A lamp: E(y) with the weight G / (p + G), and 1 in a mirror, where no point on it is looked for
     if (hit.reflections > 0) {
       step.irradiance += throughput * there.exitance;
     } else if ((there.exitance > 0).any()) {
-      const double cosine = here.normal.dot(rays[k].direction);
+      const double cosine = vertex.normal.dot(rays[k].direction);
       const double cosine_there = -there.normal.dot(hit.direction);
       // G / (p + G) with G = a / distance^2, as a / (p distance^2 + a): finite where a ray hardly gets off.
       const double a = std::max(0.0, cosine * cosine_there) / std::numbers::pi;
@@ -287,10 +295,12 @@ std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& th
   const double drawn = uniform({path.seed, path.path});
   if (drawn >= survival) return std::nullopt;
   const double on_this_side = survival * (reflected.maxCoeff() / (reflected.maxCoeff() + through.maxCoeff()));
-  if (drawn < on_this_side) return Vertex{hit.point, hit.polygon, hit.side, path.path, reflected / on_this_side};
+  if (drawn < on_this_side)
+    return Vertex{hit.point, there.normal, hit.polygon, hit.side, path.path, reflected / on_this_side};
   const Side other = hit.side == Side::front ? Side::back : Side::front;
   if (occluder.is_covered(hit.polygon, other, hit.point)) return std::nullopt;
-  return Vertex{hit.point, hit.polygon, other, path.path, through / (survival - on_this_side)};
+  const Vector& normal = surfaces.at(hit.polygon, other).normal;
+  return Vertex{hit.point, normal, hit.polygon, other, path.path, through / (survival - on_this_side)};
 }
 
 // Rays from so many vertices, of a share of which lights are asked.
@@ -299,8 +309,7 @@ std::uint64_t PathTracer::rays_of(std::size_t count, double asked) const {
   return 2 * count + static_cast<std::uint64_t>(std::lround(asked * static_cast<double>(count) * lights_each));
 }
 
-Batch PathTracer::trace(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
-  std::vector<Vertex> vertices = starts(receiver, paths, seed);
+Batch PathTracer::trace(std::vector<Vertex> vertices, std::uint32_t paths, std::uint64_t seed) const {
   Batch batch{Spectrum::Zero(bands), static_cast<std::uint32_t>(vertices.size())};
   for (std::uint64_t length = 2; !vertices.empty(); ++length) {
     const std::uint32_t seed_here = hash({seed, length});
@@ -352,19 +361,19 @@ PathTracer path_tracer_for(const Scene& scene, const KeptSides& sides, Reflectio
   return tracer;
 }
 
-}  // namespace
+// Starts of the paths of one batch: for a receiver, their number, and a seed.
+using Starts = std::function<std::vector<Vertex>(std::size_t, std::uint32_t, std::uint64_t)>;
 
-PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
-                              const PathOptions& options, const Observer& observer) {
-  const PathTracer tracer =
-      path_tracer_for(scene, sides, options.follows_reflections ? Reflections::followed : Reflections::kept);
+PathEstimate trace_all(const PathTracer& tracer, std::size_t receivers, const Starts& starts,
+                       const PathOptions& options, const Observer& observer) {
   const std::uint32_t paths = std::bit_ceil((options.paths + path_batches - 1) / path_batches);  // of a batch
-  std::vector<Batch> batches(receivers.size() * path_batches);
+  std::vector<Batch> batches(receivers * path_batches);
   parallel_for(batches.size(), Stage::trace_paths, observer, [&](std::size_t k) {
-    batches[k] = tracer.trace(receivers[k / path_batches], paths, hash({options.seed, 0x70617468, k}));
+    const std::uint64_t seed = hash({options.seed, 0x70617468, k});
+    batches[k] = tracer.trace(starts(k / path_batches, paths, seed), paths, seed);
   });
 
-  const auto rows = static_cast<Eigen::Index>(receivers.size());
+  const auto rows = static_cast<Eigen::Index>(receivers);
   PathEstimate estimate{Field(rows, tracer.bands), Field(rows, tracer.bands), paths * path_batches};
   for (Eigen::Index i = 0; i < rows; ++i) {
     const std::span<const Batch> own(&batches[static_cast<std::size_t>(i) * path_batches], path_batches);
@@ -374,6 +383,34 @@ PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::s
     for (const Batch& batch : own) estimate.rays += batch.rays;
   }
   return estimate;
+}
+
+Reflections reflections_in(const PathOptions& options) {
+  return options.follows_reflections ? Reflections::followed : Reflections::kept;
+}
+
+}  // namespace
+
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
+                              const PathOptions& options, const Observer& observer) {
+  const PathTracer tracer = path_tracer_for(scene, sides, reflections_in(options));
+  const auto starts = [&](std::size_t k, std::uint32_t paths, std::uint64_t seed) {
+    return tracer.starts(receivers[k], paths, seed);
+  };
+  return trace_all(tracer, receivers.size(), starts, options, observer);
+}
+
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Sensor> sensors,
+                              const PathOptions& options, const Observer& observer) {
+  const PathTracer tracer = path_tracer_for(scene, sides, reflections_in(options));
+  const std::vector<Point> points = points_before_polygons(scene, sensors);
+  const auto starts = [&](std::size_t k, std::uint32_t paths, std::uint64_t) {
+    std::vector<Vertex> vertices;
+    for (std::uint32_t path = 0; path < paths; ++path)
+      vertices.push_back({points[k], sensors[k].normal, no_polygon, Side::front, path, Spectrum::Ones(tracer.bands)});
+    return vertices;
+  };
+  return trace_all(tracer, sensors.size(), starts, options, observer);
 }
 
 }  // namespace patchlight

@@ -4,6 +4,7 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/base/progress.h"
 #include "patchlight/scene/scene.h"
+#include "patchlight/scene/sensor.h"
 #include "patchlight/scene/sides.h"
 
 #include <array>
@@ -46,6 +47,11 @@ struct PathEstimate {
 /// mean is over the part of a receiver that is not covered (docs/theory.md section 2). The same bits for any number of
 /// threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
+                              const PathOptions& options = {}, const Observer& observer = {});
+
+/// Irradiance at points, by paths that start at each sensor over the hemisphere of its normal: one row per sensor. A
+/// sensor that lies on polygons is read just in front of the sides that it faces along. \throws Cancelled.
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Sensor> sensors,
                               const PathOptions& options = {}, const Observer& observer = {});
 
 }  // namespace patchlight

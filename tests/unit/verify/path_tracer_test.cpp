@@ -180,5 +180,54 @@ TEST(TraceIrradiance, EndsBetweenSurfacesThatAbsorbNothing) {
   EXPECT_GT(estimate.irradiance(0, 0), 100);
 }
 
+// The form factor from a point with a normal to a polygon before it: Lambert's contour sum.
+double lambert_form_factor(const Sensor& sensor, const std::vector<Point>& corners) {
+  double sum = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vector a = corners[k] - sensor.point;
+    const Vector b = corners[(k + 1) % corners.size()] - sensor.point;
+    sum += std::atan2(a.cross(b).norm(), a.dot(b)) * a.cross(b).normalized().dot(sensor.normal);
+  }
+  return std::abs(sum) / (2 * std::numbers::pi);
+}
+
+TEST(TraceIrradiance, SensorUnderASquareReadsItsFormFactor) {
+  const double half = 0.1;
+  const double exitance = 7;
+  Scene scene = empty_scene({grey(0, exitance)});
+  const auto rectangle = [half](double left) {
+    return Quad{Point(left, half, 0), Point(half, half, 0), Point(half, -half, 0), Point(left, -half, 0)};
+  };
+  scene = with_quad(std::move(scene), rectangle(-half));
+  const Point below(0, 0, -0.7);
+  const std::vector<Sensor> sensors{{below, Vector::UnitZ()}, {below, -Vector::UnitZ()}, {below, Vector::UnitX()}};
+  const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), sensors);
+  const auto expect = [&](Eigen::Index sensor, double left) {
+    const Quad seen = rectangle(left);
+    const double form_factor =
+        lambert_form_factor(sensors[static_cast<std::size_t>(sensor)], {seen.begin(), seen.end()});
+    EXPECT_NEAR(estimate.irradiance(sensor, 0), exitance * form_factor, 4 * estimate.standard_error(sensor, 0));
+    EXPECT_LT(estimate.standard_error(sensor, 0), 0.02 * exitance * form_factor);
+  };
+  expect(0, -half);
+  EXPECT_EQ(estimate.irradiance(1, 0), 0);
+  expect(2, 0);  // the half in front of a sensor that faces sideways
+}
+
+TEST(TraceIrradiance, SensorsInAFurnaceReadOne) {
+  // E = 1 - rho everywhere: H = 1 at every point and for every normal, in the air and on the surfaces.
+  Scene scene = empty_scene({grey(0.6, 0.4)});
+  scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
+  scene = with_box(std::move(scene), Point(1, 1, 0.5), Point(2, 1.8, 1.2), false);
+  const std::vector<Sensor> sensors{{Point(3, 2, 1.5), Vector(1, 2, -2).normalized()},
+                                    {Point(0.5, 0.5, 0), Vector::UnitZ()},
+                                    {Point(0.5, 0.5, -1e-7), Vector::UnitZ()},
+                                    {Point(1.5, 1.5, 1.2), Vector::UnitZ()},
+                                    {Point(1e-12, 2, 1), Vector::UnitX()}};
+  const PathEstimate estimate = trace_irradiance(scene, kept_sides(scene, Sides::front), sensors);
+  expect_within_four_errors(estimate, 1);
+  EXPECT_LT(estimate.standard_error.maxCoeff(), 0.03);
+}
+
 }  // namespace
 }  // namespace patchlight::path_tracer_test
