@@ -40,12 +40,11 @@ struct PathEstimate {
 };
 
 /// Irradiance by path tracing: the rendering equation of Kajiya (1986) for diffuse surfaces, without patches, form
-/// factors or a system of equations. Materials are those of `scene`; sides mean what they mean in simulate(): kept ones
-/// reflect, and emit from the front, a back of its own material, or both if asked; the others are black. Luminaires and
-/// sun are met by shadow rays, which cross clear openings; the sky by rays that leave the scene. What is reflected goes
-/// on through clear openings, too, and over mirrors, per band; and out of the other side of translucent sheets. The
-/// mean is over the part of a receiver that is not covered (docs/theory.md section 2). The same bits for any number of
-/// threads. \throws Cancelled.
+/// factors or a system of equations. The tracer shares the ray caster and the scene with the solver; sources, panes,
+/// mirrors and sky are evaluated by code of its own. Kept sides reflect and emit as in simulate(); other sides are
+/// black. Shadow rays find luminaires and sun, also over chains of mirrors of any length. Scattered rays find the sky.
+/// The mean is over the part of a receiver that is not covered (docs/theory.md section 2). The result does not depend
+/// on the number of threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 

@@ -44,8 +44,9 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
   surface.held = panes.held[of_material];
   if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
   surface.reflections = reflections;
-  const bool is_mirrored =
-      reflections == Reflections::followed && !is_opening(scene, index) && is_mirror(scene, index, side);
+  surface.is_clear = is_opening(scene, index);
+  surface.is_specular = surface.is_clear || is_mirror(scene, index, Side::front) || is_mirror(scene, index, Side::back);
+  const bool is_mirrored = reflections == Reflections::followed && !surface.is_clear && is_mirror(scene, index, side);
   surface.mirrored =
       is_mirrored ? material.specular_reflectance : Spectrum(Spectrum::Zero(material.reflectance.size()));
   const bool both_kept = kept.front[index] != 0 && kept.back[index] != 0;

@@ -15,9 +15,11 @@ namespace patchlight {
 
 /// What one side of a polygon is to light.
 struct Surface {
-  bool kept = false;     ///< false: it absorbs all light and emits none
-  Vector normal;         ///< unit, out of this side
-  Spectrum reflectance;  ///< the mean where there is a texture
+  bool kept = false;         ///< false: it absorbs all light and emits none
+  bool is_clear = false;     ///< a side of a clear polygon
+  bool is_specular = false;  ///< a side of a clear polygon, or of one with a mirror
+  Vector normal;             ///< unit, out of this side
+  Spectrum reflectance;      ///< the mean where there is a texture
   std::optional<TexturedReflectance> texture;
   TextureMap texture_map;   ///< where there is one
   std::vector<Pane> panes;  ///< per band; none of an opaque side
