@@ -38,8 +38,8 @@ struct Difference {
   double size = 0;
 };
 
-std::vector<Difference> worst_first(const Verification& verification) {
-  const Field sizes = deviations(verification).abs();
+std::vector<Difference> worst_first(const SolvedAndTraced& compared) {
+  const Field sizes = deviations(compared).abs();
   std::vector<Difference> differences;
   for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
     Difference difference{i};
@@ -145,9 +145,29 @@ std::string figures_of(const VerifiedPart& part, bool explained) {
              explained);
 }
 
+// One line for rooms or sensors, with the one that differs most.
+std::string figures_of(const VerifiedFamily& family) {
+  const VerifiedPart& part = family.part;
+  const SolvedAndTraced& compared = family.compared;
+  const Difference worst = worst_first(compared).front();
+  const Eigen::Index i = worst.row;
+  Eigen::Index band = 0;
+  part.offset.abs().maxCoeff(&band);
+  std::ostringstream text;
+  text << std::setprecision(3) << part.name << ", " << part.rows.size() << ": mean difference "
+       << percent(part.mean_difference[band], 3) << " %, " << part.offset[band]
+       << " of its standard errors, chi-square " << part.chi_square.maxCoeff() << "; largest at "
+       << shown_name(family.names[static_cast<std::size_t>(i)]) << ": "
+       << rounded(compared.irradiance(i, worst.band), 5) << " +- " << rounded(compared.bar(i, worst.band), 2)
+       << " W/m^2, by paths " << rounded(compared.paths.irradiance(i, worst.band), 5) << " +- "
+       << rounded(compared.paths.standard_error(i, worst.band), 2) << '\n';
+  return text.str();
+}
+
 std::string figures(const Verification& verification) {
   std::string text;
   for (const VerifiedPart& part : verification.parts) text += figures_of(part, text.empty());
+  for (const VerifiedFamily& family : verification.families) text += figures_of(family);
   return text + "z by the noise of the paths alone: root mean square " +
          standard_errors(root_mean_square(deviations_by_noise(verification)), 3) +
          " (1 is noise; above it the paths see errors, which the bars have to cover)\n";

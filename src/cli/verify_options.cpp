@@ -32,12 +32,15 @@ namespace {
 void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
   command.option_defaults()->group("The check");
   add(command, "--paths", "N",
-      "paths per patch, rounded up to 32 times a power of two; the noise\nof the check falls as their root; default "
+      "paths per patch and sensor, rounded up to 32 times a power of two; the noise\nof the check falls as their root; "
+      "default "
       "4096",
       [&options](const std::string& text) {
         options.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 22U));
       });
-  add(command, "--checked", "N", "how many patches are checked, chosen at random by area; default 64",
+  add(command, "--checked", "N",
+      "how many patches are checked, seven eighths of them inside or of\ninterest, and how many sensors and rooms at "
+      "most; default 64",
       [&options](const std::string& text) {
         options.verify.checked = whole_number("--checked", text, 1, 1'000'000'000);
       });
@@ -90,6 +93,7 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   arguments.options.seed = arguments.request.assembly.seed;
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
   arguments.bar = options.bar;
+  arguments.options.relative_bar = options.bar;
   arguments.quiet = options.quiet;
   arguments.request.accuracy.error_bars = !options.bar;
   Storage& storage = arguments.request.assembly.storage;

@@ -57,6 +57,26 @@ Json checked_part(const Scene& scene, const PatchMesh& mesh, const Verification&
   return part;
 }
 
+// Rooms or sensors.
+Json family_of(const VerifiedFamily& family) {
+  Json json = part_of(family.part);
+  json["paths"] = family.compared.paths.paths;
+  json["rows"] = Json::array();
+  const Field z = deviations_by_noise(family.compared);
+  const Field with_bar = deviations(family.compared);
+  for (std::size_t k = 0; k < family.names.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    json["rows"].push_back({{"name", family.names[k]},
+                            {"irradiance_W_m2", row(family.compared.irradiance, i)},
+                            {"bar_W_m2", row(family.compared.bar, i)},
+                            {"traced_W_m2", row(family.compared.paths.irradiance, i)},
+                            {"standard_error_W_m2", row(family.compared.paths.standard_error, i)},
+                            {"z", row(z, i)},
+                            {"z_with_bar", row(with_bar, i)}});
+  }
+  return json;
+}
+
 Json left_out_part(const Scene& scene, const Verification& verification) {
   Json part = Json::array();
   for (const LeftOutSide& side : verification.left_out) {
@@ -88,6 +108,8 @@ void write_verification(const std::filesystem::path& file, const Scene& scene, c
   json["widest_bar"] = widest_bar;
   json["parts"] = Json::array();
   for (const VerifiedPart& part : verification.parts) json["parts"].push_back(part_of(part));
+  json["families"] = Json::array();
+  for (const VerifiedFamily& family : verification.families) json["families"].push_back(family_of(family));
   json["patches"] = simulation.mesh.size();
   json["paths_per_patch"] = verification.paths.paths;
   json["first_paths_per_patch"] = verification.first_paths;

@@ -16,12 +16,6 @@
 namespace patchlight {
 namespace {
 
-// What bounds a room.
-struct RoomBounds {
-  std::string room;
-  std::vector<PatchIndex> patches;
-};
-
 // The bodies of some models (gbXML) end at the inner sides of walls and ceilings whose faces stand in the middle of
 // these: of a room that is not bounded all around, patches count as well that bound no room and face it from farther
 // off, metres.
@@ -71,9 +65,9 @@ std::vector<PatchIndex> patches_farther_off(const RoomBody& body, const PatchMes
   return found;
 }
 
-std::vector<RoomBounds> bounds_by_names(const Scene& scene, const PatchMesh& mesh) {
+std::vector<RoomPatches> bounds_by_names(const Scene& scene, const PatchMesh& mesh) {
   const std::vector<NamedRoom>& rooms = scene.rooms;
-  std::vector<RoomBounds> all;
+  std::vector<RoomPatches> all;
   std::vector<char> has_room(mesh.size(), 0);
   for (const NamedRoom& room : rooms) {
     all.push_back({room.name, patches_at(RoomBody(room.faces), mesh)});
@@ -87,12 +81,12 @@ std::vector<RoomBounds> bounds_by_names(const Scene& scene, const PatchMesh& mes
     const std::vector<PatchIndex> others = patches_farther_off(RoomBody(rooms[k].faces), mesh, has_room, *occluder);
     patches.insert(patches.end(), others.begin(), others.end());
   }
-  std::erase_if(all, [](const RoomBounds& bounds) { return bounds.patches.empty(); });
+  std::erase_if(all, [](const RoomPatches& bounds) { return bounds.patches.empty(); });
   return all;
 }
 
 // The closed shells that have patches on their inside, with these.
-std::vector<RoomBounds> bounds_by_shells(const Scene& scene, const PatchMesh& mesh) {
+std::vector<RoomPatches> bounds_by_shells(const Scene& scene, const PatchMesh& mesh) {
   const Shells shells = shells_of(scene);
   constexpr std::size_t none = ~std::size_t{0};
   std::vector<std::size_t> of_side(2 * scene.polygons.size(), none);
@@ -101,27 +95,13 @@ std::vector<RoomBounds> bounds_by_shells(const Scene& scene, const PatchMesh& me
     for (const PolygonIndex p : solids[k].polygons)
       of_side[std::size_t{2} * p + static_cast<std::size_t>(inner_side(solids[k], shells, p))] = k;
   }
-  std::vector<RoomBounds> all(solids.size());
+  std::vector<RoomPatches> all(solids.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const std::size_t k = of_side[std::size_t{2} * mesh.polygon[i] + static_cast<std::size_t>(mesh.side[i])];
     if (k != none) all[k].patches.push_back(i);
   }
-  std::erase_if(all, [](const RoomBounds& bounds) { return bounds.patches.empty(); });
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].room = all.size() == 1 ? "room" : "room " + std::to_string(k + 1);
-  return all;
-}
-
-std::vector<RoomBounds> bounds_of_rooms(const Scene& scene, const Simulation& simulation) {
-  const PatchMesh& mesh = simulation.mesh;
-  std::vector<RoomBounds> all = bounds_by_names(scene, mesh);
-  if (all.empty()) all = bounds_by_shells(scene, mesh);
-  if (!all.empty()) return all;
-  const Eigen::VectorXd& enclosed = simulation.enclosed;
-  const bool some = enclosed.size() > 0 && enclosed.maxCoeff() > 0;
-  all.push_back({"room", {}});
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    if (!some || enclosed[i] > 0) all[0].patches.push_back(i);
-  }
+  std::erase_if(all, [](const RoomPatches& bounds) { return bounds.patches.empty(); });
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].name = all.size() == 1 ? "room" : "room " + std::to_string(k + 1);
   return all;
 }
 
@@ -173,7 +153,7 @@ SurfaceLight light_on(RoomSurface kind, const std::vector<LitPatch>& patches) {
   return surface;
 }
 
-RoomLight light_of(const RoomBounds& bounds, const Scene& scene, const Simulation& simulation) {
+RoomLight light_of(const RoomPatches& bounds, const Scene& scene, const Simulation& simulation) {
   const double in_unit = scene.photometric ? 1 : 1 / luminous_efficacy;
   const Bands bands = bands_of(scene);
   const auto illuminance = [&](const Spectrum& irradiance) { return in_unit * luminance(irradiance, bands); };
@@ -187,7 +167,7 @@ RoomLight light_of(const RoomBounds& bounds, const Scene& scene, const Simulatio
     const double differs = simulation.error_bars ? illuminance(simulation.error_bars->display.row(i)) : 0;
     surfaces[surface].push_back({area, illuminance(simulation.solution.irradiance.row(i)), differs});
   }
-  RoomLight light{bounds.room};
+  RoomLight light{bounds.name};
   for (const RoomSurface kind : {RoomSurface::floor, RoomSurface::walls, RoomSurface::ceiling}) {
     const auto k = static_cast<std::size_t>(kind);
     light.surfaces[k] = light_on(kind, surfaces[k]);
@@ -197,10 +177,23 @@ RoomLight light_of(const RoomBounds& bounds, const Scene& scene, const Simulatio
 
 }  // namespace
 
+std::vector<RoomPatches> rooms_of(const Scene& scene, const Simulation& simulation) {
+  const PatchMesh& mesh = simulation.mesh;
+  std::vector<RoomPatches> all = bounds_by_names(scene, mesh);
+  if (all.empty()) all = bounds_by_shells(scene, mesh);
+  if (!all.empty()) return all;
+  const Eigen::VectorXd& enclosed = simulation.enclosed;
+  const bool some = enclosed.size() > 0 && enclosed.maxCoeff() > 0;
+  all.push_back({"room", {}});
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (!some || enclosed[i] > 0) all[0].patches.push_back(i);
+  }
+  return all;
+}
+
 std::vector<RoomLight> room_light(const Scene& scene, const Simulation& simulation) {
   std::vector<RoomLight> all;
-  for (const RoomBounds& bounds : bounds_of_rooms(scene, simulation))
-    all.push_back(light_of(bounds, scene, simulation));
+  for (const RoomPatches& bounds : rooms_of(scene, simulation)) all.push_back(light_of(bounds, scene, simulation));
   std::erase_if(all, [](const RoomLight& light) {
     return std::all_of(light.surfaces.begin(), light.surfaces.end(), [](const SurfaceLight& s) { return s.area == 0; });
   });

@@ -1,10 +1,15 @@
 #include "study/verify.h"
 
+#include "patchlight/gather/readings.h"
+#include "patchlight/views/views.h"
+
 #include "accuracy/spaces.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
+#include "pipeline/relative_errors.h"
 #include "plan/planned_scene.h"
+#include "report/room_light.h"
 #include "solve/scattering.h"
 #include "study/left_out.h"
 
@@ -13,42 +18,57 @@
 #include <cassert>
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Patches of one space: 1 for each, else 0.
-struct Space {
+// Of one receiver.
+constexpr std::size_t max_paths = std::size_t{1} << 22U;
+
+// The goal region or the rest: 1 for each of its patches, else 0, and its share of the checked patches.
+struct Region {
   std::string name;
   Eigen::ArrayXd holds;
+  double share = 1;
 };
 
-std::vector<Space> spaces_of(const Scene& scene, const Simulation& simulation) {
-  const Eigen::ArrayXd inside = inside_patches(scene, simulation.mesh, simulation.enclosed).array();
-  const double count = total(inside);
-  if (count == 0 || count == static_cast<double>(inside.size())) return {{"all", Eigen::ArrayXd::Ones(inside.size())}};
-  return {{"inside", inside}, {"outside", 1 - inside}};
+std::vector<Region> regions_of(const Scene& scene, const Simulation& simulation) {
+  const bool is_named = !simulation.plan.accuracy.interest.empty();
+  const Eigen::ArrayXd goal = is_named ? interest_in(scene, simulation).array()
+                                       : inside_patches(scene, simulation.mesh, simulation.enclosed).array();
+  const double count = total(goal);
+  if (count == 0 || count == static_cast<double>(goal.size())) return {{"all", Eigen::ArrayXd::Ones(goal.size())}};
+  constexpr double of_goal = 7.0 / 8;
+  return {{is_named ? "of interest" : "inside", goal, of_goal},
+          {is_named ? "others" : "outside", 1 - goal, 1 - of_goal}};
 }
 
-// Without replacement, in proportion to the exposed area.
-std::vector<PatchIndex> choose_by_area(const Eigen::VectorXd& area, const Space& space, std::size_t count,
-                                       std::uint64_t seed) {
-  const Eigen::VectorXd weight = area.cwiseProduct(space.holds.matrix());
+// Exposed area times radiosity, a proxy of the importance. The mean radiosity is added, as dark patches are wrong too.
+Eigen::ArrayXd drawing_weights(const Simulation& simulation) {
+  const Eigen::ArrayXd area = simulation.problem.area.array();
+  const Eigen::ArrayXd radiosity = simulation.solution.radiosity.rowwise().mean().max(0.0);
+  const double mean = total(area * radiosity) / total(area);
+  return mean > 0 ? Eigen::ArrayXd(area * (radiosity + mean)) : area;
+}
+
+std::vector<PatchIndex> draw(const Eigen::ArrayXd& weights, std::size_t count, std::uint64_t seed) {
   const auto drawn =
-      drawn_by_weight({weight.data(), static_cast<std::size_t>(weight.size())}, count, {seed, 0x63686f6f7365});
+      drawn_by_weight({weights.data(), static_cast<std::size_t>(weights.size())}, count, {seed, 0x63686f6f7365});
   return {drawn.begin(), drawn.end()};
 }
 
-// As many of each space.
-std::vector<PatchIndex> choose(const Eigen::VectorXd& area, const std::vector<Space>& spaces,
-                               const VerifyOptions& options) {
-  const std::size_t each = (options.checked + spaces.size() - 1) / spaces.size();
+std::vector<PatchIndex> draw_patches(const Simulation& simulation, const std::vector<Region>& regions,
+                                     const VerifyOptions& options) {
+  const Eigen::ArrayXd weights = drawing_weights(simulation);
   std::vector<PatchIndex> all;
-  for (const Space& space : spaces) {
-    const std::vector<PatchIndex> chosen = choose_by_area(area, space, each, options.seed);
-    all.insert(all.end(), chosen.begin(), chosen.end());
+  for (const Region& region : regions) {
+    const auto count = static_cast<std::size_t>(std::ceil(region.share * static_cast<double>(options.checked)));
+    const std::vector<PatchIndex> drawn = draw(weights * region.holds, count, options.seed);
+    all.insert(all.end(), drawn.begin(), drawn.end());
   }
   std::sort(all.begin(), all.end());
   return all;
@@ -70,69 +90,14 @@ double upper_tail(double chi_square, double degrees) {
 // That of a normal deviate this far from 0 or farther, either way.
 double both_tails(double deviate) { return std::isnan(deviate) ? 0 : std::erfc(std::abs(deviate) / std::sqrt(2.0)); }
 
-// a / b per band; 0 where nothing is over nothing.
-Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return (a == 0).select(a, a / b); }
-
-// Two sums of the same light may differ by so much of it for rounding alone.
-constexpr double rounding = 1e-10;
-
-// The variance of Student's t beside that of the noise which batches tell. Of n paths that met no light the bound of 95
-// % on the share that would have is 3 / n (Hanley and Lippman-Hand 1983): of the brightest light that was traced.
-Field variance_of(const PathEstimate& paths) {
-  constexpr double degrees = path_batches - 1;
-  Field noise = paths.standard_error.square() * (degrees / (degrees - 2)) + (rounding * paths.irradiance).square();
-  if (noise.rows() == 0) return noise;
-  const Spectrum of_none = (3 * highest(paths.irradiance).transpose() / paths.paths).square();
-  return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
-}
-
-Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
-  Field chosen(static_cast<Eigen::Index>(rows.size()), field.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = field.row(rows[k]);
-  return chosen;
-}
-
-VerifiedPart part_of(const Space& space, const Verification& result, const Simulation& simulation,
-                     const FieldView& bars) {
-  VerifiedPart part;
-  part.name = space.name;
-  for (std::size_t k = 0; k < result.patches.size(); ++k) {
-    if (space.holds[result.patches[k]] != 0) part.rows.push_back(static_cast<Eigen::Index>(k));
-  }
-  const Field solved = rows_at(result.irradiance, part.rows);
-  const Field traced = rows_at(result.paths.irradiance, part.rows);
-  const Field bar = rows_at(result.bar, part.rows);
-  const Field variance = rows_at(variance_of(result.paths), part.rows);
-  part.dark = (solved == 0 && traced == 0).cast<double>().colwise().sum().transpose();
-  part.chi_square = sum_over_patches(rows_at(deviations(result), part.rows).square());
-
-  // The common offset. Bars of different patches hang together, one cannot say how: as if they were the same.
-  const Eigen::ArrayXd difference = sum_over_patches(solved - traced);
-  part.mean_difference = ratio(difference, sum_over_patches(traced));
-  part.offset = ratio(difference, (sum_over_patches(variance) + sum_over_patches(bar).square()).sqrt());
-
-  // How far patches are off: noise of the paths adds its squares to those of the differences.
-  const Eigen::ArrayXd noise = sum_over_patches(rows_at(result.paths.standard_error, part.rows).square());
-  const Eigen::ArrayXd light = (sum_over_patches(traced.square()) - noise).max(0.0);
-  part.error = ratio((sum_over_patches((solved - traced).square()) - noise).max(0.0), light).sqrt();
-  part.noise = ratio(noise, light).sqrt();
-
-  // How much that would grant.
-  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(space.holds.matrix());
-  const Eigen::ArrayXd of_checked =
-      ratio(sum_over_patches(bar.square()).sqrt(), sum_over_patches(traced.square()).sqrt());
-  const Eigen::ArrayXd of_all = ratio(area_norm(bars, area), area_norm(simulation.solution.irradiance, area));
-  const Eigen::ArrayXd of_noise = ratio(sum_over_patches(variance).sqrt(), sum_over_patches(traced));
-  part.width = largest(of_checked.max(of_all).max(of_noise));
-  return part;
-}
-
-// Bands and parts go together, so that they are not added up: the least likely one decides, among so many (Bonferroni).
+// Bands, parts and families are correlated. The least likely one decides, times the number of tests (Bonferroni).
 Verification judged(Verification result) {
   double least = 1;
   double tests = 0;
   bool wide = false;
-  for (const VerifiedPart& part : result.parts) {
+  std::vector<VerifiedPart> tested = result.parts;
+  for (const VerifiedFamily& family : result.families) tested.push_back(family.part);
+  for (const VerifiedPart& part : tested) {
     for (Eigen::Index band = 0; band < part.chi_square.size(); ++band) {
       const auto degrees = static_cast<double>(part.rows.size()) - part.dark[band];
       least = std::min({least, upper_tail(part.chi_square[band], degrees), both_tails(part.offset[band])});
@@ -148,36 +113,154 @@ Verification judged(Verification result) {
   return result;
 }
 
+std::vector<Eigen::Index> all_rows(const SolvedAndTraced& compared) {
+  std::vector<Eigen::Index> rows(static_cast<std::size_t>(compared.irradiance.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
+// The scene as paths see it, and how they are traced.
+struct Tracer {
+  const Scene& whole;
+  const Simulation& simulation;
+  Scene scene;
+  PathOptions options;
+  const Observer& observer;
+
+  PathEstimate trace(const auto& receivers) const {
+    return trace_irradiance(scene, simulation.plan.sides, receivers, options, observer);
+  }
+};
+
+// Bars of a room's patches are correlated by an unknown amount: their mean is the bar of the room's mean.
+Spectrum mean_over(const FieldView& field, const std::vector<PatchIndex>& patches, const Eigen::VectorXd& area) {
+  Spectrum sum = Spectrum::Zero(field.cols());
+  double whole = 0;
+  for (const PatchIndex i : patches) {
+    sum += area[i] * field.row(i);
+    whole += area[i];
+  }
+  return sum / whole;
+}
+
+// Half as many paths as the checked patches take, shared among the rooms.
+std::optional<VerifiedFamily> verify_rooms(Tracer tracer, const FieldView& bar, std::size_t checked) {
+  const Simulation& simulation = tracer.simulation;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  std::vector<RoomPatches> rooms = rooms_of(tracer.whole, simulation);
+  for (RoomPatches& room : rooms) std::erase_if(room.patches, [&](PatchIndex i) { return !(area[i] > 0); });
+  std::erase_if(rooms, [](const RoomPatches& room) { return room.patches.empty(); });
+  if (rooms.size() > checked) rooms.resize(checked);
+  if (rooms.empty()) return {};
+  VerifiedFamily family;
+  std::vector<PathRegion> regions;
+  family.compared.irradiance.resize(static_cast<Eigen::Index>(rooms.size()), bar.cols());
+  family.compared.bar = family.compared.irradiance;
+  for (const RoomPatches& room : rooms) {
+    const auto row = static_cast<Eigen::Index>(regions.size());
+    family.names.push_back(room.name);
+    family.compared.irradiance.row(row) = mean_over(simulation.solution.irradiance, room.patches, area);
+    family.compared.bar.row(row) = mean_over(bar, room.patches, area);
+    regions.push_back(PathRegion{receivers_of(simulation.mesh, room.patches)});
+  }
+  const std::size_t times = std::max<std::size_t>(1, checked / (2 * rooms.size()));
+  tracer.options.paths = static_cast<std::uint32_t>(std::min<std::size_t>(times * tracer.options.paths, max_paths));
+  family.compared.paths = tracer.trace(std::span<const PathRegion>(regions));
+  family.part = verify_part("rooms", family.compared, all_rows(family.compared));
+  return family;
+}
+
+std::vector<std::string> names_of_sensors(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const SensorGroup& group : scene.sensors)
+    for (std::size_t k = 0; k < group.sensors.size(); ++k) names.push_back(place_of(group, k));
+  return names;
+}
+
+// Sensors inside walls read nothing.
+std::optional<VerifiedFamily> verify_sensors(const Tracer& tracer, const VerifyOptions& options) {
+  const std::vector<Sensor> all = all_sensors(tracer.whole.sensors);
+  if (all.empty()) return {};
+  const Readings readings = read_sensors(tracer.whole, tracer.simulation, tracer.observer).readings;
+  Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(static_cast<Eigen::Index>(all.size()));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (is_inside_wall(readings, k)) weights[static_cast<Eigen::Index>(k)] = 0;
+  std::vector<PatchIndex> chosen = draw(weights, options.checked, options.seed);
+  if (chosen.empty()) return {};
+  std::sort(chosen.begin(), chosen.end());
+  const std::vector<std::string> names = names_of_sensors(tracer.whole);
+  VerifiedFamily family;
+  std::vector<Sensor> sensors;
+  for (const PatchIndex k : chosen) {
+    family.names.push_back(names[k]);
+    sensors.push_back(all[k]);
+  }
+  family.compared.irradiance = chosen_rows(readings.irradiance, chosen);
+  if (options.relative_bar) {
+    const Spectrum mean = family.compared.irradiance.colwise().mean();
+    family.compared.bar =
+        *options.relative_bar * family.compared.irradiance.max(mean.replicate(family.compared.irradiance.rows(), 1));
+  } else {
+    family.compared.bar = chosen_rows(readings.standard_error, chosen);
+  }
+  family.compared.paths = tracer.trace(std::span<const Sensor>(sensors));
+  family.part = verify_part("sensors", family.compared, all_rows(family.compared));
+  return family;
+}
+
+// Bars on all patches of a region, as a share of its light, worst band.
+double width_of_all(const Region& region, const Simulation& simulation, const FieldView& bars) {
+  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(region.holds.matrix());
+  return largest(ratio(area_norm(bars, area), area_norm(simulation.solution.irradiance, area)));
+}
+
 Verification compared(const Scene& scene, const Simulation& simulation, const FieldView& bar,
-                      const std::vector<Space>& spaces, const std::vector<PatchIndex>& patches,
+                      const std::vector<Region>& regions, const std::vector<PatchIndex>& patches,
                       const VerifyOptions& options, const Observer& observer) {
+  const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
+  const Tracer tracer{scene,
+                      simulation,
+                      scene_for_sensors(scene, simulation.plan),
+                      {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections},
+                      observer};
   Verification result;
   result.patches = patches;
   result.irradiance = chosen_rows(simulation.solution.irradiance, patches);
   result.bar = chosen_rows(bar, patches);
-  const Scene seen = scene_for_sensors(scene, simulation.plan);
-  const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
-  result.paths = trace_irradiance(
-      seen, simulation.plan.sides, receivers_of(simulation.mesh, patches),
-      {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections}, observer);
+  const std::vector<PathReceiver> receivers = receivers_of(simulation.mesh, patches);
+  result.paths = tracer.trace(std::span<const PathReceiver>(receivers));
+  for (const Region& region : regions) {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t k = 0; k < patches.size(); ++k)
+      if (region.holds[patches[k]] != 0) rows.push_back(static_cast<Eigen::Index>(k));
+    result.parts.push_back(verify_part(region.name, result, std::move(rows)));
+    result.parts.back().width = std::max(result.parts.back().width, width_of_all(region, simulation, bar));
+  }
+  if (auto rooms = verify_rooms(tracer, bar, options.checked)) result.families.push_back(std::move(*rooms));
+  if (auto sensors = verify_sensors(tracer, options)) result.families.push_back(std::move(*sensors));
   const Spectrum mean = result.paths.irradiance.colwise().mean();
-  result.left_out = trace_left_out(seen, simulation.plan.sides, mean, options, follows_reflections, observer);
-  for (const Space& space : spaces) result.parts.push_back(part_of(space, result, simulation, bar));
+  result.left_out = trace_left_out(tracer.scene, simulation.plan.sides, mean, options, follows_reflections, observer);
   return judged(std::move(result));
 }
 
 // With so many paths a comparison is not made again.
 constexpr std::uint32_t enough_paths = 8192;
 
-// Light that few paths meet, as by a door left ajar, is spread unevenly: most batches miss some of it, and their spread
-// tells too little of that. True where most of chi-square is of patches whose paths scatter by a fifth of their bars or
-// more.
+// Few paths meet light that comes by a door left ajar: most batches miss it, and their scatter underestimates the
+// noise. True if most of chi-square comes from rows whose paths scatter by a fifth of their bars or more.
 bool is_by_noise(const Verification& verification) {
   if (!(verification.probability < least_probability)) return false;
-  const Field squares = deviations(verification).square();
-  constexpr double share = 0.2;
-  const Field of_noise = (verification.paths.standard_error > share * verification.bar).select(squares, 0);
-  return of_noise.sum() > squares.sum() / 2;
+  double noisy = 0;
+  double all = 0;
+  const auto add = [&](const SolvedAndTraced& compared) {
+    const Field squares = deviations(compared).square();
+    constexpr double share = 0.2;
+    noisy += (compared.paths.standard_error > share * compared.bar).select(squares, 0).sum();
+    all += squares.sum();
+  };
+  add(verification);
+  for (const VerifiedFamily& family : verification.families) add(family.compared);
+  return noisy > all / 2;
 }
 
 // Other ones, and more.
@@ -227,11 +310,11 @@ Field deviations_by_noise(const Verification& verification) {
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options, const Observer& observer) {
   assert(bar.rows() == simulation.mesh.size());
-  const std::vector<Space> spaces = spaces_of(scene, simulation);
-  const std::vector<PatchIndex> patches = choose(simulation.problem.area, spaces, options);
+  const std::vector<Region> regions = regions_of(scene, simulation);
+  const std::vector<PatchIndex> patches = draw_patches(simulation, regions, options);
   VerifyOptions by = options;
   for (std::uint32_t first_paths = 0;; by = more_paths(by)) {
-    Verification result = compared(scene, simulation, bar, spaces, patches, by, observer);
+    Verification result = compared(scene, simulation, bar, regions, patches, by, observer);
     result.first_paths = first_paths;
     if (by.paths >= enough_paths || !is_by_noise(result)) return result;
     if (first_paths == 0) first_paths = result.paths.paths;

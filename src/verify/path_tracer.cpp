@@ -135,6 +135,7 @@ class PathTracer {
 
   Eigen::Index bands() const { return scene_.bands(); }
   std::vector<Vertex> starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const;
+  std::vector<Vertex> starts(const PathRegion& region, std::uint32_t paths, std::uint64_t seed) const;
   Batch trace(std::vector<Vertex> vertices, std::uint32_t paths, std::uint64_t seed) const;
 
  private:
@@ -166,6 +167,25 @@ std::vector<Vertex> PathTracer::starts(const PathReceiver& receiver, std::uint32
   for (std::uint32_t k = 0; k < paths; ++k) {
     if (counts[k] != 0)
       vertices.push_back({points[k], normal, receiver.polygon, receiver.side, k, Spectrum::Ones(bands())});
+  }
+  return vertices;
+}
+
+// The same over a region: each path takes a receiver by area, stratified, and a point of its own there.
+std::vector<Vertex> PathTracer::starts(const PathRegion& region, std::uint32_t paths, std::uint64_t seed) const {
+  std::vector<double> area_up_to;
+  double whole = 0;
+  for (const PathReceiver& receiver : region.receivers)
+    area_up_to.push_back(whole += area_vector(receiver.corners).norm());
+  const Samples samples = scrambled_sobol(paths, hash({seed, 0}));
+  std::vector<Vertex> vertices;
+  for (std::uint32_t k = 0; k < paths; ++k) {
+    const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, samples[k][2] * whole);
+    const PathReceiver& receiver = region.receivers[static_cast<std::size_t>(found - area_up_to.begin())];
+    const Point point = square_to_quad(receiver.corners, samples[k][0], samples[k][1]);
+    if (exposed(scene_.faces(), surfaces_, receiver, {&point, 1}, hash({seed, 1, k})).front() == 0) continue;
+    const Vector& normal = surfaces_.at(receiver.polygon, receiver.side).normal;
+    vertices.push_back({point, normal, receiver.polygon, receiver.side, k, Spectrum::Ones(bands())});
   }
   return vertices;
 }
@@ -373,6 +393,15 @@ PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::s
     return tracer.starts(receivers[k], paths, seed);
   };
   return trace_all(tracer, receivers.size(), starts, options, observer);
+}
+
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathRegion> regions,
+                              const PathOptions& options, const Observer& observer) {
+  const PathTracer tracer(scene, sides, options);
+  const auto starts = [&](std::size_t k, std::uint32_t paths, std::uint64_t seed) {
+    return tracer.starts(regions[k], paths, seed);
+  };
+  return trace_all(tracer, regions.size(), starts, options, observer);
 }
 
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Sensor> sensors,

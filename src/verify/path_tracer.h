@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace patchlight {
 
@@ -18,6 +19,11 @@ struct PathReceiver {
   std::array<Point, 4> corners;  ///< convex, metres; a triangle repeats its last
   PolygonIndex polygon = 0;
   Side side = Side::front;
+};
+
+/// Several receivers as one, whose mean irradiance is wanted.
+struct PathRegion {
+  std::vector<PathReceiver> receivers;
 };
 
 /// Paths come in so many batches, each stratified on its own: their scatter is the standard error.
@@ -46,6 +52,10 @@ struct PathEstimate {
 /// The mean is over the part of a receiver that is not covered (docs/theory.md section 2). The result does not depend
 /// on the number of threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
+                              const PathOptions& options = {}, const Observer& observer = {});
+
+/// The mean irradiance of regions, from points spread over their exposed area: one row per region. \throws Cancelled.
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathRegion> regions,
                               const PathOptions& options = {}, const Observer& observer = {});
 
 /// Irradiance at points, by paths that start at each sensor over the hemisphere of its normal: one row per sensor. A

@@ -38,8 +38,8 @@ TEST(VerifyByDaylight, OfficeAgreesUntilTheSunIsTenPercentOff) {
     // noise.
     const Verification right = verify(scene, simulation, bar, {.paths = 8192});
     EXPECT_EQ(right.verdict, Verdict::agrees) << right.probability;
-    EXPECT_EQ(part(right, "inside").rows.size(), 32U);
-    EXPECT_EQ(part(right, "outside").rows.size(), 32U);
+    EXPECT_EQ(part(right, "inside").rows.size(), 56U);
+    EXPECT_EQ(part(right, "outside").rows.size(), 8U);
     for (const double factor : unit == 1 ? std::vector{0.9, 1.1} : std::vector{0.9}) {
       Scene wrong = scene;
       wrong.sun->normal_irradiance *= factor;
