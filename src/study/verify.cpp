@@ -26,8 +26,15 @@
 namespace patchlight {
 namespace {
 
-// Of one receiver.
-constexpr std::size_t max_paths = std::size_t{1} << 22U;
+// Rooms and sensors get more paths each than patches do, up to so many, as long as there are few of them.
+constexpr std::size_t max_paths = std::size_t{1} << 16U;
+
+// A total shared by some receivers, no less than a patch gets.
+std::uint32_t paths_each(const VerifyOptions& options, double shares_of_patches, std::size_t receivers) {
+  const double total = shares_of_patches * static_cast<double>(options.checked * options.paths);
+  const double each = std::min<double>(max_paths, total / static_cast<double>(receivers));
+  return std::max(options.paths, static_cast<std::uint32_t>(each));
+}
 
 // The goal region or the rest: 1 for each of its patches, else 0, and its share of the checked patches.
 struct Region {
@@ -143,14 +150,14 @@ Spectrum mean_over(const FieldView& field, const std::vector<PatchIndex>& patche
   return sum / whole;
 }
 
-// Half as many paths as the checked patches take, shared among the rooms.
-std::optional<VerifiedFamily> verify_rooms(Tracer tracer, const FieldView& bar, std::size_t checked) {
+// Rooms share half as many paths as the checked patches take.
+std::optional<VerifiedFamily> verify_rooms(Tracer tracer, const FieldView& bar, const VerifyOptions& options) {
   const Simulation& simulation = tracer.simulation;
   const Eigen::VectorXd& area = simulation.problem.area;
   std::vector<RoomPatches> rooms = rooms_of(tracer.whole, simulation);
   for (RoomPatches& room : rooms) std::erase_if(room.patches, [&](PatchIndex i) { return !(area[i] > 0); });
   std::erase_if(rooms, [](const RoomPatches& room) { return room.patches.empty(); });
-  if (rooms.size() > checked) rooms.resize(checked);
+  if (rooms.size() > options.checked) rooms.resize(options.checked);
   if (rooms.empty()) return {};
   VerifiedFamily family;
   std::vector<PathRegion> regions;
@@ -163,8 +170,7 @@ std::optional<VerifiedFamily> verify_rooms(Tracer tracer, const FieldView& bar, 
     family.compared.bar.row(row) = mean_over(bar, room.patches, area);
     regions.push_back(PathRegion{receivers_of(simulation.mesh, room.patches)});
   }
-  const std::size_t times = std::max<std::size_t>(1, checked / (2 * rooms.size()));
-  tracer.options.paths = static_cast<std::uint32_t>(std::min<std::size_t>(times * tracer.options.paths, max_paths));
+  tracer.options.paths = paths_each(options, 0.5, rooms.size());
   family.compared.paths = tracer.trace(std::span<const PathRegion>(regions));
   family.part = verify_part("rooms", family.compared, all_rows(family.compared));
   return family;
@@ -177,8 +183,8 @@ std::vector<std::string> names_of_sensors(const Scene& scene) {
   return names;
 }
 
-// Sensors inside walls read nothing.
-std::optional<VerifiedFamily> verify_sensors(const Tracer& tracer, const VerifyOptions& options) {
+// Sensors share four times as many, as their bars are narrower than those of patches. Those inside walls read nothing.
+std::optional<VerifiedFamily> verify_sensors(Tracer tracer, const VerifyOptions& options) {
   const std::vector<Sensor> all = all_sensors(tracer.whole.sensors);
   if (all.empty()) return {};
   const Readings readings = read_sensors(tracer.whole, tracer.simulation, tracer.observer).readings;
@@ -203,6 +209,7 @@ std::optional<VerifiedFamily> verify_sensors(const Tracer& tracer, const VerifyO
   } else {
     family.compared.bar = chosen_rows(readings.standard_error, chosen);
   }
+  tracer.options.paths = paths_each(options, 4, sensors.size());
   family.compared.paths = tracer.trace(std::span<const Sensor>(sensors));
   family.part = verify_part("sensors", family.compared, all_rows(family.compared));
   return family;
@@ -236,7 +243,7 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
     result.parts.push_back(verify_part(region.name, result, std::move(rows)));
     result.parts.back().width = std::max(result.parts.back().width, width_of_all(region, simulation, bar));
   }
-  if (auto rooms = verify_rooms(tracer, bar, options.checked)) result.families.push_back(std::move(*rooms));
+  if (auto rooms = verify_rooms(tracer, bar, options)) result.families.push_back(std::move(*rooms));
   if (auto sensors = verify_sensors(tracer, options)) result.families.push_back(std::move(*sensors));
   const Spectrum mean = result.paths.irradiance.colwise().mean();
   result.left_out = trace_left_out(tracer.scene, simulation.plan.sides, mean, options, follows_reflections, observer);
@@ -255,7 +262,8 @@ bool is_by_noise(const Verification& verification) {
   const auto add = [&](const SolvedAndTraced& compared) {
     const Field squares = deviations(compared).square();
     constexpr double share = 0.2;
-    noisy += (compared.paths.standard_error > share * compared.bar).select(squares, 0).sum();
+    const bool has_enough = compared.paths.paths >= enough_paths;
+    noisy += has_enough ? 0 : (compared.paths.standard_error > share * compared.bar).select(squares, 0).sum();
     all += squares.sum();
   };
   add(verification);
@@ -316,7 +324,7 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
   for (std::uint32_t first_paths = 0;; by = more_paths(by)) {
     Verification result = compared(scene, simulation, bar, regions, patches, by, observer);
     result.first_paths = first_paths;
-    if (by.paths >= enough_paths || !is_by_noise(result)) return result;
+    if (!is_by_noise(result)) return result;
     if (first_paths == 0) first_paths = result.paths.paths;
   }
 }
