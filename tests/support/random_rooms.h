@@ -1,0 +1,82 @@
+#pragma once
+
+#include "patchlight/base/geometry.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patchlight::test {
+
+/// A planar face; its front is the side from which the corners run counter-clockwise.
+struct RoomFace {
+  std::string group;
+  std::string material;
+  std::vector<Point> corners;  ///< metres
+};
+
+/// A material of three bands. A pane has a transmittance, a mirror a specular reflectance.
+struct RoomMaterial {
+  std::string name;
+  std::array<double, 3> reflectance{};
+  double exitance = 0;  ///< W/m^2
+  double transmittance = 0;
+  double specular_reflectance = 0;
+};
+
+/// A lamp without a polygon.
+struct RoomLuminaire {
+  std::string kind = {};           ///< "point", "spot", "sphere" or "ies"
+  Point position = Point::Zero();  ///< metres
+  Vector aim = -Vector::UnitZ();
+  double watts = 0;        ///< per band; of "ies" lumens
+  double beam_angle = 0;   ///< degrees, of "spot"
+  double field_angle = 0;  ///< degrees, of "spot"
+  double radius = 0;       ///< metres, of "sphere"
+};
+
+/// Sun and sky.
+struct RoomDaylight {
+  Vector sun;                ///< unit direction toward the sun
+  std::string sky;           ///< "clear", "overcast", "uniform" or "perez"
+  bool has_sun = true;       ///< "perez" derives the strength of its sun from the measured irradiance
+  double direct = 0;         ///< normal irradiance by the sun, W/m^2
+  double diffuse = 0;        ///< horizontal irradiance by the sky, W/m^2
+  double horizon_below = 0;  ///< reflectance of the ground below the horizon
+};
+
+/// A sensor: position in metres and direction.
+struct RoomSensor {
+  Point point;
+  Vector normal;
+};
+
+/// A room in plain numbers: z is up, the air volume of the room begins at the origin and extends to `size`.
+struct RandomRoom {
+  std::string name;              ///< "overhang_07"
+  std::string kind;              ///< "overhang"
+  Vector size = Vector::Zero();  ///< metres
+  std::vector<RoomMaterial> materials = {};
+  std::vector<RoomFace> faces = {};
+  std::vector<RoomLuminaire> luminaires = {};
+  std::optional<RoomDaylight> daylight = {};
+  std::vector<RoomSensor> sensors = {};
+  double turn = 0;           ///< degrees about z, applied when the room is written
+  bool millimetres = false;  ///< the files state lengths in millimetres
+};
+
+/// The kinds of rooms lit by sun and sky, and of those lit by lamps.
+std::vector<std::string> daylight_kinds();
+std::vector<std::string> lamp_kinds();
+
+/// Room number `number` of a kind. The same arguments give the same room.
+RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed);
+
+/// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies. Returns the path of the TOML file.
+std::filesystem::path write_random_room(const RandomRoom& room, const std::filesystem::path& folder);
+
+}  // namespace patchlight::test
