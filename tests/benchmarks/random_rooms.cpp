@@ -55,8 +55,8 @@ using test::RandomRoom;
 constexpr Eigen::Index band = 1;
 
 // Paths of the pilot, and the relative standard error that the number of paths after it is chosen for.
-constexpr std::uint32_t pilot_paths = 4096;
-constexpr double wanted_error = 0.01;
+constexpr std::uint32_t pilot_paths = 2048;
+constexpr double wanted_error = 0.012;
 
 struct Options {
   std::size_t daylight = 60;
@@ -166,7 +166,8 @@ ReferenceFile open_references(const path& scene_file, const Options& options) {
   for (const char* extension : {".toml", ".obj", ".mtl"})
     texts.push_back(text_of(path(scene_file).replace_extension(extension)));
   const std::string name = scene_file.stem().string() + "_seed" + std::to_string(options.seed) + ".txt";
-  return {options.references / name, sha256(texts) + " " + std::to_string(options.paths)};
+  return {options.references / name, sha256(texts) + " " + std::to_string(pilot_paths) + " " +
+                                         std::to_string(wanted_error) + " " + std::to_string(options.paths)};
 }
 
 std::string place_name(std::span<const Point> points, const Vector& normal) {

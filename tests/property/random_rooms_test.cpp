@@ -2,6 +2,7 @@
 #include "support/random_rooms.h"
 
 #include "patchlight/input/read_scene.h"
+#include "patchlight/scene/problem.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
@@ -97,11 +98,12 @@ TEST(RandomRooms, NoDaylightLeaksIn) {
   }
 }
 
-TEST(RandomRooms, NoSensorStandsInAWall) {
+TEST(RandomRooms, FilesAreReadWithoutErrorsAndLightReachesAllSensors) {
   const TemporaryFolder folder;
   for (const std::string& kind : all_kinds()) {
     const Scene scene = read_scene(write_random_room(make_random_room(kind, 2, 1), folder.path()));
-    EXPECT_TRUE(scene.problems.empty()) << kind;
+    for (const Problem& problem : scene.problems)
+      EXPECT_NE(severity_of(problem.kind), Severity::error) << kind << ": " << problem.what;
     const std::vector<Sensor> sensors = all_sensors(scene.sensors);
     EXPECT_EQ(sensors.size(), 15U) << kind;
     const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), sensors, {.paths = 512});
@@ -112,7 +114,7 @@ TEST(RandomRooms, NoSensorStandsInAWall) {
 // Four standard errors: normal errors exceed them at one of 16,000 sensors.
 TEST(RandomRooms, SolverAndPathsAgreeInRoomsWithLamps) {
   const TemporaryFolder folder;
-  for (const std::string& kind : {"panels", "luminaires"}) {
+  for (const char* kind : {"panels", "luminaires"}) {
     const Scene scene = read_scene(write_random_room(make_random_room(kind, 1, 1), folder.path()));
     Request request;
     request.mesh.patches = 500;
