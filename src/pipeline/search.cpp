@@ -13,6 +13,7 @@
 #include "pipeline/relative_errors.h"
 #include "pipeline/second_mesh.h"
 #include "pipeline/with_error_bars.h"
+#include "plan/check_request.h"
 #include "plan/choose_storage.h"
 #include "plan/memory.h"
 
@@ -201,7 +202,7 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
 
 bool Search::may_go_by_rays(const Plan& plan) const {
   return !run_.plan.accuracy.seconds && run_.request.assembly.storage == Storage::automatic &&
-         plan.assembly.storage == Storage::tiles && !takes_pairs(run_.request, given_by(run_.with));
+         plan.assembly.storage == Storage::tiles && !part_that_takes_pairs(run_.request, given_by(run_.with));
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {

@@ -199,6 +199,33 @@ void check(const Request& request, const Given& given) {
   require_error_bars_possible(request, given);
 }
 
+std::optional<std::string> part_that_takes_pairs(const Request& request, const Given& given) {
+  const Solver solver = request.solver.solver;
+  const bool takes_entries = solver != Solver::cg && (takes_rows(solver) || takes_reciprocity(solver));
+  for (const Asked& asked :
+       {tiles(request), on_demand(request), form_factors(given), ray_rows(given), mesh_of(given),
+        Asked{"given.solver", given.solver}, other_estimator(request), samples(request), short_cuts(request),
+        kept_errors(request), not_closed(request), forced(request, Effect::closure), skipped(request, Effect::closure),
+        forced(request, Effect::occlusion), skipped(request, Effect::occlusion),
+        skipped(request, Effect::interreflection), max_rows(request),
+        Asked{std::string("solver.solver=") + name_of(solver), takes_entries}}) {
+    if (asked.is_asked) return asked.part;
+  }
+  return std::nullopt;
+}
+
+void require_rays_for_colours(std::size_t coloured, const Request& chosen, const Request& asked, const Given& given) {
+  if (coloured == 0 || chosen.assembly.storage == Storage::rays || given.ray_rows) return;
+  // Without such a part pairs are taken for error bars of light that nothing reflects, and for form factors alone.
+  const Asked bars = error_bars(asked.accuracy);
+  const std::string part = part_that_takes_pairs(asked, given).value_or(bars.is_asked ? bars.part : "assembly.storage");
+  throw InputError(part, "found with " + std::to_string(coloured) +
+                             (coloured == 1 ? " clear or mirroring material" : " clear or mirroring materials") +
+                             " of different values in different bands. Form factors of pairs have one value for all "
+                             "bands. Use assembly.storage=rays" +
+                             (part == "assembly.storage=tiles" || part == "assembly.storage" ? "" : " instead"));
+}
+
 std::optional<std::string> part_without_error_bars(const Request& request, const Given& given) {
   for (const auto& [asked, why] : obstacles_to_error_bars(request, given)) {
     if (asked.is_asked) return asked.part;

@@ -8,23 +8,6 @@
 
 namespace patchlight {
 
-bool takes_pairs(const Request& request, const Given& given) {
-  const AssemblyOptions& assembly = request.assembly;
-  const AssemblyOptions usual;
-  const bool of_sampling = assembly.estimator != usual.estimator || assembly.samples != usual.samples ||
-                           assembly.keep_errors || !assembly.close || !assembly.short_cuts.hidden ||
-                           !assembly.short_cuts.free || !assembly.short_cuts.far;
-  const auto asked = [&](Effect effect) {
-    return contains(request.effects.force, effect) || contains(request.effects.skip, effect);
-  };
-  const bool of_effects =
-      asked(Effect::closure) || asked(Effect::occlusion) || contains(request.effects.skip, Effect::interreflection);
-  const Solver solver = request.solver.solver;
-  const bool of_solver = solver != Solver::cg && (takes_rows(solver) || takes_reciprocity(solver));
-  return given.form_factors || given.ray_rows || given.mesh || given.solver || of_effects || of_sampling || of_solver ||
-         request.solver.max_rows.has_value();
-}
-
 namespace {
 
 // Requests and plans have these parts in common.
@@ -105,7 +88,8 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const bool is_coarse = has_coarse_sides(light, request);
   const bool pays = light.is_reflected && (too_many || is_coarse || light.is_mirrored);
   const bool has_to = light.is_mirrored && !has_error_bars(request.accuracy);
-  if (!(pays || has_to) || takes_pairs(request, given)) return with_cheap_bars(std::move(chosen), given, light);
+  if (!(pays || has_to) || part_that_takes_pairs(request, given))
+    return with_cheap_bars(std::move(chosen), given, light);
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
   const bool replaces_pairs = light.patches <= most_patches_in_pairs && is_coarse;

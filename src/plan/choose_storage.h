@@ -17,11 +17,6 @@ inline constexpr std::size_t most_patches_in_pairs = 10000;
 inline constexpr std::size_t least_coarse_patches = 1000;
 inline constexpr std::size_t patches_of_coarse_sides = 32;
 
-/// True when something is asked for that rows of rays do not give: given matrices, meshes or solvers, rows that are not
-/// closed, another estimator or number of its samples, other short cuts, light as if nothing stood in the way, or a
-/// solver that takes columns or symmetry.
-bool takes_pairs(const Request& request, const Given& given);
-
 /// The same by rows of rays; Solver::cg, which takes a symmetric matrix, becomes gmres.
 Request by_rays(Request request);
 
@@ -43,11 +38,11 @@ struct StoredLight {
 };
 
 /// Storage::automatic becomes rows of rays where light is mirrored, for more than most_patches_in_pairs, where sides
-/// have few patches that are not refined, and where all pairs do not fit into the memory, unless something that is
-/// asked for takes_pairs() or no light is reflected in either way. Another storage stays, but rays where error bars are
-/// wanted of light that is not reflected: that takes tiles. Rows of rays have error bars where light is reflected, and
-/// with these nested meshes. Small meshes that have rays because of mirrors or of few patches a side get more of them.
-/// Pairs have error bars where AccuracyOptions::cheap_error_bars wants them.
+/// have few patches that are not refined, and where all pairs do not fit into the memory. It becomes tiles where there
+/// is a part_that_takes_pairs(), or no light is reflected in either way. Another storage stays, except for rays where
+/// error bars are requested of light that is not reflected: these become tiles. Rows of rays have error bars where
+/// light is reflected, and with these nested meshes. Small meshes that have rays because of mirrors or of few patches a
+/// side get more of them. Pairs have error bars where AccuracyOptions::cheap_error_bars allows them.
 ChosenStorage choose_storage(const Request& request, const Given& given, const StoredLight& light);
 
 }  // namespace patchlight

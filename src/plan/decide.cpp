@@ -190,22 +190,17 @@ Decision mirrors(const EffectFacts& facts, const Request& request) {
                    request);
 }
 
-// What the scene has and the run does not simulate.
-std::vector<Decision> not_simulated(const EffectFacts& facts, const Request& request) {
+// Effects for which users cannot decide.
+std::vector<Decision> undecidable(const EffectFacts& facts) {
   std::vector<Decision> decisions;
   const auto add = [&](Effect effect, std::size_t count, const std::string& reason) {
     if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
   };
-  const std::string coloured = counted(facts.coloured_specular, "clear or mirroring material");
-  if (request.assembly.storage != Storage::rays) {
-    add(Effect::bands_of_panes, facts.coloured_specular,
-        coloured +
-            ": of light between patches the same share of all bands is let through or reflected; "
-            "assembly.storage=rays tells bands apart");
-  } else if (facts.coloured_specular > 0) {
-    decisions.push_back({Effect::bands_of_panes, true, "colours of " + coloured + " change light between patches",
+  if (facts.coloured_specular > 0)
+    decisions.push_back({Effect::bands_of_panes, true,
+                         "colours of " + counted(facts.coloured_specular, "clear or mirroring material") +
+                             " change light between patches",
                          "form factors and a solution for each of these colours, from the same rays"});
-  }
   add(Effect::gloss, facts.gloss, counted(facts.gloss, "material") + " with gloss or metal, taken for matt");
   add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
   return decisions;
@@ -260,7 +255,7 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
     decisions.push_back(
         {Effect::spectra, facts.band_choice->spectral, facts.band_choice->reason, facts.band_choice->saving});
   }
-  for (Decision& decision : not_simulated(facts, request)) decisions.push_back(std::move(decision));
+  for (Decision& decision : undecidable(facts)) decisions.push_back(std::move(decision));
   return decisions;
 }
 

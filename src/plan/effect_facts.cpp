@@ -175,6 +175,12 @@ bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon) {
                                         reflects(scene.materials[material_on(face, Side::back)]));
 }
 
+std::size_t coloured_specular(const Scene& scene, const KeptSides& kept) {
+  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
+  return static_cast<std::size_t>(
+      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
+}
+
 EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   EffectFacts facts;
   facts.polygons = scene.polygons.size();
@@ -187,8 +193,7 @@ EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
   facts.bands = number_of_bands(scene);
   facts.band_choice = scene.band_choice;
   facts.grey = is_grey(scene, in_use);
-  facts.coloured_specular = static_cast<std::size_t>(
-      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
+  facts.coloured_specular = coloured_specular(scene, kept);
   const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
   facts.lamp_colour = common_colour(spectra);
   facts.dark_bands = bands_without_light(spectra, facts.bands);

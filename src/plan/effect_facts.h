@@ -40,6 +40,9 @@ struct EffectFacts {
   std::size_t glass = 0;                       ///< materials that a file says are transparent, taken for opaque
 };
 
+/// How many materials of kept sides have a transmittance or specular reflectance that differs between bands.
+std::size_t coloured_specular(const Scene& scene, const KeptSides& kept);
+
 /// True for a clear face that reflects light: its index is not 1.
 bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon);
 

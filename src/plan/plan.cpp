@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
+#include "plan/check_request.h"
 #include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
@@ -236,13 +237,13 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
-  // Pairs let the same share of all bands through what is clear.
   const bool mirrors =
-      (has_reflections(facts) || facts.coloured_specular > 0) && !contains(asked.effects.skip, Effect::mirrors);
+      (has_reflections(facts) && !contains(asked.effects.skip, Effect::mirrors)) || facts.coloured_specular > 0;
   EdgeSearch search(scene, of_goal, contacts);
   const Outlined outlined{scene, of_goal, contacts, search, goal.get()};
   const auto [request, note_on_storage] =
       choose_storage(asked, given, {expected_patches(outlined, asked), kept_side_count(sides), reflects, mirrors});
+  require_rays_for_colours(facts.coloured_specular, request, asked, given);
   PatchSize size = patch_size(outlined, request);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
@@ -271,6 +272,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
+  require_rays_for_colours(coloured_specular(scene, sides), request, request);
   auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, false);
   EdgeSearch search(scene, sides, contacts);
   PatchSize size = patch_size({scene, sides, contacts, search}, request);

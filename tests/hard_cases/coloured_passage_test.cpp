@@ -1,4 +1,5 @@
 #include "patchlight/base/error.h"
+#include "patchlight/plan/plan.h"
 #include "patchlight/simulate.h"
 
 #include "pipeline/ray_form_factors.h"
@@ -9,11 +10,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace patchlight::coloured_passage_test {
 namespace {
@@ -106,6 +109,77 @@ TEST(ColouredPassage, BehindARedPaneIsRed) {
   EXPECT_GT(mean[0], 0);
   EXPECT_LT(mean[1], 0.15 * mean[0]);
   EXPECT_LT(mean[2], 1e-12 * mean[0]);
+}
+
+// A way to ask for form factors of pairs, and the part of the request that its refusal names.
+struct PairRequest {
+  const char* part;
+  std::function<void(Request&)> ask;
+};
+
+std::vector<PairRequest> pair_requests() {
+  return {{"assembly.storage=tiles", [](Request& r) { r.assembly.storage = Storage::tiles; }},
+          {"assembly.storage=on_demand",
+           [](Request& r) {
+             r.assembly.storage = Storage::on_demand;
+             r.solver.solver = Solver::progressive;
+           }},
+          {"assembly.estimator=contour", [](Request& r) { r.assembly.estimator = Estimator::contour; }},
+          {"assembly.samples", [](Request& r) { r.assembly.samples = 64; }},
+          {"assembly.close=false", [](Request& r) { r.assembly.close = false; }},
+          {"effects.force=closure", [](Request& r) { r.effects.force = {Effect::closure}; }},
+          {"effects.skip=occlusion", [](Request& r) { r.effects.skip = {Effect::occlusion}; }},
+          {"effects.skip=interreflection", [](Request& r) { r.effects.skip = {Effect::interreflection}; }},
+          {"solver.solver=sor", [](Request& r) { r.solver.solver = Solver::sor; }}};
+}
+
+Storage planned_storage(const Scene& scene, const std::function<void(Request&)>& ask) {
+  Request request;
+  request.mesh.patches = 100;
+  ask(request);
+  return make_plan(scene, request).assembly.storage;
+}
+
+// Form factors of pairs have one value for all bands: they are right for grey panes alone.
+TEST(ColouredPassage, IsRefusedByPairs) {
+  const Scene grey = divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6);
+  const std::vector<Scene> coloured{divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.5, 0.8), 0.6),
+                                    divided_room(rgb(0.7, 0.6, 0.7), rgb(0.8, 0.8, 0.8), 0.6)};
+  for (const auto& [part, ask] : pair_requests()) {
+    EXPECT_NE(planned_storage(grey, ask), Storage::rays) << part;
+    for (const Scene& scene : coloured) {
+      try {
+        planned_storage(scene, ask);
+        ADD_FAILURE() << part << " is not refused";
+      } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with(part)) << error.what();
+        EXPECT_NE(std::string(error.what()).find("assembly.storage=rays"), std::string::npos);
+      }
+    }
+  }
+  for (const Scene& scene : coloured) {
+    EXPECT_THROW(plan_form_factors(scene, {}), InputError);
+    EXPECT_NO_THROW(plan_form_factors(scene, by_few_rays(100)));
+    EXPECT_THROW(make_plan(scene, {}, {.form_factors = true}), InputError);
+  }
+}
+
+TEST(ColouredPassage, IsNeverPlannedByPairs) {
+  const Scene scene = divided_room(rgb(0.7, 0.6, 0.7), rgb(0.8, 0.5, 0.8), 0.6);
+  Scene black = scene;
+  for (Material& material : black.materials) material.reflectance.setZero();
+  for (const std::function<void(Request&)>& ask : std::vector<std::function<void(Request&)>>{
+           [](Request&) {}, [](Request& r) { r.accuracy.cheap_error_bars = true; },
+           [](Request& r) { r.effects.skip = {Effect::mirrors}; }}) {
+    EXPECT_EQ(planned_storage(scene, ask), Storage::rays);
+    EXPECT_EQ(planned_storage(black, ask), Storage::rays);
+  }
+  for (const std::function<void(Request&)>& ask : std::vector<std::function<void(Request&)>>{
+           [](Request& r) { r.accuracy.relative_error = 0.05; }, [](Request& r) { r.accuracy.seconds = 1; },
+           [](Request& r) { r.accuracy.error_bars = true; }}) {
+    EXPECT_EQ(planned_storage(scene, ask), Storage::rays);
+    EXPECT_THROW(planned_storage(black, ask), InputError) << "error bars of light that nothing reflects take pairs";
+  }
 }
 
 // The rows of one scene, and its patches, for another one.

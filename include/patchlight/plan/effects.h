@@ -19,8 +19,7 @@ enum class Effect : std::uint8_t {
   textures,        ///< pictures on surfaces: a reflectance for each patch, else one mean for each picture
   mirrors,         ///< light that mirrors and clear faces reflect without scattering it
   closure,         ///< correction of form factors so that rows sum up to what is seen
-  bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors: by rows
-                   ///< of rays alone
+  bands_of_panes,  ///< the colour of light that goes from patch to patch by way of clear faces and mirrors
   spectra,         ///< bands of wavelengths instead of linear RGB; decided when the scene is read
   gloss,           ///< of materials that a file says are partly mirrors; not simulated, so below
   glass            ///< of materials that a file says are transparent
