@@ -16,8 +16,7 @@ struct LightColour {
   std::shared_ptr<const Tracing> tracing;
 };
 
-/// The colours that a run by rows of rays has to tell apart; empty where one set of form factors is that of all bands:
-/// by pairs, too, which take the mean of all bands by luminance.
+/// The colours that a run by rows of rays distinguishes; empty where one set of form factors holds for all bands.
 std::vector<LightColour> light_colours(const Run& run);
 
 /// A mesh solved in each colour by itself, as if it was all light that there is, and put together. \throws Cancelled,
