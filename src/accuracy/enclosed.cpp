@@ -3,8 +3,10 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -36,13 +38,27 @@ std::vector<Ray> onward(const std::vector<Place>& places, std::uint32_t walks, s
   return rays;
 }
 
-// True when fewer than half of the walks from a patch leave the scene.
+// A space that is much lower than its faces are wide is a gap, not a room, e.g. below a building that does not touch
+// the ground. The limit is the harmonic mean of its ray lengths over the size of the face.
+constexpr double least_height = 0.02;
+
+bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
+  double inverse = 0;
+  for (const std::optional<Hit>& hit : hits)
+    if (hit && hit->distance > 0) inverse += 1 / hit->distance;
+  return inverse * least_height * std::sqrt(face_area) > static_cast<double>(hits.size());
+}
+
+// True when fewer than half of the walks from a patch leave the scene, and the space before it is no gap.
 bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mesh, PatchIndex patch,
                  std::uint32_t walks) {
-  std::vector<Place> places(walks, {mesh.centroid[patch], mesh.normal[patch], mesh.polygon[patch]});
+  const PolygonIndex polygon = mesh.polygon[patch];
+  std::vector<Place> places(walks, {mesh.centroid[patch], mesh.normal[patch], polygon});
   for (std::uint32_t k = 0; k < reflections; ++k) {
+    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, patch, k})));
+    if (k == 0 && is_gap(hits, area_vector(corner_points(scene, polygon)).norm())) return false;
     std::vector<Place> next;
-    for (const std::optional<Hit>& hit : faces.first_hits(onward(places, walks, hash({purpose, patch, k})))) {
+    for (const std::optional<Hit>& hit : hits) {
       if (!hit) continue;
       const Vector front = front_normal(scene, hit->polygon);
       next.push_back({hit->point, hit->side == Side::front ? front : Vector(-front), hit->polygon});

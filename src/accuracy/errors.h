@@ -81,14 +81,14 @@ inline constexpr double most_lamps = 0.125;
 /// away does not depend on the patch's size: comparison with larger patches does not show it.
 Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
 
-/// What no comparison with larger patches shows, either: in a gap that is narrower than its patches are wide, light
-/// that gets in at the rim is spread over all of a patch, however large. There (s - 0.35) / (1 - 0.35) H_i / 2, where s
-/// is the share of the hemisphere that faces take which are nearer than 0.6 edges and look back: 0.35 is what one face
-/// at that distance takes, and the half is measured. 0 where s is smaller. `S` as the transport has it, m^2. O(size^2).
+/// The error in gaps that are narrower than their patches are wide, which comparison with larger patches does not show:
+/// light that gets in at the rim is spread over all of a patch. It is (s - 0.35) / (1 - 0.35) min(H_i, D_i) / 2, or 0
+/// where s < 0.35. s is the share of the hemisphere of faces that look back from nearer than 0.6 edges; one face at that
+/// distance takes 0.35. D_i is the range of radiosities that the patch sees plus its direct light: the irradiance by
+/// sources of one radiosity is right. The factor 1/2 is measured. `S` in m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
-/// The same, s as rows of rays have it: as the patches are, or what it would still be if each was cut so many times.
-/// O(rays).
+/// The same by rows of rays, after `cuts` cuts of each patch. O(rays).
 Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const SolvedProblem& solved, int cuts = 0);
 
 /// How far points of a patch are from its mean: from the differences between the patches of a parent, which are

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace patchlight {
@@ -33,6 +34,7 @@ struct Reading {
   Spectrum mesh;         // by errors of the patches
   Spectrum solver;       // bound
   Spectrum unexplained;  // variance by what planes leave of the light on patches
+  Spectrum hidden;       // by the ends of patches that are not visible
   Spectrum reflected;    // the part that patches have reflected
 };
 
@@ -45,7 +47,7 @@ Spectrum of_bands(const Spectrum& values, const VisibleShare& share) {
 // patch that agree may miss what the others of it would meet: of all such rays the heaviest counts as an error.
 Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const Light& light) {
   const Spectrum zero = Spectrum::Zero(light.radiosity.cols());
-  Reading reading{zero, zero, zero, zero, zero, zero, zero};
+  Reading reading{zero, zero, zero, zero, zero, zero, zero, zero};
   Spectrum heaviest = zero;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const PatchIndex j = sources[s].patch;
@@ -66,12 +68,19 @@ Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare
   return reading;
 }
 
-// How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. Not at all
-// from afar, where every point of the patch counts alike, and as much as can be close by, where the nearest points
-// alone count.
+// How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. From afar all
+// points of the patch count alike. Close by the nearest points alone count.
 double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
   const double longest = longest_edge_squared(mesh.corner_points(j));
   return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
+}
+
+// Radiosity that varies linearly with root mean square sigma has a mean over the end of a patch that differs from the
+// patch's by sqrt(3) (1 - v) sigma, v the share of that end. Sensors behind a grid see the same end of all its faces,
+// so these errors add up.
+Spectrum error_of_hidden_share(const Slopes& slopes, PatchIndex j, double visible) {
+  const double hidden = std::max(0.0, 1 - visible);
+  return hidden * slopes.residual.row(j).max(std::numbers::sqrt3 * slopes.unknown.row(j));
 }
 
 // The errors of the patches, as the sensor sees them.
@@ -96,6 +105,7 @@ Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<
     const Spectrum by_points =
         (squared * light.slopes.residual.row(j)).max(std::sqrt(squared) * light.slopes.unknown.row(j));
     reading.unexplained += (weight * by_points).square();
+    reading.hidden += weight * error_of_hidden_share(light.slopes, j, shares[s].mean());
   }
   if (draws.rows() > 0) reading.sampling += draws.square().colwise().mean();
   return reading;
@@ -162,7 +172,8 @@ Field column_of(std::span<const Reading> readings, Spectrum Reading::*part, Eige
 // What planes leave of the light on patches, and what patches of the same mesh may be off themselves.
 Field mesh_part(std::span<const Reading> readings, const Field& irradiance, const RadiosityErrors& errors) {
   const Eigen::Index bands = irradiance.cols();
-  const Field unexplained = column_of(readings, &Reading::unexplained, bands);
+  const Field unexplained =
+      column_of(readings, &Reading::unexplained, bands) + column_of(readings, &Reading::hidden, bands).square();
   if (errors.mesh.size() > 0) return (unexplained + column_of(readings, &Reading::mesh, bands).square()).sqrt();
   const Spectrum squares = irradiance.square().colwise().sum();
   const Spectrum share = (squares > 0).select(unexplained.colwise().sum() / squares, 0.0);

@@ -1,8 +1,8 @@
 #include "gather/sources.h"
 
 #include "base/sampling.h"
-#include "form_factor/monte_carlo.h"
 #include "form_factor/point_polygon.h"
+#include "form_factor/solid_angle.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -16,20 +16,6 @@ constexpr std::uint32_t most_replicates = 8;
 
 // Of one replicate; where there are more rays, their points begin anew with another shift.
 constexpr std::uint32_t most_points = 4096;
-
-// Uniformly distributed in a convex polygon: a triangle of its fan, chosen by area; u is stretched to be used again.
-Point point_in(std::span<const Point> polygon, double u, double v) {
-  const Point& p = polygon[0];
-  const auto area = [&](std::size_t k) { return (polygon[k] - p).cross(polygon[k + 1] - p).norm(); };
-  double whole = 0;
-  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) whole += area(k);
-  double left = u * whole;
-  std::size_t k = 1;
-  while (k + 2 < polygon.size() && left > area(k)) left -= area(k++);
-  const double stretched = area(k) > 0 ? std::min(left / area(k), 1.0) : 0;
-  const Eigen::Vector2d b = square_to_triangle(stretched, v);
-  return p + b[0] * (polygon[k] - p) + b[1] * (polygon[k + 1] - p);
-}
 
 // Coordinates in a unit scene are rounded to so many steps, so that rounding in another unit leaves the random numbers
 // as they are. Round coordinates do not lie midway between two.
@@ -48,7 +34,7 @@ double shifted(double u, std::uint32_t shift) {
   return moved < 1 ? moved : moved - 1;
 }
 
-// Summed geometry terms of the rays of one replicate.
+// Sums of cosine times solid angle over the rays of one replicate.
 struct Weights {
   Eigen::Vector4d reached = Eigen::Vector4d::Zero();  // and times the way from the patch's centroid
   double all = 0;
@@ -119,7 +105,8 @@ ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uin
       seed_(seed),
       points_(scrambled_sobol(most_points, hash({seed}))) {}
 
-// Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
+// Points are uniform in the solid angle of the source: of a large source close by, points uniform in its area would
+// miss the part that counts. Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
 ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> sources,
                                   std::span<const RayCounts> counts, std::uint32_t stage) const {
   const TracingFrame frame = occluder_.frame();
@@ -134,9 +121,12 @@ ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> 
         if (k % most_points == 0)
           for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, j, 2 * r + d, k / most_points});
         const auto& point = points_[k % most_points];
-        const Point y = point_in(sources[s].outline, shifted(point[0], shift[0]), shifted(point[1], shift[1]));
-        all.segments.push_back({sensor.point, y, no_polygon, mesh_.polygon[j]});
-        all.weights.push_back(geometry_term(sensor.point, sensor.normal, y, mesh_.normal[j]));
+        const SeenPoint seen = sample_seen_point(sensor.point, sources[s].outline, shifted(point[0], shift[0]),
+                                                 shifted(point[1], shift[1]));
+        const Point to = seen.solid_angle > 0 ? seen.point : sources[s].outline[0];
+        const double cosine = sensor.normal.dot((to - sensor.point).normalized());
+        all.segments.push_back({sensor.point, to, no_polygon, mesh_.polygon[j]});
+        all.weights.push_back(std::max(0.0, cosine) * seen.solid_angle * seen.weight);
       }
     }
   }

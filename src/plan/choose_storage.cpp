@@ -45,6 +45,8 @@ bool has_coarse_sides(const StoredLight& light, const Request& request) {
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
   if (light.is_mirrored)
     return "as only they follow light that mirrors and clear faces reflect, and tell its colours apart";
+  if (light.has_goal)
+    return "as patches follow their importance to a goal: pairs would take as long for the others as for those that count";
   if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
     return "as " + std::to_string(light.sides) +
            " sides of faces have few patches each: the size of these errs more than rays do, and pairs would take much "
@@ -86,14 +88,15 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const double bytes = memory_needed(light.patches, chosen.request.assembly, request.accuracy);
   const bool too_many = light.patches > most_patches_in_pairs || bytes > usable_memory(request.resources);
   const bool is_coarse = has_coarse_sides(light, request);
-  const bool pays = light.is_reflected && (too_many || is_coarse || light.is_mirrored);
+  const bool pays = light.is_reflected && (too_many || is_coarse || light.is_mirrored || light.has_goal);
   const bool has_to = light.is_mirrored && !has_error_bars(request.accuracy);
   if (!(pays || has_to) || part_that_takes_pairs(request, given))
     return with_cheap_bars(std::move(chosen), given, light);
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
   const bool replaces_pairs = light.patches <= most_patches_in_pairs && is_coarse;
-  if (replaces_pairs || (light.is_mirrored && light.patches <= most_patches_with_more_rays))
+  const bool is_small = light.patches <= most_patches_with_more_rays;
+  if (replaces_pairs || ((light.is_mirrored || light.has_goal) && is_small))
     chosen.request.assembly.rays = rays_replacing_pairs;
   chosen.note = "form factors are rows of rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
                 "; assembly.storage=tiles takes pairs";

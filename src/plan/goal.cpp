@@ -3,7 +3,6 @@
 #include "accuracy/enclosed.h"
 #include "accuracy/errors.h"
 #include "accuracy/interest.h"
-#include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/mesher.h"
@@ -49,27 +48,6 @@ PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
     smallest = std::min(smallest, coarsest.back());
   }
   return tessellate(scene, sides, {smallest, std::move(coarsest)});
-}
-
-// A space that is much lower than its faces are wide is a gap, e.g. below a building that does not touch the ground.
-// The limit is the harmonic mean of its ray lengths over the size of the face.
-constexpr double least_height = 0.02;
-
-// Removes the patches of gaps from the enclosed ones.
-Eigen::VectorXd in_rooms(Eigen::VectorXd enclosed, const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
-  constexpr std::uint32_t rays_of_patch = 16;
-  parallel_for(mesh.size(), [&](std::size_t k) {
-    const auto i = static_cast<PatchIndex>(k);
-    if (enclosed[i] == 0) return;
-    std::vector<Ray> rays;
-    for (const auto& u : scrambled_sobol(rays_of_patch, hash({k, 0x67617073})))
-      rays.push_back({mesh.centroid[i], cosine_direction(mesh.normal[i], u[0], u[1]), mesh.polygon[i]});
-    double inverse = 0;
-    for (const std::optional<Hit>& hit : faces.first_hits(rays))
-      if (hit && hit->distance > 0) inverse += 1 / (hit->distance * rays_of_patch);
-    if (inverse * least_height * std::sqrt(area_of(scene, mesh.polygon[i])) > 1) enclosed[i] = 0;
-  });
-  return enclosed;
 }
 
 // Marks the polygons that have a side with such patches.
@@ -208,7 +186,7 @@ std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides
   // 1. The polygons of enclosed spaces, and those that are named.
   const PatchMesh mesh = coarse_mesh(scene, sides);
   const Occluder faces(scene, Occluder::Blockers::all, find_coverings(scene, sides));
-  const Eigen::VectorXd enclosed = in_rooms(enclosed_patches(scene, faces, mesh), scene, faces, mesh);
+  const Eigen::VectorXd enclosed = enclosed_patches(scene, faces, mesh);
   const Eigen::VectorXd named = interest_of(scene, mesh, interest, enclosed);
   if (total(enclosed) == 0 || total(named) == 0) return {};
   Goal goal{polygons_with(enclosed.cwiseMax(named), mesh), {}, 0, 0};

@@ -159,6 +159,25 @@ TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
   }
 }
 
+// A furnace: everything shines and reflects alike, so the light is exact however flat the space is, and bars say so.
+TEST(FlatSpaces, FurnacesHaveNarrowBars) {
+  for (const double size : {1.0, 1e-3}) {
+    for (const Storage storage : {Storage::tiles, Storage::rays}) {
+      const Scene scene = with_box(empty_scene({grey(0.7, 0.3)}), Point(0, 0, 0), size * Point(20, 20, 0.002), true);
+      Request request;
+      request.mesh.patches = 500;
+      request.assembly.storage = storage;
+      if (storage == Storage::rays) request.solver.solver = Solver::gmres;
+      request.accuracy.error_bars = storage == Storage::tiles;
+      const Simulation simulation = simulate(scene, request);
+      const Field& H = simulation.solution.irradiance;
+      const double off = (H - 1).abs().maxCoeff();  // B = E + rho B, H = B = 0.3 / (1 - 0.7)
+      EXPECT_LT(off, 1e-5) << "size " << size;
+      EXPECT_LT(simulation.accuracy.back().total, 1e-3) << "size " << size;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(HardCases, Gaps,
                          testing::Values(Gap{"Box1mm", box_above(0.001)}, Gap{"Box5mm", box_above(0.005)},
                                          Gap{"Box2cm", box_above(0.02)},

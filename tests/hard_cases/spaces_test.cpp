@@ -95,6 +95,19 @@ TEST(Spaces, NothingIsEnclosedInTheOpen) {
   EXPECT_EQ(enclosed_in(scene, tessellate(scene, both_sides(scene), 0.5)).sum(), 0);
 }
 
+TEST(Spaces, AGapBelowABuildingIsNoRoom) {
+  // A block of 400 x 30 x 60 m stands 10 cm above the ground.
+  for (const double unit : {1.0, 1e-3}) {
+    Scene scene =
+        with_box(empty_scene({named("stone", 0.5)}), unit * Point(0, 0, 0.1), unit * Point(400, 30, 60), false);
+    scene = with_quad(std::move(scene), {unit * Point(-999, -999, 0), unit * Point(999, -999, 0),
+                                         unit * Point(999, 999, 0), unit * Point(-999, 999, 0)});
+    KeptSides sides = both_sides(scene);
+    sides.back.assign(scene.polygons.size(), 0);
+    EXPECT_EQ(enclosed_in(scene, tessellate(scene, sides, 20 * unit)).sum(), 0);
+  }
+}
+
 TEST(Spaces, AnOpenWallLeavesTheRoomInside) {
   // The wall is an eighth of the room's surface, so light stays for four reflections with about (7/8)^4 = 0.59, at the
   // back with more: sixteen walks may miss that for a patch or two. Facades are outside.

@@ -3,6 +3,7 @@
 #include "patchlight/gather/readings.h"
 #include "patchlight/scene/sides.h"
 
+#include "form_factor/point_polygon.h"
 #include "gather/doubtful_sensors.h"
 #include "gather/sensor_places.h"
 #include "mesh/mesher.h"
@@ -204,6 +205,54 @@ TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
     // By the rays alone, of which none is blocked, those over the kink in the middle would be outside: 9 of the 23
     // places along x are nearer to it than a patch and a half is wide.
     EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 3));
+  }
+}
+
+// Fins of one patch each, whose radiosity grows upward from 0. From the side a sensor sees the dark lower ends of all
+// but the nearest, so the errors of the fins add up. The reference has patches of an eighth.
+TEST(SensorErrors, CoverEndsOfPatchesThatAreHidden) {
+  Scene scene = empty_scene({grey(0)});
+  for (int k = 0; k < 40; ++k) {
+    const double x = 0.2 * k;
+    scene = with_quad(std::move(scene), {Point(x, -2, 1), Point(x, 2, 1), Point(x, 2, 1.4), Point(x, -2, 1.4)});
+  }
+  const auto light_on = [&](const PatchMesh& mesh) {
+    Field radiosity(mesh.size(), 1);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() - 1;
+    return radiosity;
+  };
+  std::vector<Sensor> sensors;
+  for (double y = -1; y < 1; y += 0.1) sensors.push_back({Point(8.5, y, 0.7), Vector::UnitZ()});
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const PatchMesh coarse = fronts(scene, 5);
+  const PatchMesh fine = fronts(scene, 0.05);
+  ASSERT_EQ(coarse.size(), 40U);
+  GatherOptions options;
+  options.errors.display = Field::Constant(coarse.size(), 1, 0.4 / std::sqrt(12.0));
+  const GatheredIrradiance found = gather_irradiance(coarse, light_on(coarse), occluder, sensors, options);
+  const GatheredIrradiance exact = gather_irradiance(fine, light_on(fine), occluder, sensors);
+  const Field ratio = (found.irradiance - exact.irradiance).abs() / found.errors.total();
+  EXPECT_LT(ratio.maxCoeff(), 2.6);
+  EXPECT_GT(ratio.maxCoeff(), 0.3);
+}
+
+// Seen from close above its far end, a strip of 200 m has most of its form factor in a few of its square meters.
+TEST(GatherIrradiance, OfALargePatchSeenInPartScattersAsItStates) {
+  Scene scene =
+      with_quad(empty_scene({grey(0)}), {Point(-1, -1, 0), Point(199, -1, 0), Point(199, 1, 0), Point(-1, 1, 0)});
+  const PatchMesh mesh = fronts(scene, 300);
+  scene = with_quad(std::move(scene), {Point(0.3, -3, .3), Point(299, -3, .3), Point(299, 3, .3), Point(0.3, 3, .3)});
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const Sensor sensor{Point(0, 0, 0.6), -Vector::UnitZ()};
+  // A ray to x passes the edge of the plate, half as high as the sensor, at x / 2.
+  const std::vector<Point> seen{Point(-1, -1, 0), Point(0.6, -1, 0), Point(0.6, 1, 0), Point(-1, 1, 0)};
+  const double exact = point_to_polygon(sensor.point, sensor.normal, seen);
+  for (int seed = 1; seed <= 20; ++seed) {
+    const GatherOptions options{
+        .rays = 64, .wanted_error = 1, .slopes = false, .seed = static_cast<std::uint64_t>(seed)};
+    const GatheredIrradiance found = gather_irradiance(mesh, Field::Ones(1, 1), occluder, {&sensor, 1}, options);
+    EXPECT_LT(found.errors.rays(0, 0), 0.1 * exact);
+    EXPECT_NEAR(found.irradiance(0, 0), exact, 4 * found.errors.rays(0, 0));  // t distribution of seven degrees
   }
 }
 
