@@ -249,7 +249,7 @@ TEST(GatherIrradiance, OfALargePatchSeenInPartScattersAsItStates) {
   const double exact = point_to_polygon(sensor.point, sensor.normal, seen);
   for (int seed = 1; seed <= 20; ++seed) {
     const GatherOptions options{
-        .rays = 64, .wanted_error = 1, .slopes = false, .seed = static_cast<std::uint64_t>(seed)};
+        .rays = 64, .wanted_error = 1, .seed = static_cast<std::uint64_t>(seed), .slopes = false};
     const GatheredIrradiance found = gather_irradiance(mesh, Field::Ones(1, 1), occluder, {&sensor, 1}, options);
     EXPECT_LT(found.errors.rays(0, 0), 0.1 * exact);
     EXPECT_NEAR(found.irradiance(0, 0), exact, 4 * found.errors.rays(0, 0));  // t distribution of seven degrees

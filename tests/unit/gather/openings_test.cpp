@@ -138,23 +138,27 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsIsTheirFormFactor) {
   }
 }
 
-// Of the first rays, some thousand, one in ten thousand gets through: every second sensor sees nothing by them. By the
-// rays that it gets then, thirty times as many, it sees some twenty.
+// One in ten thousand rays gets through, so every second sensor sees nothing by its first rays. It then gets thirty
+// times as many, of which about ten get through.
 TEST(GatherIrradiance, ThatSeesNothingAtFirstTakesMoreRays) {
   for (const Case& c :
        {Case{"holes", perforated(10, 1e-4)}, {"holes, turned, in mm", perforated(10, 1e-4), turned(1e3)}}) {
     const Lit lit = lit_by(c);
     const Occluder occluder(lit.scene, Occluder::Blockers::all);
+    double sum = 0, variance = 0, count = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const GatheredIrradiance found =
           gather_irradiance(lit.mesh, lit.radiosity, occluder, lit.sensors, {.seed = seed, .slopes = false});
       for (std::size_t k = 0; k < lit.sensors.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         EXPECT_GT(found.irradiance(row, 0), 0) << c.name << ", seed " << seed << ", sensor " << k;
-        // The chance of one of 18 that is farther off, of 20 rays each, is below one in 100; the seeds are fixed.
-        EXPECT_NEAR(found.irradiance(row, 0), lit.exact[k], 5 * found.errors.rays(row, 0)) << c.name << ' ' << k;
+        sum += found.irradiance(row, 0) / lit.exact[k];
+        variance += std::pow(found.errors.rays(row, 0) / lit.exact[k], 2);
+        ++count;
       }
     }
+    // About a hundred rays in all get through.
+    EXPECT_NEAR(sum / count, 1, 4 * std::sqrt(variance) / count) << c.name;
   }
 }
 
