@@ -35,15 +35,17 @@ Field LightPaths::transmittance(std::span<const Segment> segments) const {
 
 std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) const {
   const auto blocked = opaque_->occluded(segments);
-  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
   std::vector<Passage> found(segments.size());
+  std::vector<Segment> free;
+  std::vector<std::size_t> index;
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    if (meets_opening[k] && !blocked[k]) {
-      found[k] = through_openings(segments[k]);
-    } else {
-      found[k].transmittance = Spectrum::Constant(bands_, blocked[k] ? 0.0 : 1.0);
-    }
+    if (blocked[k] != 0) continue;
+    free.push_back(segments[k]);
+    index.push_back(k);
   }
+  const auto meets_opening = clear_ ? clear_->occluded(free) : std::vector<std::uint8_t>(free.size(), 0);
+  for (std::size_t k = 0; k < free.size(); ++k)
+    found[index[k]] = meets_opening[k] != 0 ? through_openings(free[k]) : Passage{Spectrum::Ones(bands_), {}};
   return found;
 }
 

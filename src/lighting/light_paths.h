@@ -19,10 +19,10 @@ struct Crossing {
   double distance = 0;  ///< metres from the ray's origin
 };
 
-/// What a ray meets on its way.
+/// The clear openings on the way of a ray. Empty where something opaque blocks it.
 struct Passage {
-  Spectrum transmittance;           ///< 0 behind something opaque
-  std::vector<Crossing> crossings;  ///< in order; left out behind something opaque
+  Spectrum transmittance;
+  std::vector<Crossing> crossings;  ///< in order
 };
 
 /// How much light gets straight from one point to another: nothing where an opaque polygon stands between them, else

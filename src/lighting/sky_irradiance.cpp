@@ -97,12 +97,14 @@ struct SkyRays {
   std::vector<double> cosines;  // to the receiver's normal
   std::vector<Segment> segments;
   std::vector<std::optional<std::size_t>> aimed_at;  // an opening; nothing: over the hemisphere
-  std::size_t places = 0;                            // from each of which one ray goes over the hemisphere
-  std::size_t aimed = 0;                             // from which one goes to an opening
+  std::size_t places = 0;
+  std::size_t scattered = 0;  // places with a ray over the hemisphere
+  std::size_t aimed = 0;      // places with a ray to an opening
 };
 
-// Rays to panes are half of all. Those to holes, which may be hidden from the receiver, are a third, and more than
-// there are without.
+// Light comes through panes alone where there are any, but for holes that are not known: from each of half of the places
+// a ray goes to a pane, and from a quarter of these one goes over the hemisphere. Rays to holes, which may be hidden
+// from the receiver, are a third of all and come on top.
 SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
   SkyRays rays;
   const auto add = [&](const SurfacePoint& at, const Vector& direction, std::optional<std::size_t> aimed_at) {
@@ -113,15 +115,19 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
     rays.cosines.push_back(cosine);
     rays.segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
   };
-  // The first half of a Sobol sequence is spread as evenly as all of it.
+  // The first half or eighth of a Sobol sequence is spread as evenly as all of it.
   const std::size_t half = (samples.size() + 1) / 2;
   if (aim.at_panes) samples = samples.first(half);
+  const std::size_t scattered = aim.at_panes ? (half + 3) / 4 : samples.size();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& [u, v, s, t] = samples[k];
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
     ++rays.places;
-    add(at, cosine_direction(at.normal, s, t), std::nullopt);
+    if (k < scattered) {
+      ++rays.scattered;
+      add(at, cosine_direction(at.normal, s, t), std::nullopt);
+    }
     if (aim.probabilities.empty() || k >= half) continue;
     ++rays.aimed;
     const Choice chosen = choose(aim.probabilities, s);
@@ -164,7 +170,7 @@ Spectrum brightest_of(const Lighting& lighting, const SurfacePoint& at, const Op
   Spectrum most = Spectrum::Zero(lighting.bands);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Spectrum sky = radiance(*lighting.sky, (points[k] - at.point).normalized());
-    most = most.max(cosines[k] * passages[k].transmittance * sky);
+    if (passages[k].transmittance.size() > 0) most = most.max(cosines[k] * passages[k].transmittance * sky);
   }
   return most;
 }
@@ -189,8 +195,7 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
       std::count_if(aim.probabilities.begin(), aim.probabilities.end(), [](double weight) { return weight > 0; }));
   for (double& probability : aim.probabilities)
     probability = probability > 0 ? (1 - any_alike) * probability / sum + any_alike / count : 0;
-  if (aim.at_panes) return aim;
-  if (what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities)) return {};
+  if (!aim.at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities)) return {};
   return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 
@@ -199,6 +204,7 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
   SkyLight found{Spectrum::Zero(lighting.bands), {std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed}};
   if (rays.places == 0) return found;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
+  const double scattered = static_cast<double>(rays.scattered) / static_cast<double>(rays.places);
   const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
   const std::vector<Passage> passages = lighting.paths.passages(rays.segments);
   for (std::size_t k = 0; k < passages.size(); ++k) {
@@ -211,7 +217,7 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
     const bool is_aimed = aimed_at.has_value();
     if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
     if (is_aimed) found.seen.through[*aimed_at] = 1;
-    const double over_hemisphere = rays.cosines[k] / std::numbers::pi;
+    const double over_hemisphere = scattered * rays.cosines[k] / std::numbers::pi;
     const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
     const bool is_cut_off = at_openings > cutoff * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;

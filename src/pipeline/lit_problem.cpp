@@ -126,7 +126,7 @@ Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh&
   const LightingOptions few{.lamp_samples = to_lights,
                             .sun_samples = to_lights,
                             .mirrored_samples = std::clamp(rays / 2, 2, 8),
-                            .sky_samples = std::clamp(8 * rays, 16, 64),
+                            .sky_samples = std::clamp(4 * rays, 16, 64),
                             .seed = seed,
                             .alike = 4};
   return direct_irradiance_as_planned(run, plan, quarters, few).irradiance;

@@ -30,7 +30,7 @@ namespace {
 
 // Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
 // patches, for the sake of time: the mean over the patches around takes the noise away.
-constexpr int rays_from_quarters = 16;
+constexpr int rays_from_quarters = 8;
 
 int usual_rays_of_quarters(PatchIndex patches) {
   constexpr PatchIndex very_many_patches = 100'000;

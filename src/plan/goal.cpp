@@ -22,7 +22,7 @@ namespace {
 // Particles start in batches, until enough of them have arrived in the surroundings, or so many batches have started.
 constexpr std::uint32_t particles_of_batch = 1 << 14;
 constexpr std::uint32_t max_batches = 12;
-constexpr std::size_t enough_hits = 1 << 14;
+constexpr std::size_t enough_hits = 1 << 13;
 constexpr std::uint32_t max_bounces = 16;
 
 // A side with less of its area in an enclosed space belongs to the surroundings, e.g. the ground below a house.
@@ -39,7 +39,7 @@ double width_of(const Scene& scene, PolygonIndex polygon) {
 
 // Some patches on each large polygon, and at least one on each other.
 PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
-  constexpr double patches = 4000;
+  constexpr double patches = 2000;
   const double usual = std::sqrt(kept_area(scene, sides) / patches);
   std::vector<double> coarsest;
   double smallest = usual;
