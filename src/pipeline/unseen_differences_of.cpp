@@ -3,8 +3,8 @@
 #include "base/sampling.h"
 #include "mesh/kept_patches.h"
 #include "mesh/refine.h"
-#include "mesh/small_patches.h"
 #include "pipeline/lit_problem.h"
+#include "plan/goal.h"
 
 #include <array>
 #include <cstddef>
@@ -14,13 +14,13 @@
 namespace patchlight {
 namespace {
 
-// Light from no patch at quarters of patches, in the needed bands. What counts is how it differs within a patch: of
-// those below a quarter of a small one that is left out, and it is 0. (Of all small ones, by daylight more would be
-// missing: frames and sills of windows are small.)
+// Light straight from sources at the quarters of patches, in the needed bands. Only differences within a patch count:
+// those of patches below a sixty-fourth of the mean area of the goal's are taken as 0. (With a sixteenth, those of
+// frames and sills of windows would be missing.)
 std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
                                         const QuarterLook& look) {
   const PatchMesh& mesh = simulation.mesh;
-  const double least_area = small_area(mesh) / 4;
+  const double least_area = mean_area_of_goal(mesh, simulation.plan.goal.get()) / 64;
   std::vector<std::uint8_t> is_left_out;
   for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
   PatchMesh all = refine(mesh);

@@ -60,12 +60,13 @@ std::string reason_for_rays(const StoredLight& light, const Request& request, do
 
 namespace {
 
-// Error bars of so many patches in pairs take two fifths of the run; of twice as many, three fifths.
+// Error bars of so many patches in pairs take two fifths of the run; of twice as many, three fifths. Standard errors of
+// sensors follow from them, and are far too small behind slits and louvres without: then more patches have bars as well.
 constexpr std::size_t most_patches_with_cheap_bars = 5000;
 
 ChosenStorage with_cheap_bars(ChosenStorage chosen, const Given& given, const StoredLight& light) {
   const bool is_cheap = chosen.request.assembly.storage == Storage::tiles && light.is_reflected &&
-                        light.patches <= most_patches_with_cheap_bars;
+                        (light.has_sensors || light.patches <= most_patches_with_cheap_bars);
   if (!chosen.request.accuracy.cheap_error_bars || !is_cheap || part_without_error_bars(chosen.request, given))
     return chosen;
   AccuracyOptions with_bars = chosen.request.accuracy;

@@ -36,6 +36,7 @@ struct StoredLight {
   bool is_reflected = true;  ///< between them, more than once
   bool is_mirrored = false;  ///< also without being scattered, which is to be followed
   bool has_goal = false;     ///< patches and rays follow importance to a Goal
+  bool has_sensors = false;  ///< whose standard errors follow from those of patches
 };
 
 /// Storage::automatic becomes rows of rays where light is mirrored, where patches follow a goal, for more than

@@ -7,6 +7,7 @@
 #include "base/vectors.h"
 #include "mesh/mesher.h"
 #include "mesh/refine.h"
+#include "mesh/small_patches.h"
 #include "scene/coverings.h"
 #include "visibility/occluder.h"
 
@@ -290,6 +291,13 @@ PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patche
     importance = importance_after(importance, refined, goal.hits);
     mesh = std::move(refined.mesh);
   }
+}
+
+double mean_area_of_goal(const PatchMesh& mesh, const Goal* goal) {
+  std::vector<double> areas;
+  for (PatchIndex i = 0; goal != nullptr && i < mesh.size(); ++i)
+    if (goal->is_goal[mesh.polygon[i]] != 0) areas.push_back(mesh.area[i]);
+  return areas.empty() ? mean_area(mesh) : mean_area(areas);
 }
 
 std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal) {

@@ -53,6 +53,9 @@ PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal);
 /// size goes.
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches);
 
+/// The mean area of the patches on goal polygons, m^2; of all where `goal` is null or has no patches.
+double mean_area_of_goal(const PatchMesh& mesh, const Goal* goal);
+
 /// By how much each patch counts when rays are shared out, m^2: its area on goal polygons, and on the others the area
 /// times their importance. The area of all patches where `goal` is null.
 std::vector<double> important_areas(const PatchMesh& mesh, const Goal* goal);

@@ -4,7 +4,7 @@
 //   --daylight N, --lamps N   rooms by daylight and by lamps [default: 60, 40]
 //   --seed S                  seed of the rooms [default: 1]
 //   --only TEXT               only rooms whose name contains the text, e.g. overhang_03
-//   --paths P                 most paths per sensor; a pilot decides how many [default: 131072]
+//   --paths P                 most paths per sensor; a pilot decides how many [default: 524288]
 //   --probes N                patches per room whose error is compared with the stated total [default: 12]
 //   --references FOLDER       keeps results of path tracing, so that later runs need not repeat it
 //   --write FOLDER            writes the rooms in which a sensor or the total is outside its error bar
@@ -56,14 +56,14 @@ constexpr Eigen::Index band = 1;
 
 // Paths of the pilot, and the relative standard error that the number of paths after it is chosen for.
 constexpr std::uint32_t pilot_paths = 2048;
-constexpr double wanted_error = 0.012;
+constexpr double wanted_error = 0.006;
 
 struct Options {
   std::size_t daylight = 60;
   std::size_t lamps = 40;
   std::uint64_t seed = 1;
   std::string only;
-  std::uint32_t paths = 131072;
+  std::uint32_t paths = 524288;
   std::size_t probes = 12;
   path references;
   path write;

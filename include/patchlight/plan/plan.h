@@ -35,7 +35,7 @@ struct AccuracyOptions {
   bool error_bars = false;        ///< of every patch, from mesh, form factors and solver; keeps standard errors
   bool cheap_error_bars = false;  ///< error bars where they take less than half of the run: the plan has them of
                                   ///< reflected light by rows of rays anyway, and with this by up to 5,000 patches in
-                                  ///< pairs
+                                  ///< pairs, or with sensors
   bool local_cuts = false;  ///< by rows of rays without an accuracy: a second mesh, with patches cut and their rays
                             ///< doubled where they err most, where that takes away a third of an error above 2 %;
                             ///< both take half of the usual rays to the sky. Not where Steps give mesh, form factors

@@ -205,7 +205,7 @@ TEST(SkyOpenings, ThatArriveNowhereLeaveAnError) {
   const Lighting lighting = lighting_of(scene, Tracing(scene));
   const std::vector<Point> window{Point(-1.5, 0, -0.5), Point(-1.5, 0, 0.5), Point(-0.5, 0, 0.5), Point(-0.5, 0, -0.5)};
   const SurfacePoint point{Point(3, 3.5, 0), -Vector::UnitY()};
-  const DirectIrradiance direct = direct_irradiance(lighting, {&point, 1});
+  const DirectIrradiance direct = direct_irradiance(lighting, {&point, 1}, {.sky_samples = 1024});
   const double hidden = 3 * pi * point_to_polygon(point.point, point.normal, window);
   EXPECT_EQ(direct.irradiance(0, 0), 0);
   EXPECT_GT(direct.standard_error(0, 0), 0.95 * hidden / 2048);

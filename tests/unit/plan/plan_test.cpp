@@ -101,6 +101,9 @@ TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
   EXPECT_EQ(chosen(2000, 63).rays, 256) << "about as accurate as pairs";
   EXPECT_EQ(chosen(999, 500).storage, Storage::tiles) << "takes no time";
   EXPECT_EQ(chosen(20000, 1000).rays, AssemblyOptions().rays) << "more than pairs are taken for";
+  EXPECT_EQ(choose_storage({}, {}, {.patches = 2000, .sides = 6, .has_goal = true}).request.assembly.storage,
+            Storage::rays)
+      << "pairs take as long for patches of the surroundings as for those of the goal";
   Request refined;
   refined.accuracy.relative_error = 0.01;
   EXPECT_EQ(chosen(2000, 63, refined).storage, Storage::tiles) << "faces get more patches where it matters";
@@ -182,6 +185,13 @@ TEST(MakePlan, HasErrorBarsOfPairsWhereTheyAreCheap) {
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.close = false; }));
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.effects.skip = {Effect::interreflection}; }));
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.storage = Storage::on_demand; }));
+  // Standard errors of sensors follow from those of the patches.
+  Scene with_sensor = scene;
+  with_sensor.sensors = {{.name = "desk", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}}}};
+  Request many;
+  many.mesh.patches = 8000;
+  many.accuracy.cheap_error_bars = true;
+  EXPECT_TRUE(make_plan(with_sensor, many).accuracy.error_bars);
   Request dark;
   dark.accuracy.cheap_error_bars = true;
   EXPECT_FALSE(make_plan(cube_room(0, 1), dark).accuracy.error_bars) << "no light is reflected";
