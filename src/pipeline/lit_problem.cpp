@@ -5,7 +5,6 @@
 #include "mesh/kept_patches.h"
 #include "mesh/small_patches.h"
 #include "pipeline/problem_of.h"
-#include "pipeline/second_mesh.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 
@@ -90,11 +89,7 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
                        const Known& known) {
   LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
   if (!has_point_or_daylight(run.scene)) return lit;
-  LightingOptions options = lighting_options(plan, mesh);
-  // Few patches need as many where more meshes may follow: these take more there.
-  const bool is_followed = plan.assembly.storage == Storage::rays && cuts_locally(run, mesh.size());
-  if ((known.light || is_followed) && takes_few_rays(plan, mesh.size())) options.sky_samples /= 2;
-  DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, options);
+  DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, lighting_options(plan, mesh));
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
   lit.doublings = known.more_rays.to_lights;

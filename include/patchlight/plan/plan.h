@@ -37,8 +37,8 @@ struct AccuracyOptions {
                                   ///< reflected light by rows of rays anyway, and with this by up to 5,000 patches in
                                   ///< pairs, or with sensors
   bool local_cuts = false;  ///< by rows of rays without an accuracy: a second mesh, with patches cut and their rays
-                            ///< doubled where they err most, where that takes away a third of an error above 2 %;
-                            ///< both take half of the usual rays to the sky. Not where Steps give mesh, form factors
+                            ///< doubled where they err most, where that takes away a third of an error above 2 %.
+                            ///< Not where Steps give mesh, form factors
                             ///< or a solver
   std::optional<double> relative_error = {};  ///< of the patches' mean radiosities: patches and samples are refined
                                               ///< until the error bars are below; the mesh and the samples that are
