@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -39,24 +40,24 @@ std::vector<Ray> onward(const std::vector<Place>& places, std::uint32_t walks, s
 }
 
 // A space that is much lower than its faces are wide is a gap, not a room, e.g. below a building that does not touch
-// the ground. The limit is the harmonic mean of its ray lengths over the size of the face.
-constexpr double least_height = 0.02;
+// the ground: most rays end nearer than this share of the size of the face.
+constexpr double least_height = 0.01;
 
 bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
-  double inverse = 0;
-  for (const std::optional<Hit>& hit : hits)
-    if (hit && hit->distance > 0) inverse += 1 / hit->distance;
-  return inverse * least_height * std::sqrt(face_area) > static_cast<double>(hits.size());
+  const double limit = least_height * std::sqrt(face_area);
+  const auto count = std::count_if(hits.begin(), hits.end(),
+                                   [&](const std::optional<Hit>& hit) { return hit && hit->distance < limit; });
+  return 2 * static_cast<std::size_t>(count) > hits.size();
 }
 
 // True when fewer than half of the walks from a patch leave the scene, and the space before it is no gap.
-bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mesh, PatchIndex patch,
+bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mesh, PatchIndex patch, double face_area,
                  std::uint32_t walks) {
   const PolygonIndex polygon = mesh.polygon[patch];
   std::vector<Place> places(walks, {mesh.centroid[patch], mesh.normal[patch], polygon});
   for (std::uint32_t k = 0; k < reflections; ++k) {
     const auto hits = faces.first_hits(onward(places, walks, hash({purpose, patch, k})));
-    if (k == 0 && is_gap(hits, area_vector(corner_points(scene, polygon)).norm())) return false;
+    if (k == 0 && is_gap(hits, face_area)) return false;
     std::vector<Place> next;
     for (const std::optional<Hit>& hit : hits) {
       if (!hit) continue;
@@ -73,10 +74,13 @@ bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mes
 
 Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
   const std::uint32_t walks = mesh.size() > many_patches ? few_walks : usual_walks;
+  std::vector<double> face_area;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    face_area.push_back(area_vector(corner_points(scene, p)).norm());
   Eigen::VectorXd enclosed(mesh.size());
   parallel_for(mesh.size(), [&](std::size_t k) {
     const auto patch = static_cast<PatchIndex>(k);
-    enclosed[patch] = is_enclosed(scene, faces, mesh, patch, walks) ? 1 : 0;
+    enclosed[patch] = is_enclosed(scene, faces, mesh, patch, face_area[mesh.polygon[patch]], walks) ? 1 : 0;
   });
   return enclosed;
 }

@@ -11,7 +11,7 @@ namespace patchlight {
 
 /// 1 for each patch of a room, e.g. one with windows, else 0: facades, a court, the ground under a table in the open, a
 /// gap below a building. In a room light leaves the scene with a probability below one half in four diffuse
-/// reflections, whatever the reflectance; clear faces count as closed. A gap is lower than about a fiftieth of the
+/// reflections, whatever the reflectance; clear faces count as closed. A gap is lower than about a hundredth of the
 /// width of its faces. `faces` is an occluder whose rays meet all polygons. Costs at most 64 rays per patch.
 Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh);
 

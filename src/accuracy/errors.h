@@ -34,10 +34,10 @@ Field followed(const TransportOperator& transport, const RadiosityProblem& probl
 /// The mean over draws of their squares, per patch and band.
 Field mean_square(std::span<const Field> draws);
 
-/// Equally likely errors of the irradiance by the sampling of form factors, of the light `B`, radiosity in W/m^2:
-/// random draws of the errors of the entries (random_errors()), each followed through all reflections, e = A^-1 D B + F
-/// R e. In a closed scene the draws are closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs
-/// some tens of applications. `raw` has the errors of the entries.
+/// Equally likely errors of the irradiance by sampled form factors, of the light `B`, radiosity in W/m^2. Each draws
+/// errors of the entries (random_errors()) and follows them: e = A^-1 D B + F R e. In a closed scene the draws are
+/// closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens of applications. `raw` has
+/// the errors of the entries.
 std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                                            const SolvedProblem& solved, const FieldView& B);
 
@@ -81,11 +81,11 @@ inline constexpr double most_lamps = 0.125;
 /// away does not depend on the patch's size: comparison with larger patches does not show it.
 Field dark_differences(const LostShare& lost, const SolvedProblem& solved);
 
-/// The error in gaps that are narrower than their patches are wide, which comparison with larger patches does not show:
-/// light that gets in at the rim is spread over all of a patch. It is (s - 0.35) / (1 - 0.35) min(H_i, D_i) / 2, or 0
-/// where s < 0.35. s is the share of the hemisphere of faces that look back from nearer than 0.6 edges; one face at that
-/// distance takes 0.35. D_i is the range of radiosities that the patch sees plus its direct light: the irradiance by
-/// sources of one radiosity is right. The factor 1/2 is measured. `S` in m^2. O(size^2).
+/// The error in gaps narrower than their patches. Comparison with larger patches does not show it: light from the rim
+/// spreads over a whole patch. It is (s - 0.35) / (1 - 0.35) min(H_i, D_i) / 2, or 0
+/// where s < 0.35. s is the share of the hemisphere of faces that look back from nearer than 0.6 edges; one face at
+/// that distance takes 0.35. D_i is the range of radiosities that the patch sees plus its direct light: the irradiance
+/// by sources of one radiosity is right. The factor 1/2 is measured. `S` in m^2. O(size^2).
 Field gap_errors(const PatchMesh& mesh, const ExchangeAreas& S, const SolvedProblem& solved);
 
 /// The same by rows of rays, after `cuts` cuts of each patch. O(rays).

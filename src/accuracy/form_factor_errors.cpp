@@ -83,8 +83,8 @@ Field Draws::of_draw(Eigen::Index draw) const {
   return irradiance;
 }
 
-// Each draw through all reflections. Few bands are followed one by one with all draws; many by draws, as a few of them
-// tell the others then.
+// Follows each draw through all reflections. Few bands are followed one by one. Many bands are followed by draws; the
+// others are combinations of a few.
 std::vector<Field> follow_draws(const Draws& draws_of, const SpanningBands& spanning) {
   const RadiosityProblem& problem = draws_of.problem;
   const Eigen::Index bands = problem.scattering.reflectance.cols();

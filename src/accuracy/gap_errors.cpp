@@ -15,7 +15,7 @@ namespace {
 constexpr double near = 0.6;
 constexpr double allowed = 0.35;
 
-// What has gone wrong in the gaps of ten rooms, as a share of the irradiance that could have.
+// The measured error in the gaps of ten rooms, relative to the irradiance at risk.
 constexpr double gap_scale = 0.5;
 
 // Normals of faces that look back at each other have a product below this one.
@@ -50,7 +50,7 @@ class SeenSources {
   double near_share() const { return near_; }
 
  private:
-  // Sums of rows are 1 in closed rooms, but for rounding of single precision and leaks.
+  // Row sums are 1 in closed rooms, except for single-precision rounding and leaks.
   static constexpr double complete = 1 - 1e-3;
 
   const PatchMesh& mesh_;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace patchlight {
@@ -184,9 +185,15 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const std::span<const std::uint8_t> more = options.doublings;
   const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
+  // Patches that take the same samples take as many.
+  const auto area_of = [&](std::size_t k) {
+    const auto first = areas.begin() + static_cast<std::ptrdiff_t>(k - k % options.alike);
+    const auto end = first + std::min<std::ptrdiff_t>(options.alike, areas.end() - first);
+    return std::accumulate(first, end, 0.0) / static_cast<double>(end - first);
+  };
   const auto doublings = [&, usual = options.usual_area > 0 ? options.usual_area : mean_area(areas)](std::size_t k) {
     constexpr double most = most_doublings;
-    const auto by_area = static_cast<int>(std::lround(std::clamp(std::log2(areas[k] / usual) / 2, -most, most)));
+    const auto by_area = static_cast<int>(std::lround(std::clamp(std::log2(area_of(k) / usual) / 2, -most, most)));
     return more.empty() ? by_area : std::min(by_area + more[k], most_asked);
   };
   int most = most_doublings;

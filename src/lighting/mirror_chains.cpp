@@ -237,8 +237,8 @@ bool meets(const std::vector<Point>& section, const Vector& normal, const Point&
   return true;
 }
 
-// The integral of E d^2 / cos theta over the solid angle of a section, seen from the source; from afar above its middle
-// where light is parallel or the source reaches the plane of the mirror.
+// The integral of E d^2 / cos theta over the solid angle of a section, seen from the source. Parallel light and sources
+// in the mirror's plane use a distant point above its middle.
 Spectrum flux_by_points(const SourceFlux& light, const SourceExtent& seen, std::span<const Point> section,
                         const MirrorSide& side, const Eigen::Affine3d& image,
                         std::span<const std::array<double, 4>> points) {
@@ -276,8 +276,8 @@ bool has_corner_before(std::span<const Point> corners, const MirrorSide& mirror,
                      [&](const Point& corner) { return mirror.normal.dot(corner - mirror.on_plane) > tolerance; });
 }
 
-// Bound of the light of all longer chains, relative to that of a chain of n mirrors, where each longer one adds one
-// mirror, as between two: each reflects rho, so that the sum is rho / (1 - rho) at most. Images recede, as
+// Bound of the light of all longer chains, relative to a chain of n mirrors. Each further mirror reflects rho, so the
+// sum is at most rho / (1 - rho). Images recede, as
 // k = n + 1, n + 2 ... do between two mirrors, so that it is less than the sum of n^2 / k^2, which is less than n.
 double light_beyond(std::size_t mirrors, double reflectance) {
   const auto n = static_cast<double>(mirrors);

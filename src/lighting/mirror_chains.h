@@ -37,9 +37,9 @@ struct UnfollowedLight {
   Spectrum exitance;           ///< W/m^2, after the reflection at this mirror and at later ones
 };
 
-/// The chains that light can take over planar mirrors and clear faces, those with the largest share first: of the flux
-/// of a source the part that gets through the chain, after all reflections, for the source where it is largest. Each
-/// source sends a beam to a mirror, which the outlines of the mirrors before it limit; occlusion is not considered.
+/// Chains of planar mirrors and clear faces, those with the largest share first. The share is the fraction of a
+/// source's flux that gets through the chain, for the best source. Each source sends a beam to a mirror, which the
+/// outlines of the mirrors before it limit; occlusion is not considered.
 struct MirrorChains {
   std::vector<MirrorChain> chains;
   std::vector<std::uint32_t> ranked;  ///< MirroredSource::id of the sources that were given, ascending

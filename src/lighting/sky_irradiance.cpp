@@ -102,9 +102,8 @@ struct SkyRays {
   std::size_t aimed = 0;      // places with a ray to an opening
 };
 
-// Light comes through panes alone where there are any, but for holes that are not known: from each of half of the places
-// a ray goes to a pane, and from a quarter of these one goes over the hemisphere. Rays to holes, which may be hidden
-// from the receiver, are a third of all and come on top.
+// Where there are panes, nearly all light comes through them. Half of the places send a ray to a pane. A quarter of
+// these also send one over the hemisphere. Rays to holes, which may be hidden from the receiver, are a third of all.
 SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
   SkyRays rays;
   const auto add = [&](const SurfacePoint& at, const Vector& direction, std::optional<std::size_t> aimed_at) {
@@ -195,7 +194,8 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
       std::count_if(aim.probabilities.begin(), aim.probabilities.end(), [](double weight) { return weight > 0; }));
   for (double& probability : aim.probabilities)
     probability = probability > 0 ? (1 - any_alike) * probability / sum + any_alike / count : 0;
-  if (!aim.at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities)) return {};
+  if (!aim.at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities))
+    return {};
   return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 

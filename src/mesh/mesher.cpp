@@ -104,9 +104,15 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::s
 
 }  // namespace
 
-void require_so_many_patches(const Scene& scene, const KeptSides& sides, double max_edge) {
-  // Patches are in the mean no larger than max_edge squared.
-  const double at_least = std::max(kept_area(scene, sides) / max_edge, bounds(scene).diagonal().norm()) / max_edge;
+void require_so_many_patches(const Scene& scene, const KeptSides& sides, const PatchEdges& edges) {
+  // Patches of a polygon are in the mean no larger than the square of its longest edge.
+  double at_least = bounds(scene).diagonal().norm() / edges.max_edge;
+  double sum = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const int kept = sides.front[p] + sides.back[p];
+    if (kept > 0) sum += kept * area_vector(corner_points(scene, p)).norm() / (edges.on(p) * edges.on(p));
+  }
+  at_least = edges.coarsest.empty() ? std::max(at_least, sum) : sum;
   if (at_least > max_patches) throw MemoryError("the longest patch edge is so short that it needs over 2^31 patches");
 }
 
@@ -114,7 +120,7 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdge
                      bool graded_edges) {
   assert(edges.max_edge > 0 && sides.front.size() == scene.polygons.size() &&
          sides.back.size() == scene.polygons.size());
-  if (edges.coarsest.empty()) require_so_many_patches(scene, sides, edges.max_edge);
+  require_so_many_patches(scene, sides, edges);
   Pieces pieces = make_pieces(scene, sides, edges, contacts, graded_edges);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);

@@ -16,7 +16,7 @@ namespace patchlight {
 inline constexpr double max_patches = 0x1p31;
 
 /// \throws MemoryError when more than 2^31 patches would be needed.
-void require_so_many_patches(const Scene& scene, const KeptSides& sides, double max_edge);
+void require_so_many_patches(const Scene& scene, const KeptSides& sides, const PatchEdges& edges);
 
 /// Subdivides the kept sides of every polygon into patches no edge of which is longer than `edges` says.
 ///

@@ -85,7 +85,7 @@ ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem
   std::map<PatchIndex, std::uint32_t> number;
   for (PatchIndex i = 0; i < size; ++i) {
     const PatchIndex root = components.root(i);
-    const bool is_closed = lost[root] <= max_loss_of_closed * all[root];
+    const bool is_closed = all[root] > 0 && lost[root] <= max_loss_of_closed * all[root];
     found.space_of.push_back(is_closed
                                  ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
                                  : ClosedSpaces::open);

@@ -20,7 +20,7 @@ struct ClosedSpaces {
   Eigen::Index count = 0;
 };
 
-/// Finds the connected components of the rows and of the sheets, and keeps those that lose at most a thousandth of
+/// Finds the connected components of the rows and of the sheets, and keeps those that lose at most a fiftieth of
 /// their light. `row_sum` is the fraction s_j of the hemisphere of patch j that other patches fill. O(rays).
 ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem& problem,
                                 const Eigen::VectorXd& row_sum);

@@ -1,5 +1,6 @@
 #include "pipeline/expected_cost.h"
 
+#include "lighting/direct_irradiance.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/second_mesh.h"
 #include "plan/memory.h"
@@ -53,12 +54,11 @@ double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& m
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 
-double rays_per_patch(const Scene& scene, const Plan& plan, PatchIndex patches) {
+double rays_per_patch(const Scene& scene, const Plan& plan) {
   double rays = 0;
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
-  if (scene.sky && simulates(plan, Effect::sky))
-    rays += takes_few_rays(plan, patches) && (refines(plan.accuracy) || makes_second_mesh(plan, patches)) ? 512 : 1024;
+  if (scene.sky && simulates(plan, Effect::sky)) rays += LightingOptions{}.sky_samples;
   return rays;
 }
 
@@ -81,12 +81,12 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
   if (plan.assembly.storage == Storage::rays) {
     cost.form_factor_seconds = seconds_per_row_of_rays * n * plan.assembly.rays / AssemblyOptions().rays;
     cost.solve_seconds = seconds_of_solution_by_rays * n;
-    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan, mesh.size()) * n;
+    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
     return cost;
   }
   cost.form_factor_seconds =
       assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.assembly.lost_share_rays * n;
-  cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan, mesh.size()) * n;
+  cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
   const bool solves = simulates(plan, Effect::interreflection);
   const double products = (plan.assembly.close ? products_of_closure : 0) + (solves ? products_of_solver : 0);
   cost.solve_seconds = seconds_per_entry * products * n * n;

@@ -147,7 +147,7 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
     put_bars(into.error_bars, part.error_bars, columns);
     columns.put(into.direct_standard_error, part.direct_standard_error);
     columns.put(into.ray_standard_error, part.ray_standard_error);
-    into.correlated_errors.resize(part.correlated_errors.size());
+    into.correlated_errors.resize(std::max(into.correlated_errors.size(), part.correlated_errors.size()));
     for (std::size_t draw = 0; draw < part.correlated_errors.size(); ++draw)
       columns.put(into.correlated_errors[draw], part.correlated_errors[draw]);
     add_facts(into.transport, weight, part.transport);

@@ -4,6 +4,7 @@
 #include "base/doublings.h"
 #include "mesh/small_patches.h"
 #include "pipeline/error_goals.h"
+#include "plan/goal.h"
 
 #include <algorithm>
 #include <bit>
@@ -121,9 +122,10 @@ std::vector<std::uint8_t> doubled_on(const FinerMesh& finer, const NestedMesh& b
 
 // On a finer mesh. A smaller patch has fewer rays, by the root of its area.
 Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::VectorXd& squares,
-               const std::vector<std::uint8_t>& doublings) {
+               const std::vector<std::uint8_t>& doublings, const Goal* goal) {
   const PatchMesh& mesh = finer.mesh.patches;
-  const double usual_area = mean_area(mesh);
+  const std::vector<double> areas = important_areas(mesh, goal);
+  const double usual_area = mean_area(areas);
   const Eigen::VectorXd of_parents = summed_by_parent(before, squares.array()).col(0).matrix();
   Noise noise{{}, {}, doubled_on(finer, before, doublings)};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -133,7 +135,7 @@ Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::Ve
     noise.squares.push_back(finer.place[i] != no_patch
                                 ? squares[finer.place[i]]
                                 : of_parents[parent] * std::sqrt(share / (range.end - range.begin)));
-    noise.rays.push_back(std::ldexp(std::clamp(std::sqrt(mesh.area[i] / usual_area), 0.25, 4.0), noise.doubled[i]));
+    noise.rays.push_back(std::ldexp(std::clamp(std::sqrt(areas[i] / usual_area), 0.25, 4.0), noise.doubled[i]));
   }
   return noise;
 }
@@ -195,7 +197,7 @@ LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const
   const auto doublings = [&](const Eigen::VectorXd& noise, const std::vector<std::uint8_t>& before,
                              const NoiseGoal& noise_goal) {
     if (noise.size() == 0) return Doublings{};
-    return best_doublings(noise_on(finer, solved.mesh, noise, before), noise_goal);
+    return best_doublings(noise_on(finer, solved.mesh, noise, before, solved.simulation.plan.goal.get()), noise_goal);
   };
   const double lights_may = allowed_square(goal.error, share_to_rays, cuts.squared_error + by_rows);
   Doublings to_lights = doublings(solved.light_noise, solved.more_rays.to_lights,

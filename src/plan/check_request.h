@@ -17,9 +17,8 @@ void check(const Request& request, const Given& given = {});
 /// AccuracyOptions::interest.
 void check(const Request& request, const Scene& scene, const Given& given = {});
 
-/// The part of a request that rows of rays do not provide, as messages name it: pairs, a given matrix, mesh or solver,
-/// rows that are not closed, another estimator or number of its samples, other short cuts, light as if nothing stood in
-/// the way, or a solver that takes columns or symmetry. Nothing where rays may be taken.
+/// The part of a request that needs pairs, as messages name it; nothing if rays will do. Such parts are given matrices,
+/// meshes and solvers, other estimators and numbers of samples, and solvers that take columns or symmetry.
 std::optional<std::string> part_that_takes_pairs(const Request& request, const Given& given = {});
 
 /// Form factors of pairs are one number for all bands. `chosen` is the request `asked` with its storage decided, and
@@ -28,7 +27,7 @@ std::optional<std::string> part_that_takes_pairs(const Request& request, const G
 void require_rays_for_colours(std::size_t coloured, const Request& chosen, const Request& asked,
                               const Given& given = {});
 
-/// What of a request leaves no error bars, as messages name it; nothing where there may be some.
+/// The part of a request that rules out error bars, as messages name it; nothing if none does.
 std::optional<std::string> part_without_error_bars(const Request& request, const Given& given = {});
 
 }  // namespace patchlight

@@ -45,8 +45,7 @@ bool has_coarse_sides(const StoredLight& light, const Request& request) {
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
   if (light.is_mirrored)
     return "as only they follow light that mirrors and clear faces reflect, and tell its colours apart";
-  if (light.has_goal)
-    return "as patches follow their importance to a goal: pairs would take as long for the others as for those that count";
+  if (light.has_goal) return "as patches follow a goal: pairs take as long for the surroundings as for the goal";
   if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
     return "as " + std::to_string(light.sides) +
            " sides of faces have few patches each: the size of these errs more than rays do, and pairs would take much "
@@ -61,7 +60,8 @@ std::string reason_for_rays(const StoredLight& light, const Request& request, do
 namespace {
 
 // Error bars of so many patches in pairs take two fifths of the run; of twice as many, three fifths. Standard errors of
-// sensors follow from them, and are far too small behind slits and louvres without: then more patches have bars as well.
+// sensors follow from them, and are far too small behind slits and louvres without: then more patches have bars as
+// well.
 constexpr std::size_t most_patches_with_cheap_bars = 5000;
 
 ChosenStorage with_cheap_bars(ChosenStorage chosen, const Given& given, const StoredLight& light) {

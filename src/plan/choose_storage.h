@@ -39,9 +39,8 @@ struct StoredLight {
   bool has_sensors = false;  ///< whose standard errors follow from those of patches
 };
 
-/// Storage::automatic becomes rows of rays where light is mirrored, where patches follow a goal, for more than
-/// most_patches_in_pairs, where sides have few patches that are not refined, and where all pairs do not fit into the
-/// memory. It becomes tiles where there
+/// Storage::automatic becomes rows of rays where light is mirrored, where there is a goal, where patches are more than
+/// most_patches_in_pairs or few on each side, and where pairs do not fit into the memory. It becomes tiles where there
 /// is a part_that_takes_pairs(), or no light is reflected in either way. Another storage stays, except for rays where
 /// error bars are requested of light that is not reflected: these become tiles. Rows of rays have error bars where
 /// light is reflected, and with these nested meshes. Small meshes that have rays because of mirrors or of few patches a

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <utility>
 
 namespace patchlight {
@@ -43,12 +42,8 @@ PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
   constexpr double patches = 2000;
   const double usual = std::sqrt(kept_area(scene, sides) / patches);
   std::vector<double> coarsest;
-  double smallest = usual;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    coarsest.push_back(std::max(usual, 0.5 * width_of(scene, p)));
-    smallest = std::min(smallest, coarsest.back());
-  }
-  return tessellate(scene, sides, {smallest, std::move(coarsest)});
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) coarsest.push_back(0.5 * width_of(scene, p));
+  return tessellate(scene, sides, {usual, std::move(coarsest)});
 }
 
 // Marks the polygons that have a side with such patches.
@@ -182,7 +177,7 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
 
 std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides,
                                       const std::vector<std::string>& interest, std::uint64_t seed) {
-  if (!scene.sky && !scene.sun) return {};
+  if ((!scene.sky && !scene.sun) || !(kept_area(scene, sides) > 0)) return {};
 
   // 1. The polygons of enclosed spaces, and those that are named.
   const PatchMesh mesh = coarse_mesh(scene, sides);
@@ -194,7 +189,7 @@ std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides
   double around = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     (goal.is_goal[mesh.polygon[i]] != 0 ? goal.goal_area : around) += mesh.area[i];
-  if (around == 0) return {};
+  if (around == 0 || goal.goal_area == 0) return {};
 
   // 2. Importance of the surroundings.
   Arrived arrived = trace_importance(scene, faces, goal.is_goal, Sources(scene, mesh, named), seed);

@@ -49,8 +49,8 @@ KeptSides sides_of_goal(const KeptSides& sides, const Goal* goal);
 PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal);
 
 /// The mesh with patches of the surroundings cut in four, the most important first, until there are about `patches`
-/// more. Importance of a patch is the sum over its hits of min(1, size / distance)^1.2, which is how the error by its
-/// size goes.
+/// more. The importance of a patch is the sum over its hits of min(1, size / distance)^1.2. The error has the same
+/// order in the size.
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches);
 
 /// The mean area of the patches on goal polygons, m^2; of all where `goal` is null or has no patches.

@@ -243,8 +243,12 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const Outlined outlined{scene, of_goal, contacts, search, goal.get()};
   const auto [request, note_on_storage] =
       choose_storage(asked, given,
-                     {expected_patches(outlined, asked), kept_side_count(sides), reflects, mirrors, goal != nullptr,
-                      !scene.sensors.empty()});
+                     {.patches = expected_patches(outlined, asked) + kept_side_count(sides) - kept_side_count(of_goal),
+                      .sides = kept_side_count(sides),
+                      .is_reflected = reflects,
+                      .is_mirrored = mirrors,
+                      .has_goal = goal != nullptr,
+                      .has_sensors = !scene.sensors.empty()});
   require_rays_for_colours(facts.coloured_specular, request, asked, given);
   PatchSize size = patch_size(outlined, request);
   if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);

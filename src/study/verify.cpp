@@ -223,12 +223,12 @@ double width_of_all(const Region& region, const Simulation& simulation, const Fi
 
 Verification compared(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                       const std::vector<Region>& regions, const std::vector<PatchIndex>& patches,
-                      const VerifyOptions& options, const Observer& observer) {
+                      const VerifyOptions& options, std::uint64_t seed_of_paths, const Observer& observer) {
   const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
   const Tracer tracer{scene,
                       simulation,
                       scene_for_sensors(scene, simulation.plan),
-                      {.paths = options.paths, .seed = options.seed, .follows_reflections = follows_reflections},
+                      {.paths = options.paths, .seed = seed_of_paths, .follows_reflections = follows_reflections},
                       observer};
   Verification result;
   result.patches = patches;
@@ -271,10 +271,8 @@ bool is_by_noise(const Verification& verification) {
   return noisy > all / 2;
 }
 
-// Other ones, and more.
-VerifyOptions more_paths(VerifyOptions options) {
+VerifyOptions with_more_paths(VerifyOptions options) {
   options.paths = std::max(16 * options.paths, enough_paths);
-  options.seed = hash({options.seed, 0x61676169});
   return options;
 }
 
@@ -301,32 +299,18 @@ Field irradiance_bar(const Simulation& simulation, double relative) {
   return bar + irradiance_errors(simulation.problem.scattering, solution.error);
 }
 
-Field deviations(const Verification& verification) {
-  const Field noise = variance_of(verification.paths);
-  const Field difference = verification.irradiance - verification.paths.irradiance;
-  const Field none = Field::Zero(difference.rows(), difference.cols());
-  return (difference == 0).select(none, difference / (noise + verification.bar.square()).sqrt());
-}
-
-Field deviations_by_noise(const Verification& verification) {
-  const Field& noise = verification.paths.standard_error;
-  const Field unknown = Field::Constant(noise.rows(), noise.cols(), std::numeric_limits<double>::quiet_NaN());
-  const Field rounded = (noise.square() + (rounding * verification.paths.irradiance).square()).sqrt();
-  return (noise > 0).select((verification.irradiance - verification.paths.irradiance) / rounded, unknown);
-}
-
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options, const Observer& observer) {
   assert(bar.rows() == simulation.mesh.size());
   const std::vector<Region> regions = regions_of(scene, simulation);
   const std::vector<PatchIndex> patches = draw_patches(simulation, regions, options);
-  VerifyOptions by = options;
-  for (std::uint32_t first_paths = 0;; by = more_paths(by)) {
-    Verification result = compared(scene, simulation, bar, regions, patches, by, observer);
-    result.first_paths = first_paths;
-    if (!is_by_noise(result)) return result;
-    if (first_paths == 0) first_paths = result.paths.paths;
-  }
+  Verification first = compared(scene, simulation, bar, regions, patches, options, options.seed, observer);
+  if (!is_by_noise(first)) return first;
+  // Again on the same patches, rooms and sensors, with other paths.
+  Verification again = compared(scene, simulation, bar, regions, patches, with_more_paths(options),
+                                hash({options.seed, 0x61676169}), observer);
+  again.first_paths = first.paths.paths;
+  return again;
 }
 
 }  // namespace patchlight

@@ -72,14 +72,13 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 
 /// Compares a solution with path tracing in `scene`. It tests three things:
 /// - Patches. The goal region is accuracy.interest if it names anything, else the enclosed spaces if there are any,
-/// else
-///   everything. Patches are drawn at random in proportion to area times radiosity, a proxy of their importance.
+///   else everything. Patches are drawn at random in proportion to area times radiosity, a proxy of their importance.
 /// - The mean irradiance of each room, from random points on all of its patches.
 /// - The sensors of the scene.
 /// Bars are per patch of the simulation and band, one standard deviation each. Chi-square and the common offset are
 /// tested for each part and family. Too good an agreement passes. A comparison that disagrees by noise is repeated
-/// once: if most of chi-square comes from rows whose paths scatter more than a fifth of their bars, and these have
-/// fewer than 8,192 paths, it is repeated with 16 times as many, at least 8,192. Paths see the scene without the lights
+/// once on the same rows, with 16 times as many paths, at least 8,192. Noise means: rows whose paths scatter more than a
+/// fifth of their bars give most of chi-square. Paths see the scene without the lights
 /// and colours that are skipped by force; they simulate every other effect. The result does not depend on the number of
 /// threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,

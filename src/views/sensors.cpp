@@ -71,7 +71,8 @@ void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
   const auto add_squares = [](Field& to, const Field& of) { to = (to.square() + of.square()).sqrt(); };
   gathered.irradiance += more.irradiance;
   add_squares(gathered.errors.rays, more.errors.rays);
-  add_squares(gathered.errors.sampling, more.errors.sampling);
+  // The same patches err in both.
+  gathered.errors.sampling += more.errors.sampling;
   gathered.errors.mesh += more.errors.mesh;
   gathered.errors.solver += more.errors.solver;
 }
