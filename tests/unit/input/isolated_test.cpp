@@ -72,7 +72,7 @@ TEST(ReadIsolated, WhateverElseHappensIsARefusalOfTheFile) {
   for (const auto& read : readers) {
     const std::string message = refusal(read);
     EXPECT_EQ(message.rfind("room.dae: ", 0), 0U) << message;
-    EXPECT_NE(message.find("export it anew"), std::string::npos) << message;
+    EXPECT_NE(message.find("export it again"), std::string::npos) << message;
   }
 }
 
