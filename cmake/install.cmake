@@ -71,6 +71,7 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "nodejs (>= 18)")  # reads IFC files
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is linked with
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "patchlight")  # has the reader of IFC
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and what CMake needs to find it:
 scenes, form factors, solvers, error bars and what is seen of a solution.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
@@ -84,6 +85,6 @@ arrays, form factors as a scipy operator, the solvers one by one, reports
 and pages for the browser.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, patchlight")  # the latter has the reader of IFC
 endif()
 include(CPack)

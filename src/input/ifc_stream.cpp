@@ -70,6 +70,7 @@ class IfcScene {
         scene_.materials.push_back(ifc_material(line));
       }
     }
+    if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
     if (line.contains("space")) add_space(line);
     if (line.contains("without_faces"))
       left_out_.add("elements whose shapes give no faces are left out", line.at("without_faces").get<std::string>());
@@ -83,6 +84,16 @@ class IfcScene {
   }
 
  private:
+  void set_north(const std::array<double, 2>& direction) {
+    const Vector north(direction[0], direction[1], 0);
+    if (!(north.norm() > 0)) return;
+    scene_.north = north.normalized();
+    scene_.north_stated = true;
+    if (scene_.north.y() < 1)
+      scene_.notes.push_back("true north of the file: [" + rounded(scene_.north.x()) + ", " +
+                             rounded(scene_.north.y()) + ", 0]; the key north of a scene file overrules it");
+  }
+
   void add_element(const IfcJson& line) {
     const auto name = line.at("element").get<std::string>();
     const auto [group, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
@@ -104,10 +115,9 @@ class IfcScene {
   void add_space(const IfcJson& line) {
     const auto [room, is_new] = rooms_.emplace(line.at("id").get<std::uint64_t>(), scene_.rooms.size());
     if (is_new) {
-      scene_.rooms.push_back(
-          {room_name(line.at("space").get<std::string>(), line.at("long_name").get<std::string>()),
-           line.at("storey").get<std::string>(),
-           {}});
+      scene_.rooms.push_back({room_name(line.at("space").get<std::string>(), line.at("long_name").get<std::string>()),
+                              line.at("storey").get<std::string>(),
+                              {}});
     }
     const IfcTriangles triangles = ifc_triangles(line, scale_);
     for (const auto& [a, b, c] : triangles.corners)

@@ -34,13 +34,15 @@ fs::path program_file(const std::string& name) {
 Program ifc_reader(const std::string& file) {
   const fs::path node = program_file("node");
   if (node.empty()) {
-    throw InputError(file, "IFC files need Node.js, which is not installed; run scripts/install_packages.sh of patchlight "
-                           "or install the package nodejs");
+    throw InputError(file,
+                     "IFC files need Node.js, which is not installed; run scripts/install_packages.sh of patchlight "
+                     "or install the package nodejs");
   }
   const fs::path script = shared_file("ifc/read_ifc.mjs");
   if (script.empty() || !fs::exists(script.parent_path() / "node_modules/web-ifc/web-ifc-node.wasm")) {
-    throw InputError(file, "IFC files need the package web-ifc, which is not installed; run "
-                           "scripts/install_packages.sh of patchlight");
+    throw InputError(file,
+                     "IFC files need the package web-ifc, which is not installed; run "
+                     "scripts/install_packages.sh of patchlight");
   }
   return {{node, script}, {node.parent_path().parent_path(), script.parent_path()}};
 }

@@ -25,8 +25,7 @@ class IfcFile {
     context_ = add("IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5," + origin_ + "," + direction + ")");
     const std::string units = add("IFCUNITASSIGNMENT((" + add(unit) + "))");
     const std::string project = add("IFCPROJECT('project',$,'p',$,$,$,$,(" + context_ + ")," + units + ")");
-    const std::string building =
-        add("IFCBUILDING('building',$,'b',$,$," + placement_ + ",$,$,.ELEMENT.,$,$,$)");
+    const std::string building = add("IFCBUILDING('building',$,'b',$,$," + placement_ + ",$,$,.ELEMENT.,$,$,$)");
     storey_ = add("IFCBUILDINGSTOREY('storey',$,'Level 1',$,$," + placement_ + ",$,$,.ELEMENT.,0.)");
     add("IFCRELAGGREGATES('r1',$,$,$," + project + ",(" + building + "))");
     add("IFCRELAGGREGATES('r2',$,$,$," + building + ",(" + storey_ + "))");
@@ -58,13 +57,20 @@ class IfcFile {
 
   std::string box(const Box& box, IfcWay way) {
     switch (way) {
-      case IfcWay::upward: return upward(box);
-      case IfcWay::across: return across(closed_profile(rectangle(box)), box.min().y(), box.sizes().y());
-      case IfcWay::brep: return brep(box);
-      case IfcWay::triangulated: return triangulated(box);
-      case IfcWay::polygonal: return polygonal(box);
-      case IfcWay::clipped: return clipped(box);
-      case IfcWay::mapped: return mapped(upward(box));
+      case IfcWay::upward:
+        return upward(box);
+      case IfcWay::across:
+        return across(closed_profile(rectangle(box)), box.min().y(), box.sizes().y());
+      case IfcWay::brep:
+        return brep(box);
+      case IfcWay::triangulated:
+        return triangulated(box);
+      case IfcWay::polygonal:
+        return polygonal(box);
+      case IfcWay::clipped:
+        return clipped(box);
+      case IfcWay::mapped:
+        return mapped(upward(box));
     }
     return {};
   }
@@ -90,9 +96,9 @@ class IfcFile {
   }
 
   void space(const std::string& name, const std::string& long_name, const std::string& body) {
-    const std::string number = add("IFCSPACE('" + identifier() + "',$,'" + name + "',$,$," + placement_ + "," +
-                                   shape(body) + "," + (long_name.empty() ? "$" : "'" + long_name + "'") +
-                                   ",.ELEMENT.,.INTERNAL.,$)");
+    const std::string number =
+        add("IFCSPACE('" + identifier() + "',$,'" + name + "',$,$," + placement_ + "," + shape(body) + "," +
+            (long_name.empty() ? "$" : "'" + long_name + "'") + ",.ELEMENT.,.INTERNAL.,$)");
     add("IFCRELAGGREGATES('" + identifier() + "',$,$,$," + storey_ + ",(" + number + "))");
   }
 
@@ -104,7 +110,9 @@ class IfcFile {
   }
 
   /// Gives a body a style.
-  void paint(const std::string& body, const std::string& style) { add("IFCSTYLEDITEM(" + body + ",(" + style + "),$)"); }
+  void paint(const std::string& body, const std::string& style) {
+    add("IFCSTYLEDITEM(" + body + ",(" + style + "),$)");
+  }
 
   /// Gives an element a material that has a style.
   void make_of(const std::string& element_number, const std::string& style) {
@@ -152,8 +160,8 @@ class IfcFile {
 
   std::string upward(const Box& box) {
     const Point middle = box.center();
-    const std::string profile = add("IFCRECTANGLEPROFILEDEF(.AREA.,$,$," + number(box.sizes().x()) + "," +
-                                    number(box.sizes().y()) + ")");
+    const std::string profile =
+        add("IFCRECTANGLEPROFILEDEF(.AREA.,$,$," + number(box.sizes().x()) + "," + number(box.sizes().y()) + ")");
     const std::string place =
         add("IFCAXIS2PLACEMENT3D(" + point(Point(middle.x(), middle.y(), box.min().z())) + ",$,$)");
     return add("IFCEXTRUDEDAREASOLID(" + profile + "," + place + "," + direction(0, 0, 1) + "," +
@@ -164,7 +172,8 @@ class IfcFile {
   static std::array<Point, 8> corners(const Box& box) {
     std::array<Point, 8> all;
     for (unsigned k = 0; k < 8; ++k)
-      for (unsigned axis = 0; axis < 3; ++axis) all[k][axis] = (k >> axis & 1U) != 0 ? box.max()[axis] : box.min()[axis];
+      for (unsigned axis = 0; axis < 3; ++axis)
+        all[k][axis] = (k >> axis & 1U) != 0 ? box.max()[axis] : box.min()[axis];
     return all;
   }
 
@@ -214,8 +223,9 @@ class IfcFile {
     Box high = box;
     high.max().z() += box.sizes().z();
     const std::string plane =
-        add("IFCPLANE(" + add("IFCAXIS2PLACEMENT3D(" + point(box.max()) + "," + direction(0, 0, 1) + "," +
-                              direction(1, 0, 0) + ")") + ")");
+        add("IFCPLANE(" +
+            add("IFCAXIS2PLACEMENT3D(" + point(box.max()) + "," + direction(0, 0, 1) + "," + direction(1, 0, 0) + ")") +
+            ")");
     return add("IFCBOOLEANCLIPPINGRESULT(.DIFFERENCE.," + upward(high) + "," +
                add("IFCHALFSPACESOLID(" + plane + ",.F.)") + ")");
   }
@@ -223,8 +233,7 @@ class IfcFile {
   std::string mapped(const std::string& body) {
     const std::string drawn = add("IFCSHAPEREPRESENTATION(" + context_ + ",'Body','SolidModel',(" + body + "))");
     const std::string map = add("IFCREPRESENTATIONMAP(" + origin_ + "," + drawn + ")");
-    const std::string target =
-        add("IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$," + point(Point(0, 0, 0)) + ",$,$)");
+    const std::string target = add("IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$," + point(Point(0, 0, 0)) + ",$,$)");
     return add("IFCMAPPEDITEM(" + map + "," + target + ")");
   }
 

@@ -126,9 +126,8 @@ TEST_F(Ifc, LengthsAreMetresWhateverTheUnit) {
   const std::string foot =
       "IFCCONVERSIONBASEDUNIT(#901,.LENGTHUNIT.,'FOOT',#902);\n#901=IFCDIMENSIONALEXPONENTS(1,0,0,0,0,0,0);\n"
       "#902=IFCMEASUREWITHUNIT(IFCLENGTHMEASURE(0.3048),#903);\n#903=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)";
-  const std::vector<std::pair<std::string, double>> units = {{"IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)", 1},
-                                                             {"IFCSIUNIT(*,.LENGTHUNIT.,.CENTI.,.METRE.)", 0.01},
-                                                             {foot, 0.3048}};
+  const std::vector<std::pair<std::string, double>> units = {
+      {"IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)", 1}, {"IFCSIUNIT(*,.LENGTHUNIT.,.CENTI.,.METRE.)", 0.01}, {foot, 0.3048}};
   for (const auto& [unit, metres] : units) {
     IfcFile file("IFC4", unit);
     file.element("IFCSLAB", "slab", file.box({Point(1, 2, 3), Point(9, 8, 4)}, IfcWay::brep));
@@ -144,9 +143,7 @@ TEST_F(Ifc, LengthsAreMetresWhateverTheUnit) {
 // Rooms have name and long name, with all letters, and the storey; their bodies are no faces.
 TEST_F(Ifc, SpacesAreRoomsWithLongNames) {
   IfcFile file;
-  const auto body = [&](double x) {
-    return file.box({Point(x, 0, 0), Point(x + 4000, 3000, 2500)}, IfcWay::upward);
-  };
+  const auto body = [&](double x) { return file.box({Point(x, 0, 0), Point(x + 4000, 3000, 2500)}, IfcWay::upward); };
   file.space("A102", "K\\X2\\00FC\\X0\\che", body(0));
   file.space("Hall", "", body(5000));
   file.space("Attic", "Attic", body(10000));
@@ -186,6 +183,26 @@ TEST_F(Ifc, StylesOfBodiesAndMaterialsAreFound) {
   EXPECT_TRUE((materials.at("default").reflectance == 0.5).all());
   EXPECT_TRUE((materials.at("glass").transmittance - 0.9).abs().maxCoeff() < 1e-12);
   EXPECT_EQ(materials.at("paint").transmittance.size(), 0);
+}
+
+// True north at 30 degrees from y towards x: a sun in the south at 45 degrees shines from there. A model that is turned
+// takes its north along, and a scene file may state another one.
+TEST_F(Ifc, AzimuthsAreFromTrueNorth) {
+  IfcFile file("IFC4", "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)", "(1.,1.7320508075688772)");
+  file.element("IFCSLAB", "slab", file.box({Point(1, 2, 3), Point(9, 8, 4)}, IfcWay::brep));
+  const std::filesystem::path written = write("slab.ifc", file.text());
+  ReadOptions options;
+  options.daylight.sun = DaylightSetting::SunPlace{.altitude = 45, .azimuth = 180};
+  options.daylight.sun_illuminance = 80'000;
+  const Vector to_sun(-std::sqrt(0.125), -std::sqrt(0.375), std::sqrt(0.5));
+  EXPECT_LT((read_scene(written, options).sun.value().direction - to_sun).norm(), 1e-6);
+  const Scene plain = read_scene(written);
+  EXPECT_LT((plain.north - Vector(0.5, std::sqrt(0.75), 0)).norm(), 1e-9);
+  EXPECT_TRUE(any_contains(plain.notes, "true north of the file"));
+  const std::string model = "[[model]]\nfile = \"slab.ifc\"\n";
+  const Scene turned = read_scene(write("turned.toml", model + "rotate = {axis = \"z\", degrees = 30}\n"));
+  EXPECT_LT((turned.north - Vector::UnitY()).norm(), 1e-9);
+  EXPECT_EQ(read_scene(write("stated.toml", "north = [1, 0, 0]\n" + model)).north, Vector::UnitX());
 }
 
 TEST_F(Ifc, ElementsWithoutFacesAreNamed) {

@@ -127,7 +127,8 @@ TEST(OutputIsolated, OpensNoConnectionsAndWritesNoFiles) {
   EXPECT_EQ(output("/usr/bin/python3 -c 'import socket; socket.socket()' 2>/dev/null || echo none"), "none\n");
   const std::string file = testing::TempDir() + "patchlight_isolated_test";
   std::ofstream(file) << "secret";
-  const std::string found = output("echo x 2>/dev/null >" + file + " || echo none; cat " + file + " 2>/dev/null; echo end");
+  const std::string found =
+      output("echo x 2>/dev/null >" + file + " || echo none; cat " + file + " 2>/dev/null; echo end");
   if (found == "x\nend\n") GTEST_SKIP() << "no Landlock";
   EXPECT_EQ(found, "none\nend\n");
   std::remove(file.c_str());
