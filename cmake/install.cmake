@@ -21,6 +21,15 @@ set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
 install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
 install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
 install(FILES ${PROJECT_BINARY_DIR}/patchlight.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+# The IFC reader's script with web-ifc, of which Node.js needs three files, for all that reads scenes.
+set(patchlight_ifc ${PROJECT_SOURCE_DIR}/src/input/ifc)
+set(patchlight_ifc_destination ${CMAKE_INSTALL_DATADIR}/patchlight/ifc)
+install(FILES ${patchlight_ifc}/read_ifc.mjs ${patchlight_ifc}/package.json DESTINATION ${patchlight_ifc_destination} COMPONENT tool)
+set(patchlight_web_ifc ${patchlight_ifc}/node_modules/web-ifc)
+install(FILES ${patchlight_web_ifc}/package.json ${patchlight_web_ifc}/web-ifc-api-node.js ${patchlight_web_ifc}/web-ifc-node.wasm
+        DESTINATION ${patchlight_ifc_destination}/node_modules/web-ifc COMPONENT tool OPTIONAL)
+install(FILES ${patchlight_web_ifc}/LICENSE.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight
+        RENAME web-ifc.copyright.md COMPONENT tool OPTIONAL)
 install(TARGETS patchlight_core patchlight_io EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
 install(EXPORT patchlightTargets NAMESPACE patchlight:: DESTINATION ${patchlight_config_folder} COMPONENT library)
@@ -58,9 +67,11 @@ set(CPACK_DEBIAN_TOOL_DESCRIPTION "The tool: it reads models of rooms and buildi
 between their patches, solves for the light that goes back and forth, by
 day too, and says how far each value may be off. Results are values for
 ParaView, pictures, pages for the browser, lightmaps and maps of sensors.")
+set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "nodejs (>= 18)")  # reads IFC files
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is linked with
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "patchlight")  # has the reader of IFC
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and what CMake needs to find it:
 scenes, form factors, solvers, error bars and what is seen of a solution.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
@@ -74,6 +85,6 @@ arrays, form factors as a scipy operator, the solvers one by one, reports
 and pages for the browser.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, patchlight")  # the latter has the reader of IFC
 endif()
 include(CPack)

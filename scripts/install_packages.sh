@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that patchlight is built and tested with; does nothing when all are there.
+# Installs the Debian packages that patchlight is built and tested with, and web-ifc, which reads IFC files in Node.js,
+# into src/input/ifc/node_modules; does nothing when all are there.
 # usage: scripts/install_packages.sh
 set -euo pipefail
 
@@ -10,21 +11,39 @@ packages=(
   libgtest-dev libbenchmark-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
 )
 
+# Node.js of any origin will do.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
+
+# install_debian PACKAGE...
+install_debian() {
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo: $*" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  echo "packages: installing $* (about 190 MB to download)"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+  echo "packages: done"
+}
+
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
   echo "packages: all present"
-  exit 0
+else
+  install_debian "${missing[@]}"
 fi
 
-as_root=()
-if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo: ${missing[*]}" >&2; exit 1; }
-  as_root=(sudo)
+# The lock file has the version of web-ifc and its hash, which npm checks. A copy of the lock file marks the end.
+ifc=$(cd "$(dirname "$0")/../src/input/ifc" && pwd)
+if cmp -s "$ifc/package-lock.json" "$ifc/node_modules/patchlight-lock.json"; then
+  echo "web-ifc: present"
+else
+  npm ci --prefix "$ifc" --ignore-scripts --no-audit --no-fund --prefer-offline --loglevel error
+  cp "$ifc/package-lock.json" "$ifc/node_modules/patchlight-lock.json"
+  echo "web-ifc: done"
 fi
-echo "packages: installing ${missing[*]} (about 190 MB to download)"
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
-echo "packages: done"

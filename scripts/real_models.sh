@@ -92,7 +92,7 @@ for name in "${names[@]}"; do
       rm -f "$out/duplex.toml"
       "$tool" new "$models/duplex-ifc/Duplex_A.ifc" -o "$out/duplex.toml" >/dev/null
       files=("$out/duplex.toml")
-      options=(--view A102 --points-output "$out/duplex.csv")
+      options=(--view "A102 Living Room" --points-output "$out/duplex.csv")
       ;;
     honeybee)
       files=("$models/honeybee-rooms/model_radiance_grid_views.hbjson")

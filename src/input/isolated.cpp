@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/confined.h"
 #include "input/scene_bytes.h"
 
 #include <array>
@@ -14,11 +15,13 @@
 #include <fstream>
 #include <new>
 #include <string_view>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -57,7 +60,7 @@ void prepare_child(const std::string& file, const ChildLimits& limits) {
   const rlimit no_core_dump = {0, 0};
   setrlimit(RLIMIT_CORE, &no_core_dump);
   limit_memory(file, limits.bytes);
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
 }
@@ -84,13 +87,14 @@ bool write_all(int pipe, std::string_view bytes) {
   return true;
 }
 
-std::string read_all(int pipe) {
+// Ends after `most` bytes: who reads from a child keeps to the child's limit of memory.
+std::string read_all(int pipe, std::uint64_t most) {
   std::string bytes;
   std::array<char, 65536> block{};
   while (true) {
     const ssize_t count = ::read(pipe, block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return bytes;
+    if (count <= 0 || bytes.size() + static_cast<std::size_t>(count) > most) return bytes;
     bytes.append(block.data(), static_cast<std::size_t>(count));
   }
 }
@@ -110,9 +114,13 @@ std::string how_it_ended(int status) {
   return std::string("the reader of this format crashed (") + strsignal(WTERMSIG(status)) + ")";
 }
 
-Scene scene_from(const std::string& message, int status, const std::string& file) {
+void require_good_end(const std::string& message, int status, const std::string& file) {
   const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !message.empty();
-  if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it anew");
+  if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it again");
+}
+
+Scene scene_from(const std::string& message, int status, const std::string& file) {
+  require_good_end(message, status, file);
   const std::string_view content = std::string_view(message).substr(1);
   if (message[0] == sends_scene) {
     try {
@@ -126,25 +134,80 @@ Scene scene_from(const std::string& message, int status, const std::string& file
     const std::string place = file + ": ";
     throw InputError(file, std::string(content.starts_with(place) ? content.substr(place.size()) : content));
   }
-  throw InputError(file, "cannot be read: " + std::string(content) + "; export it anew");
+  throw InputError(file, "cannot be read: " + std::string(content) + "; export it again");
 }
 
-}  // namespace
+// A file in memory with the text, to be read from its beginning.
+int file_with(const std::string& text) {
+  const int file = memfd_create("patchlight", MFD_CLOEXEC);
+  if (file < 0 || !write_all(file, text) || lseek(file, 0, SEEK_SET) != 0) {
+    throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  return file;
+}
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits) {
+// What a child sent through a pipe, and how it ended.
+struct Sent {
+  std::string message;
+  int status = 0;
+};
+
+// What a child sends that calls `run` with its end of a pipe and then ends.
+Sent sent_by_child(const std::function<int(int)>& run, std::uint64_t most_bytes) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t child = fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (child == 0) {
     ::close(ends[0]);
-    prepare_child(file, limits);
-    _exit(write_all(ends[1], message_from(read)) ? 0 : 1);
+    _exit(run(ends[1]));
   }
   ::close(ends[1]);
-  const std::string message = read_all(ends[0]);
+  std::string message = read_all(ends[0], most_bytes);
   ::close(ends[0]);
-  return scene_from(message, wait_for(child), file);
+  return {std::move(message), wait_for(child)};
+}
+
+// The folders that programs of the system need.
+std::vector<std::filesystem::path> readable_folders(const Program& program) {
+  std::vector<std::filesystem::path> folders = {"/usr", "/bin", "/lib", "/lib64", "/etc", "/proc", "/sys", "/dev"};
+  folders.insert(folders.end(), program.readable.begin(), program.readable.end());
+  return folders;
+}
+
+}  // namespace
+
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits) {
+  const Sent sent = sent_by_child(
+      [&](int pipe) {
+        prepare_child(file, limits);
+        return write_all(pipe, message_from(read)) ? 0 : 1;
+      },
+      ~std::uint64_t{0});
+  return scene_from(sent.message, sent.status, file);
+}
+
+std::string output_isolated(const std::string& file, const Program& program, const std::string& input,
+                            const ChildLimits& limits) {
+  std::vector<char*> words;
+  for (const std::string& word : program.command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  const std::vector<std::filesystem::path> readable = readable_folders(program);
+  const int text = file_with(input);
+  char* const no_environment[] = {nullptr};
+  const Sent sent = sent_by_child(
+      [&](int pipe) {
+        prepare_child(file, limits);
+        dup2(text, STDIN_FILENO);
+        dup2(pipe, STDOUT_FILENO);
+        confine_process(readable);
+        execve(words[0], words.data(), no_environment);
+        return 1;
+      },
+      limits.bytes);
+  ::close(text);
+  require_good_end(sent.message, sent.status, file);
+  return sent.message;
 }
 
 }  // namespace patchlight

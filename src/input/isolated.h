@@ -3,8 +3,10 @@
 #include "patchlight/scene/scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -19,5 +21,17 @@ struct ChildLimits {
 /// only the child ends. \throws InputError as `read` does, and naming `file` when the child crashed, threw anything
 /// else or exceeded a limit.
 Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits = {});
+
+/// A program that runs in a child process, without any environment variables.
+struct Program {
+  std::vector<std::string> command;             ///< its file and its arguments
+  std::vector<std::filesystem::path> readable;  ///< folders that it reads, besides those of the system
+};
+
+/// The standard output of a program that reads `input` from its standard input, under the same limits. It opens no
+/// connections, writes no files and reads no other folders. \throws InputError naming `file` when the program fails,
+/// writes nothing or exceeds a limit.
+std::string output_isolated(const std::string& file, const Program& program, const std::string& input,
+                            const ChildLimits& limits = {});
 
 }  // namespace patchlight

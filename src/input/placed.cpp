@@ -25,6 +25,7 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
     turn(luminaire.aim);
     turn(luminaire.zero_plane);
   }
+  turn(scene.north);
   if (scene.sun) turn(scene.sun->direction);
   // L x + o = L A^-1 (x' - t) + o for x' = A x + t.
   const Eigen::Matrix3d back = placement.linear().inverse();

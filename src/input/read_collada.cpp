@@ -24,11 +24,7 @@ Vector up_axis(const std::string& text) {
 
 Scene read_collada(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   const std::string bytes = read_text(file, file.string(), "the model file");
-  AssimpFormat format;
-  format.extension = "dae";
-  format.has_pictures = true;
-  Scene scene =
-      read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), format, metres_per_unit); });
+  Scene scene = read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), metres_per_unit); });
   // These are decoded in a process of their own: one on which that crashes leaves the model as it is.
   scene = with_decoded_pictures(std::move(scene), bytes, confine);
   scene.up = up_axis(bytes);

@@ -1,48 +1,59 @@
 #include "input/read_ifc.h"
 
+#include "patchlight/base/error.h"
+
 #include "files/sha256.h"
-#include "input/assimp_scene.h"
-#include "input/ifc_voids.h"
+#include "input/ifc_stream.h"
 #include "input/isolated.h"
-#include "input/materials.h"
+#include "input/share_folder.h"
 #include "input/text.h"
 
-#include <cmath>
-#include <numbers>
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+#include <unistd.h>
 
 namespace patchlight {
 namespace {
 
-// assimp turns z up into y up by -90 degrees about x, rounded to single precision; this is the way back, with the same
-// rounding.
-Eigen::Matrix3d back_to_z_up() {
-  const float angle = std::numbers::pi_v<float> / 2;
-  const double cosine = std::cos(angle);
-  const double sine = std::sin(angle);
-  Eigen::Matrix3d turn;
-  turn << 1, 0, 0, 0, cosine, -sine, 0, sine, cosine;
-  return turn;
+namespace fs = std::filesystem;
+
+// The file of a program that PATH finds; empty when there is none.
+fs::path program_file(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    std::error_code error;
+    const fs::path file = fs::canonical(fs::path(folder) / name, error);
+    if (!error && fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0) return file;
+  }
+  return {};
 }
 
-std::string note_on_voids(std::size_t profiles) {
-  return std::to_string(profiles) + (profiles == 1 ? " profile has" : " profiles have") +
-         " voids that are no polygons within it, which are not cut: frames made of them are read as boards";
+// Node.js with the script that reads IFC by web-ifc, a package beside the script.
+Program ifc_reader(const std::string& file) {
+  const fs::path node = program_file("node");
+  if (node.empty()) {
+    throw InputError(file,
+                     "IFC files need Node.js, which is not installed; run scripts/install_packages.sh of patchlight "
+                     "or install the package nodejs");
+  }
+  const fs::path script = shared_file("ifc/read_ifc.mjs");
+  if (script.empty() || !fs::exists(script.parent_path() / "node_modules/web-ifc/web-ifc-node.wasm")) {
+    throw InputError(file,
+                     "IFC files need the package web-ifc, which is not installed; run "
+                     "scripts/install_packages.sh of patchlight");
+  }
+  return {{node, script}, {node.parent_path().parent_path(), script.parent_path()}};
 }
 
 }  // namespace
 
-Scene read_ifc(const std::filesystem::path& file, double metres_per_unit) {
+Scene read_ifc(const fs::path& file, double metres_per_unit) {
   const std::string bytes = read_text(file, file.string(), "the model file");
-  AssimpFormat format;
-  format.extension = "ifc";
-  format.turn = back_to_z_up();
-  Scene scene = read_isolated(file.string(), [&] {
-    const JoinedVoids joined = with_joined_voids(bytes);
-    format.has_seams = joined.joined > 0;
-    Scene read = with_used_materials(assimp_scene(joined.text, file.string(), format, metres_per_unit));
-    if (joined.left > 0) read.notes.push_back(note_on_voids(joined.left));
-    return read;
-  });
+  const std::string lines = output_isolated(file.string(), ifc_reader(file.string()), bytes);
+  Scene scene = scene_of_ifc_stream(lines, file.string(), metres_per_unit);
+  scene.metres_per_unit = metres_per_unit;
   scene.up = Vector::UnitZ();
   scene.up_stated = true;
   scene.sha256 = sha256({&bytes, 1});

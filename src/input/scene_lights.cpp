@@ -24,9 +24,10 @@ Vector across(const Vector& direction, const Vector& axis) {
   return part.norm() > along ? part.normalized() : Vector(Vector::Zero());
 }
 
-// The default: y where z is up, -z where y is.
+// The default: that of the model file, else y where z is up, -z where y is.
 Vector north_of(const Scene& scene, const LightEntries& lights) {
-  const Vector given = lights.north.value_or(std::abs(scene.up.y()) > 0.5 ? Vector(0, 0, -1) : Vector(0, 1, 0));
+  const Vector usual = std::abs(scene.up.y()) > 0.5 ? Vector(0, 0, -1) : Vector(0, 1, 0);
+  const Vector given = lights.north.value_or(scene.north_stated ? scene.north : usual);
   Vector north = across(given, scene.up);
   if (north.isZero()) throw InputError(lights.where, "north points up or down; expected a level direction [x, y, z]");
   return north;

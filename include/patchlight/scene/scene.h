@@ -121,6 +121,7 @@ struct Scene {
   Vector up = Vector::UnitZ();
   bool up_stated = false;          ///< the model file or who reads it says which way is up
   Vector north = Vector::UnitY();  ///< unit, at right angles to up
+  bool north_stated = false;       ///< by the model file
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;
   std::optional<Sky> sky;

@@ -63,7 +63,7 @@ TEST_F(Rooms, AreNamedByTheModelAndNoFacesOfIt) {
   ASSERT_EQ(scene.rooms.size(), 2U);
   EXPECT_EQ(scene.rooms[0].name, "Living");
   EXPECT_EQ(scene.rooms[1].name, "Kitchen");
-  EXPECT_EQ(scene.rooms[1].storey, "Level1");
+  EXPECT_EQ(scene.rooms[1].storey, "Level 1");
   Box body;
   for (const auto& face : scene.rooms[1].faces)
     for (const Point& corner : face) body.extend(corner);

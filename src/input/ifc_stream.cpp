@@ -1,0 +1,154 @@
+#include "input/ifc_stream.h"
+
+#include "patchlight/base/error.h"
+
+#include "base/rounded.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/stated_panes.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using IfcJson = nlohmann::json;
+
+struct IfcTriangles {
+  std::vector<Point> points;  // metres
+  std::vector<std::array<std::uint32_t, 3>> corners;
+};
+
+IfcTriangles ifc_triangles(const IfcJson& line, double scale) {
+  const auto coordinates = line.at("points").get<std::vector<double>>();
+  const auto numbers = line.at("triangles").get<std::vector<std::uint32_t>>();
+  if (coordinates.size() % 3 != 0 || numbers.size() % 3 != 0) throw std::out_of_range("a triangle is not complete");
+  IfcTriangles read;
+  for (std::size_t k = 0; k < coordinates.size(); k += 3)
+    read.points.push_back(scale * Point(coordinates[k], coordinates[k + 1], coordinates[k + 2]));
+  for (const std::uint32_t number : numbers)
+    if (number >= read.points.size()) throw std::out_of_range("a triangle names a point that is not there");
+  for (std::size_t k = 0; k < numbers.size(); k += 3)
+    read.corners.push_back({numbers[k], numbers[k + 1], numbers[k + 2]});
+  return read;
+}
+
+Material ifc_material(const IfcJson& line) {
+  const IfcJson& color = line.at("color");
+  if (color.is_null()) return default_material();
+  const auto parts = color.get<std::array<double, 3>>();
+  Material material{line.at("material").get<std::string>(), rgb(parts[0], parts[1], parts[2]), rgb(0, 0, 0)};
+  const double transparency = line.at("transparency").get<double>();
+  if (!(transparency > 0)) return material;
+  return as_pane(std::move(material), Spectrum::Constant(3, transparency), usual_index,
+                 "opacity " + rounded(1 - transparency));
+}
+
+// "A102 Living room": numbers alone say little, and names come more than once.
+std::string room_name(const std::string& name, const std::string& long_name) {
+  if (name.empty() || long_name.empty() || name == long_name) return name.empty() ? long_name : name;
+  return name + " " + long_name;
+}
+
+// Collects what the lines say.
+class IfcScene {
+ public:
+  IfcScene(const std::string& file, double scale) : scale_(scale) { scene_.file = file; }
+
+  void add(const IfcJson& line) {
+    if (line.contains("refusal")) throw InputError(scene_.file, line.at("refusal").get<std::string>());
+    if (line.contains("material")) {
+      if (line.contains("element")) {
+        add_element(line);
+      } else {
+        scene_.materials.push_back(ifc_material(line));
+      }
+    }
+    if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
+    if (line.contains("space")) add_space(line);
+    if (line.contains("without_faces"))
+      left_out_.add("elements whose shapes give no faces are left out", line.at("without_faces").get<std::string>());
+    if (line.contains("end")) is_complete_ = true;
+  }
+
+  Scene scene() && {
+    if (!is_complete_) throw std::runtime_error("its end is missing");
+    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    return with_used_materials(std::move(scene_));
+  }
+
+ private:
+  void set_north(const std::array<double, 2>& direction) {
+    const Vector north(direction[0], direction[1], 0);
+    if (!(north.norm() > 0)) return;
+    scene_.north = north.normalized();
+    scene_.north_stated = true;
+    if (scene_.north.y() < 1)
+      scene_.notes.push_back("true north of the file: [" + rounded(scene_.north.x()) + ", " +
+                             rounded(scene_.north.y()) + ", 0]; the key north of a scene file overrules it");
+  }
+
+  void add_element(const IfcJson& line) {
+    const auto name = line.at("element").get<std::string>();
+    const auto [group, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
+    if (is_new) scene_.groups.push_back(name);
+    Polygon polygon;
+    polygon.group = group->second;
+    polygon.material = line.at("material").get<MaterialIndex>();
+    if (polygon.material >= scene_.materials.size()) throw std::out_of_range("a material is not there");
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    const IfcTriangles triangles = ifc_triangles(line, scale_);
+    scene_.vertices.insert(scene_.vertices.end(), triangles.points.begin(), triangles.points.end());
+    for (const auto& [a, b, c] : triangles.corners) {
+      polygon.corners = {first + a, first + b, first + c};
+      scene_.polygons.push_back(polygon);
+    }
+  }
+
+  // A space is air: its body gives the place of a room. A space may have several lines.
+  void add_space(const IfcJson& line) {
+    const auto [room, is_new] = rooms_.emplace(line.at("id").get<std::uint64_t>(), scene_.rooms.size());
+    if (is_new) {
+      scene_.rooms.push_back({room_name(line.at("space").get<std::string>(), line.at("long_name").get<std::string>()),
+                              line.at("storey").get<std::string>(),
+                              {}});
+    }
+    const IfcTriangles triangles = ifc_triangles(line, scale_);
+    for (const auto& [a, b, c] : triangles.corners)
+      scene_.rooms[room->second].faces.push_back({triangles.points[a], triangles.points[b], triangles.points[c]});
+  }
+
+  Scene scene_;
+  double scale_;
+  LeftOut left_out_;
+  std::map<std::string, std::uint32_t> groups_;
+  std::map<std::uint64_t, std::size_t> rooms_;
+  bool is_complete_ = false;
+};
+
+}  // namespace
+
+Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, double scale) {
+  IfcScene read(file, scale);
+  try {
+    while (!lines.empty()) {
+      const std::size_t end = std::min(lines.find('\n'), lines.size());
+      read.add(IfcJson::parse(lines.substr(0, end)));
+      lines.remove_prefix(std::min(end + 1, lines.size()));
+    }
+    return std::move(read).scene();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(file, std::string("what the reader of this format wrote is damaged: ") + error.what() +
+                               "; export the file again");
+  }
+}
+
+}  // namespace patchlight
