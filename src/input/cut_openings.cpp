@@ -110,8 +110,8 @@ class ShapeCutter {
     GEOSCoordSequence* corners =
         GEOSCoordSeq_copyFromBuffer_r(geos_.context, values.data(), static_cast<unsigned>(ring.size() + 1), 0, 0);
     GEOSGeometry* closed = corners == nullptr ? nullptr : GEOSGeom_createLinearRing_r(geos_.context, corners);
-    const Shape polygon = owned(
-        closed == nullptr ? nullptr : GEOSGeom_createPolygon_r(geos_.context, closed, nullptr, 0));
+    const Shape polygon =
+        owned(closed == nullptr ? nullptr : GEOSGeom_createPolygon_r(geos_.context, closed, nullptr, 0));
     if (!polygon) return owned(nullptr);
     return owned(GEOSMakeValid_r(geos_.context, polygon.get()));
   }
@@ -130,8 +130,9 @@ class ShapeCutter {
   }
 
   Shape within(const GEOSGeometry* shape, const Eigen::AlignedBox2d& box) const {
-    const Shape frame = inside({box.corner(Eigen::AlignedBox2d::BottomLeft), box.corner(Eigen::AlignedBox2d::BottomRight),
-                                box.corner(Eigen::AlignedBox2d::TopRight), box.corner(Eigen::AlignedBox2d::TopLeft)});
+    const Shape frame =
+        inside({box.corner(Eigen::AlignedBox2d::BottomLeft), box.corner(Eigen::AlignedBox2d::BottomRight),
+                box.corner(Eigen::AlignedBox2d::TopRight), box.corner(Eigen::AlignedBox2d::TopLeft)});
     return owned(frame ? GEOSIntersection_r(geos_.context, shape, frame.get()) : nullptr);
   }
 

@@ -81,10 +81,10 @@ Scene with_mitsuba_emitter(Scene scene, const MitsubaFile& file, const pugi::xml
     return scene;
   }
   const bool is_sky = kind == "envmap" || kind == "sky" || kind == "sunsky" || kind == "sun" || kind == "constant";
-  const char* const remedy = is_sky ? ": give the scene a sky by --sky, e.g. --sky overcast:10000lx, a sun by --sun" : "";
-  scene.problems.push_back({ProblemKind::left_out, 1,
-                            "the emitter " + kind + " (" + file.place(emitter) + ") is left out" + remedy,
-                            {}});
+  const char* const remedy =
+      is_sky ? ": give the scene a sky by --sky, e.g. --sky overcast:10000lx, a sun by --sun" : "";
+  scene.problems.push_back(
+      {ProblemKind::left_out, 1, "the emitter " + kind + " (" + file.place(emitter) + ") is left out" + remedy, {}});
   return scene;
 }
 

@@ -54,8 +54,9 @@ class HoneybeeScene {
   HoneybeeScene(const HbJson& model, const std::string& file, double metres)
       : modifiers_(radiance_of(model)), metres_(metres) {
     scene_.file = file;
-    report_unread(model, "models",
-                  {"rooms", "orphaned_faces", "orphaned_apertures", "orphaned_doors", "orphaned_shades", "shade_meshes"});
+    report_unread(
+        model, "models",
+        {"rooms", "orphaned_faces", "orphaned_apertures", "orphaned_doors", "orphaned_shades", "shade_meshes"});
     report_unread(radiance_of(model), "radiance properties", {"modifiers", "modifier_sets", "sensor_grids", "views"});
     for (const HbJson& room : list_of(model, "rooms")) add_room(room);
     for (const HbJson& face : list_of(model, "orphaned_faces")) add_face(face, "");

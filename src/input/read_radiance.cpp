@@ -162,7 +162,7 @@ class RadianceReader {
     if (primitive.words.empty()) throw InputError(where, primitive.kind + " " + primitive.name + " names no file");
     if (fs::path(primitive.words[0]).extension() != ".rad") {
       left_out_.lose("left out, of the kind " + primitive.kind + ", whose octrees and meshes cannot be read",
-                    frame.prefix + primitive.name);
+                     frame.prefix + primitive.name);
       return;
     }
     RadianceXform xform = xform_of(std::span(primitive.words).subspan(1), file, where);

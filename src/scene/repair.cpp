@@ -171,9 +171,9 @@ Scene make_simple(Scene scene) {
                        "with corners that do not lie in one plane; cut into triangles");
   scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
                        "with an outline that crosses itself; cut at the crossings, all parts facing one way");
-  return with_problem(std::move(scene), ProblemKind::left_out, std::move(lost),
-                      "with an outline that crosses itself, without a clear area; left out, of the object" +
-                          first_names(lost_objects));
+  return with_problem(
+      std::move(scene), ProblemKind::left_out, std::move(lost),
+      "with an outline that crosses itself, without a clear area; left out, of the object" + first_names(lost_objects));
 }
 
 std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {

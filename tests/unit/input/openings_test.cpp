@@ -201,9 +201,9 @@ TEST_F(Openings, AShadeMeshIsTheShadeOfItsOutline) {
 }
 
 TEST_F(Openings, ShadesOfOrphanedOpeningsAreRead) {
-  const Scene scene = read_scene(write(
-      "shade.hbjson",
-      with_floor(R"(, "orphaned_apertures": [{"type": "Aperture", "identifier": "pane", "geometry": {"boundary":
+  const Scene scene = read_scene(
+      write("shade.hbjson",
+            with_floor(R"(, "orphaned_apertures": [{"type": "Aperture", "identifier": "pane", "geometry": {"boundary":
         [[0,-1,0],[4,-1,0],[4,-1,3]]}, "outdoor_shades": [{"type": "Shade", "identifier": "awning", "geometry":
         {"boundary": [[0,-2,3],[4,-2,3],[4,-1,3],[0,-1,3]]}}]}])")));
   EXPECT_NEAR(area_of(scene, "awning"), 4, 1e-12);
@@ -216,10 +216,10 @@ TEST_F(Openings, LossesAreNamed) {
   for (const char* const name : {"'fixtures' of models", "lamp 7", "(line)", "(ball)"})
     EXPECT_TRUE(loss(lists, name)) << name;
   EXPECT_FALSE(loss(read_scene(write("whole.hbjson", with_floor(""))), ""));
-  const Scene surfaces = read_scene(write(
-      "house.xml", "<gbXML><Campus id=\"c\"><Surface surfaceType=\"Roof\" id=\"roof\"/><Surface "
-                   "surfaceType=\"ExteriorWall\" id=\"wall\">" +
-                       loop_of(rectangle(0, 0, 4, 3)) + "</Surface></Campus></gbXML>"));
+  const Scene surfaces = read_scene(write("house.xml",
+                                          "<gbXML><Campus id=\"c\"><Surface surfaceType=\"Roof\" id=\"roof\"/><Surface "
+                                          "surfaceType=\"ExteriorWall\" id=\"wall\">" +
+                                              loop_of(rectangle(0, 0, 4, 3)) + "</Surface></Campus></gbXML>"));
   EXPECT_TRUE(loss(surfaces, "(roof)"));
 }
 
@@ -259,13 +259,14 @@ TEST_F(Openings, SpotsOfMitsubaAreLuminaires) {
                                  "<transform name=\"to_world\"><lookat origin=\"1 2 3\" target=\"1 2 0\" up=\"0 1 "
                                  "0\"/></transform></emitter></scene>");
   };
-  const Scene read = read_scene(scene("<rgb name=\"intensity\" value=\"5\"/><float name=\"cutoff_angle\" value=\"40\"/>"));
+  const Scene read =
+      read_scene(scene("<rgb name=\"intensity\" value=\"5\"/><float name=\"cutoff_angle\" value=\"40\"/>"));
   ASSERT_EQ(read.luminaires.size(), 1U);
   EXPECT_LT((read.luminaires[0].position - Point(1, 2, 3)).norm(), 1e-12);
   EXPECT_LT((read.luminaires[0].aim + Vector::UnitZ()).norm(), 1e-12);
   const auto& spot = std::get<SpotLight>(read.luminaires[0].light);
   EXPECT_EQ(spot.intensity[0], 5);
-  EXPECT_NEAR(spot.beam_half_angle, 35, 1e-12);   // half way from 30 to 40 degrees
+  EXPECT_NEAR(spot.beam_half_angle, 35, 1e-12);  // half way from 30 to 40 degrees
   EXPECT_NEAR(spot.field_half_angle, 39, 1e-12);
   EXPECT_NE(refusal(scene("<float name=\"cutoff_angle\" value=\"100\"/>")).find("spot.xml:2: found a spot"),
             std::string::npos);
