@@ -7,6 +7,7 @@
 #include "input/gltf_model.h"
 #include "input/gltf_texture.h"
 #include "input/isolated.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/texture_maps.h"
 
@@ -201,11 +202,17 @@ std::vector<int> top_nodes(const tinygltf::Model& model) {
 
 std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
   std::vector<std::string> notes;
-  if (!model.lights.empty()) notes.emplace_back("point, spot and directional lights are ignored: only surfaces emit");
   if (!model.animations.empty() || !model.skins.empty()) {
     notes.emplace_back("animations and skins are ignored: the model is taken as it stands");
   }
   return notes;
+}
+
+std::vector<Problem> lost_lights(const tinygltf::Model& model) {
+  LeftOut lost;
+  for (const tinygltf::Light& light : model.lights)
+    lost.lose("lights without a surface, which are not read from glTF, left out", light.type + " light " + light.name);
+  return lost.problems();
 }
 
 Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
@@ -217,6 +224,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.inputs = gltf.files.names;
   scene.materials = gltf_materials(gltf);
   scene.notes = notes_on_model(gltf.model);
+  scene.problems = lost_lights(gltf.model);
 
   // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
