@@ -102,8 +102,8 @@ ExitCode compare(const CompareArguments& arguments) {
   write_comparison(arguments.output, scene, comparison, provenance, observer);
   if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();
+  print_notes(scene, notes(scene, simulation), arguments.quiet);
   if (!arguments.quiet) {
-    for (const std::string& note : notes(scene, simulation)) print_message("note", note);
     std::cout << table(comparison) << facts(scene, comparison) << files_line({arguments.output, arguments.page})
               << std::flush;
   }

@@ -101,7 +101,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   add_stored_options(command, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
-  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and a summary");
+  command.add_flag("-q,--quiet", to.quiet, "prints errors and warnings only; default: progress and a summary");
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 #include "output/whole_file.h"
 
 #include <algorithm>
@@ -132,9 +133,9 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   // 2. Find the form factors and write them
   const Written written = arguments.request.assembly.storage == Storage::rays ? write_rays(arguments, scene, observer)
                                                                               : write_pairs(arguments, scene, observer);
-  if (arguments.quiet) return good;
   line.hide();
-  for (const std::string& note : written.notes) print_message("note", note);
+  print_notes(scene, written.notes, arguments.quiet);
+  if (arguments.quiet) return good;
   std::cout << written.summary << "wrote " << shown_name(arguments.output.string()) << std::endl;
   return good;
 }

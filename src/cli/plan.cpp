@@ -6,6 +6,7 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
+#include "cli/summary.h"
 #include "mesh/nested_mesh.h"
 #include "output/whole_file.h"
 #include "output/write_plan.h"
@@ -91,9 +92,7 @@ ExitCode plan(const PlanArguments& arguments) {
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
-  for (const auto* notes : {&scene.notes, &plan.sides.notes, &plan.notes}) {
-    for (const std::string& note : *notes) print_message("note", note);
-  }
+  for (const auto* notes : {&scene.notes, &plan.sides.notes, &plan.notes}) print_notes(scene, *notes, false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"

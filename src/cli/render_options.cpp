@@ -75,7 +75,7 @@ std::shared_ptr<RenderOptionsGiven> add_render(CLI::App& tool) {
   command.option_defaults()->group("The run");
   add(command, "--threads", "N", "number of threads; default 0: one per processor",
       [&to](const std::string& text) { to.threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
-  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the files");
+  command.add_flag("-q,--quiet", to.quiet, "prints errors and warnings only; default: progress and the files");
   return options;
 }
 

@@ -187,7 +187,7 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
   command.add_flag(
       "--discard", options.discards,
       "Ctrl-C writes nothing; default: what is there, once a\nmesh is solved or an iterate of the first is");
-  command.add_flag("-q,--quiet", options.quiet, "says nothing but errors; default: progress and a summary");
+  command.add_flag("-q,--quiet", options.quiet, "prints errors and warnings only; default: progress and a summary");
   command.add_flag("-v,--verbose", options.verbose, "adds decisions, counts and speed to the summary; default: off");
 }
 

@@ -352,14 +352,13 @@ ExitCode solve(const SolveArguments& arguments) {
   const std::vector<std::filesystem::path> written = write(arguments, results);
   if (!results.report.solution.unfinished) checkpoint.remove();
 
+  if (const std::string note = checkpoint.note(); !note.empty() && !quiet) print_message("note", note);
+  print_notes(results.scene, notes(results.scene, results.simulation), quiet);
+  for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
+  if (results.views.picture) {
+    if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
+  }
   if (!quiet) {
-    if (const std::string note = checkpoint.note(); !note.empty()) print_message("note", note);
-    for (const std::string& note : notes(results.scene, results.simulation)) print_message("note", note);
-    for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
-    if (results.views.picture) {
-      if (const auto missed = missed_error(arguments.picture, *results.views.picture))
-        print_message("warning", *missed);
-    }
     std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
                          how_to_know_errors(arguments, results.report.solution.unfinished));
     if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);

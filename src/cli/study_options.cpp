@@ -60,7 +60,7 @@ std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
   command.option_defaults()->group("The run");
-  command.add_flag("-q,--quiet", to.quiet, "says nothing but errors; default: progress and the table");
+  command.add_flag("-q,--quiet", to.quiet, "prints errors and warnings only; default: progress and the table");
   return options;
 }
 

@@ -232,6 +232,15 @@ std::vector<std::string> notes(const Scene& scene, const Simulation& simulation)
   return all;
 }
 
+void print_notes(const Scene& scene, const std::vector<std::string>& notes, bool quiet) {
+  for (const std::string& note : notes) {
+    const bool is_loss = std::any_of(scene.problems.begin(), scene.problems.end(), [&](const Problem& problem) {
+      return problem.kind == ProblemKind::left_out && problem.what == note;
+    });
+    if (is_loss || !quiet) print_message(is_loss ? "warning" : "note", note);
+  }
+}
+
 // An axis that was guessed: the model's floors may be walls.
 std::string upright(const SceneFacts& scene) {
   if (scene.up_stated) return "";

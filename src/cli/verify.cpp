@@ -248,8 +248,8 @@ void tell(const VerifyArguments& arguments, const Scene& scene, const Simulation
           const Verification& verification, double seconds) {
   const std::string said =
       verdict(verification, bars(arguments.bar, simulation), close_lamps(scene, simulation, verification.verdict));
+  print_notes(scene, notes(scene, simulation), arguments.quiet);
   if (!arguments.quiet) {
-    for (const std::string& note : notes(scene, simulation)) print_message("note", note);
     std::cout << answer(scene, simulation, verification, said, seconds) << std::flush;
   } else if (verification.verdict != Verdict::agrees) {
     print_message("warning", said);

@@ -9,17 +9,17 @@ namespace patchlight {
 
 /// An outline with openings cut out of it.
 struct CutOutline {
-  std::vector<Point> corners;  ///< with seams to the openings within; empty when these take all of it
-  std::size_t uncut = 0;       ///< openings that are neither within the outline nor along its edges
+  std::vector<std::vector<Point>> parts;  ///< simple polygons without holes; none when the openings take all of it
+  std::size_t beyond = 0;                 ///< openings that reach beyond the outline
+  bool is_cut = true;                     ///< false when the outline stays whole because no area can be computed
 };
 
-/// The plane outline without its openings, in either direction each, which lie in its plane but for little. Those along
-/// its edges, as doors, become notches, those within are joined by seams. What is within `tolerance` of an edge is on
-/// it.
+/// The plane outline without its openings. Openings may run in either direction, overlap, touch each other and touch
+/// the outline; they are laid into its plane. A corner within `tolerance` of an edge of the outline is on it. The parts
+/// turn the way of the outline, keep its corners and those of the openings bit by bit, and share their edges. Without
+/// openings the outline is the only part. O(n log n) for n corners, and the outline's corners times those of the
+/// openings.
 CutOutline without_openings(const std::vector<Point>& outline, const std::vector<std::vector<Point>>& openings,
                             double tolerance);
-
-/// The outline with rings as holes in it, joined by seams; empty where they cannot be joined.
-std::vector<Point> joined_outline(const std::vector<std::vector<Point>>& rings);
 
 }  // namespace patchlight

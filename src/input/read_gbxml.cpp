@@ -52,6 +52,7 @@ class GbxmlReader {
          note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
       scene_.notes.push_back(std::move(note));
     for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
     return std::move(scene_);
   }
 
@@ -98,37 +99,41 @@ class GbxmlReader {
       if (openings.back().size() < 3) openings.pop_back();
     }
     if (kind == "Air") return left_out_.add("surfaces of air are open, left out", name);
-    if (outline.size() < 3) return left_out_.add("surfaces without a PolyLoop of three corners, left out", name);
+    if (outline.size() < 3) return left_out_.lose("surfaces without a PolyLoop of three corners, left out", name);
     const CutOutline cut = without_openings(outline, openings, tolerance());
-    if (cut.uncut > 0) left_out_.add("surfaces whose openings are not within them, which are not cut", name);
+    if (cut.beyond > 0) left_out_.add("surfaces with openings that reach beyond them, cut within the surface", name);
+    if (!cut.is_cut) left_out_.add("surfaces without a clear area, whose openings are not cut", name);
     const GbxmlSides sides = materials_.surface(kind.empty() ? "Surface" : kind, area_vector(outline));
-    if (!cut.corners.empty()) add_polygon(surface, name, cut.corners, sides);
+    if (!cut.parts.empty()) add_polygons(surface, name, cut.parts, sides);
   }
 
   // An opening that is air is a hole.
   void add_opening(const pugi::xml_node& opening, const std::vector<Point>& outline) {
     const std::string name = name_of(opening);
     if (std::string_view(opening.attribute("openingType").value()) == "Air") return;
-    if (outline.size() < 3) return left_out_.add("openings without a PolyLoop of three corners, left out", name);
-    add_polygon(opening, name, outline, {materials_.opening(opening), std::nullopt});
+    if (outline.size() < 3) return left_out_.lose("openings without a PolyLoop of three corners, left out", name);
+    add_polygons(opening, name, {outline}, {materials_.opening(opening), std::nullopt});
   }
 
   // What drawings are exact to, 1 mm.
   static double tolerance() { return 1e-3; }
 
-  void add_polygon(const pugi::xml_node& node, const std::string& name, const std::vector<Point>& corners,
-                   const GbxmlSides& sides) {
+  void add_polygons(const pugi::xml_node& node, const std::string& name, const std::vector<std::vector<Point>>& parts,
+                    const GbxmlSides& sides) {
     Polygon polygon;
-    for (const Point& corner : corners) {
-      polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
-      scene_.vertices.push_back(corner);
-    }
     polygon.material = index_of(sides.front);
     if (sides.back) polygon.back_material = index_of(*sides.back);
     polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
     polygon.line = line_of(xml_, node);
     scene_.groups.push_back(name);
-    scene_.polygons.push_back(std::move(polygon));
+    for (const std::vector<Point>& part : parts) {
+      polygon.corners.clear();
+      for (const Point& corner : part) {
+        polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
+        scene_.vertices.push_back(corner);
+      }
+      scene_.polygons.push_back(polygon);
+    }
   }
 
   MaterialIndex index_of(const Material& material) {
@@ -168,7 +173,7 @@ class GbxmlReader {
       const auto storey = storeys.find(space.attribute("buildingStoreyIdRef").value());
       std::vector<std::vector<Point>> faces = faces_of(space);
       if (faces.empty()) {
-        left_out_.add("spaces without faces, left out", name_of(space));
+        left_out_.lose("spaces without faces, left out", name_of(space));
         continue;
       }
       scene_.rooms.push_back(

@@ -7,6 +7,7 @@
 #include "input/gltf_model.h"
 #include "input/gltf_texture.h"
 #include "input/isolated.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/texture_maps.h"
 
@@ -109,15 +110,24 @@ class GltfCollector {
     polygon.group = static_cast<std::uint32_t>(scene_.groups.size() - 1);
     // Section 3.7.4: a transformation that mirrors turns the winding round, so that the front stays the front.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
+    if (shines_on_both_sides(polygon.material)) polygon.back_material = polygon.material;
     const bool is_textured = scene_.materials[polygon.material].texture.has_value();
     const std::vector<Eigen::Vector2d> places = is_textured ? places_of(primitive) : std::vector<Eigen::Vector2d>{};
     for (std::array<std::uint32_t, 3> triangle : triangles_of(corners_of(primitive, count), mode)) {
       if (mirrored) std::swap(triangle[1], triangle[2]);
       polygon.corners = {first + triangle[0], first + triangle[1], first + triangle[2]};
       if (is_textured) polygon.texture_map = mapped(triangle, first, places);
+      if (polygon.back_material) polygon.back_texture_map = polygon.texture_map;
       scene_.polygons.push_back(polygon);
     }
     colored_ += primitive.attributes.count("COLOR_0");
+  }
+
+  // glTF 2.0 section 3.9.6: the back of a double-sided material emits as the front does.
+  bool shines_on_both_sides(MaterialIndex m) const {
+    const Material& material = scene_.materials[m];
+    const bool is_clear = material.transmittance.size() > 0 && (material.transmittance > 0).any();
+    return m < model_.materials.size() && model_.materials[m].doubleSided && (material.exitance > 0).any() && !is_clear;
   }
 
   std::vector<Eigen::Vector2d> places_of(const tinygltf::Primitive& primitive) const {
@@ -192,11 +202,17 @@ std::vector<int> top_nodes(const tinygltf::Model& model) {
 
 std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
   std::vector<std::string> notes;
-  if (!model.lights.empty()) notes.emplace_back("point, spot and directional lights are ignored: only surfaces emit");
   if (!model.animations.empty() || !model.skins.empty()) {
     notes.emplace_back("animations and skins are ignored: the model is taken as it stands");
   }
   return notes;
+}
+
+std::vector<Problem> lost_lights(const tinygltf::Model& model) {
+  LeftOut lost;
+  for (const tinygltf::Light& light : model.lights)
+    lost.lose("lights without a surface, which are not read from glTF, left out", light.type + " light " + light.name);
+  return lost.problems();
 }
 
 Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
@@ -208,6 +224,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.inputs = gltf.files.names;
   scene.materials = gltf_materials(gltf);
   scene.notes = notes_on_model(gltf.model);
+  scene.problems = lost_lights(gltf.model);
 
   // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();

@@ -5,10 +5,12 @@
 #include "files/sha256.h"
 #include "input/cut_openings.h"
 #include "input/honeybee_modifiers.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/text.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -47,32 +49,30 @@ std::vector<Point> hb_points(const HbJson& list, double metres) {
   return points;
 }
 
-// The outline with its holes, joined by seams. \throws nlohmann::json::exception, InputError.
-std::vector<Point> outline_with_holes(const std::vector<std::vector<Point>>& rings, const std::string& where) {
-  std::vector<Point> outline = joined_outline(rings);
-  if (outline.empty() && !rings[0].empty())
-    throw InputError(where,
-                     "its holes and openings cannot be joined to its outline; expected them within it, apart from each "
-                     "other, and at "
-                     "most 2,000 corners");
-  return outline;
-}
-
 class HoneybeeScene {
  public:
   HoneybeeScene(const HbJson& model, const std::string& file, double metres)
       : modifiers_(radiance_of(model)), metres_(metres) {
     scene_.file = file;
+    report_unread(
+        model, "models",
+        {"rooms", "orphaned_faces", "orphaned_apertures", "orphaned_doors", "orphaned_shades", "shade_meshes"});
+    report_unread(radiance_of(model), "radiance properties", {"modifiers", "modifier_sets", "sensor_grids", "views"});
     for (const HbJson& room : list_of(model, "rooms")) add_room(room);
     for (const HbJson& face : list_of(model, "orphaned_faces")) add_face(face, "");
-    for (const HbJson& aperture : list_of(model, "orphaned_apertures")) add(aperture, "", "window");
-    for (const HbJson& door : list_of(model, "orphaned_doors")) add(door, "", "door");
+    for (const HbJson& aperture : list_of(model, "orphaned_apertures")) add_opening(aperture, "", "window");
+    for (const HbJson& door : list_of(model, "orphaned_doors"))
+      add_opening(door, "", value_or(door, "is_glass", false) ? "glass_door" : "door");
     for (const HbJson& shade : list_of(model, "orphaned_shades")) add(shade, "", "context");
+    for (const HbJson& mesh : list_of(model, "shade_meshes"))
+      add(mesh, "", value_or(mesh, "is_detached", true) ? "context" : "exterior_shade");
     for (const HbJson& grid : list_of(radiance_of(model), "sensor_grids")) add_grid(grid);
     for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
     for (std::string& note :
          note_on("modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown()))
       scene_.notes.push_back(std::move(note));
+    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
   }
   Scene scene() && { return std::move(scene_); }
 
@@ -91,34 +91,102 @@ class HoneybeeScene {
     return index;
   }
 
-  void add_outline(const std::vector<Point>& outline, const HbJson& item, MaterialIndex material) {
-    Polygon polygon;
-    for (const Point& point : outline) {
-      polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
-      scene_.vertices.push_back(point);
+  // Names the objects in lists that this reader does not know.
+  void report_unread(const HbJson& owner, const std::string& owners, const std::set<std::string>& known) {
+    for (const auto& [key, list] : owner.items()) {
+      if (!list.is_array() || known.count(key) > 0) continue;
+      for (const HbJson& item : list) {
+        if (!item.is_object()) break;
+        left_out_.lose("objects in the list '" + key + "' of " + owners + ", which cannot be read, left out",
+                       value_or<std::string>(item, "identifier", value_or<std::string>(item, "type", "no identifier")));
+      }
     }
-    polygon.material = material;
-    polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
+  }
+
+  std::uint32_t add_group(const HbJson& item) {
     scene_.groups.push_back(item.at("identifier").get<std::string>());
-    scene_.polygons.push_back(std::move(polygon));
+    return static_cast<std::uint32_t>(scene_.groups.size() - 1);
   }
 
-  std::vector<std::vector<Point>> rings_of(const HbJson& item) const {
-    const HbJson& geometry = item.at("geometry");
-    std::vector<std::vector<Point>> rings = {hb_points(geometry.at("boundary"), metres_)};
-    for (const HbJson& hole : list_of(geometry, "holes")) rings.push_back(hb_points(hole, metres_));
-    return rings;
+  void add_parts(const std::vector<std::vector<Point>>& parts, const HbJson& item, MaterialIndex material) {
+    const std::uint32_t group = add_group(item);
+    for (const std::vector<Point>& part : parts) {
+      Polygon polygon{.corners = {}, .material = material, .group = group};
+      for (const Point& point : part) {
+        polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
+        scene_.vertices.push_back(point);
+      }
+      scene_.polygons.push_back(std::move(polygon));
+    }
   }
 
-  std::string where(const HbJson& item) const { return scene_.file + ": " + item.at("identifier").get<std::string>(); }
+  // The outlines of lost objects are empty.
+  std::vector<Point> outline_of(const HbJson& item) {
+    std::vector<Point> outline = hb_points(item.at("geometry").at("boundary"), metres_);
+    if (outline.size() >= 3) return outline;
+    left_out_.lose("objects with fewer than three corners, left out", item.at("identifier").get<std::string>());
+    return {};
+  }
 
+  std::vector<std::vector<Point>> holes_of(const HbJson& item) const {
+    std::vector<std::vector<Point>> holes;
+    for (const HbJson& hole : list_of(item.at("geometry"), "holes")) holes.push_back(hb_points(hole, metres_));
+    return holes;
+  }
+
+  // The face of an object without these holes and openings.
+  void add_cut(const HbJson& item, const std::vector<std::vector<Point>>& holes, MaterialIndex material) {
+    const std::string name = item.at("identifier").get<std::string>();
+    const std::vector<Point> outline = outline_of(item);
+    if (outline.empty()) return;
+    const CutOutline cut = without_openings(outline, holes, tolerance);
+    if (cut.beyond > 0) left_out_.add("faces with openings that reach beyond them, cut within the face", name);
+    if (!cut.is_cut) left_out_.add("faces without a clear area, whose openings are not cut", name);
+    add_parts(cut.parts, item, material);
+  }
+
+  void add_mesh(const HbJson& item, MaterialIndex material) {
+    const HbJson& mesh = item.at("geometry");
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    const std::vector<Point> points = hb_points(mesh.at("vertices"), metres_);
+    scene_.vertices.insert(scene_.vertices.end(), points.begin(), points.end());
+    Polygon polygon{.corners = {}, .material = material, .group = add_group(item)};
+    for (const HbJson& face : mesh.at("faces")) {
+      polygon.corners.clear();
+      for (const HbJson& corner : face) {
+        const auto place = corner.get<std::int64_t>();
+        if (place < 0 || place >= static_cast<std::int64_t>(points.size()))
+          throw InputError(scene_.file + ": " + scene_.groups.back(),
+                           "a face of the mesh names vertex " + std::to_string(place) + "; expected 0 to " +
+                               std::to_string(static_cast<std::int64_t>(points.size()) - 1) +
+                               ". Export the model again");
+        polygon.corners.push_back(first + static_cast<std::uint32_t>(place));
+      }
+      if (polygon.corners.size() >= 3) scene_.polygons.push_back(polygon);
+    }
+    if (mesh.at("faces").empty()) left_out_.lose("meshes without faces, left out", scene_.groups.back());
+  }
+
+  // Shades and openings, as one face or as a mesh.
   void add(const HbJson& item, const std::string& set, const std::string& kind) {
-    add_outline(outline_with_holes(rings_of(item), where(item)), item, index_of(modifiers_.material(item, set, kind)));
+    const HbJson& geometry = item.at("geometry");
+    if (geometry.contains("boundary"))
+      return add_cut(item, holes_of(item), index_of(modifiers_.material(item, set, kind)));
+    if (geometry.contains("vertices") && geometry.contains("faces"))
+      return add_mesh(item, index_of(modifiers_.material(item, set, kind)));
+    left_out_.lose("objects whose geometry is neither a face nor a mesh, left out",
+                   item.at("identifier").get<std::string>());
   }
 
   void add_shades(const HbJson& owner, const std::string& set) {
     for (const HbJson& shade : list_of(owner, "outdoor_shades")) add(shade, set, "exterior_shade");
     for (const HbJson& shade : list_of(owner, "indoor_shades")) add(shade, set, "interior_shade");
+  }
+
+  void add_opening(const HbJson& opening, const std::string& set, const std::string& kind) {
+    report_unread(opening, "openings", {"indoor_shades", "outdoor_shades"});
+    add_shades(opening, set);
+    add(opening, set, kind);
   }
 
   static const char* kind_of_opening(const HbJson& face, const HbJson& opening, bool is_clear) {
@@ -135,10 +203,12 @@ class HoneybeeScene {
         const HbJson& condition = opening.at("boundary_condition");
         const bool is_inside = condition.at("type") == "Surface";
         const bool is_clear = opening.at("type") == "Aperture" || value_or(opening, "is_glass", false);
-        add_shades(opening, set);
-        if (is_inside && done_.count(condition.at("boundary_condition_objects").at(0).get<std::string>()) > 0) continue;
+        if (is_inside && done_.count(condition.at("boundary_condition_objects").at(0).get<std::string>()) > 0) {
+          add_shades(opening, set);
+          continue;
+        }
         done_.insert(opening.at("identifier").get<std::string>());
-        add(opening, set, kind_of_opening(face, opening, is_clear));
+        add_opening(opening, set, kind_of_opening(face, opening, is_clear));
       }
     }
   }
@@ -147,13 +217,14 @@ class HoneybeeScene {
     static const std::map<std::string, std::string> kinds = {
         {"Floor", "floor"}, {"Wall", "wall"}, {"RoofCeiling", "ceiling"}};
     add_shades(face, set);
+    report_unread(face, "faces", {"apertures", "doors", "indoor_shades", "outdoor_shades"});
     const auto kind = kinds.find(face.at("face_type").get<std::string>());
     if (kind != kinds.end()) {
-      std::vector<std::vector<Point>> rings = rings_of(face);
+      std::vector<std::vector<Point>> holes = holes_of(face);
       for (const char* const key : {"apertures", "doors"})
         for (const HbJson& opening : list_of(face, key))
-          rings.push_back(hb_points(opening.at("geometry").at("boundary"), metres_));
-      add_outline(outline_with_holes(rings, where(face)), face, index_of(modifiers_.material(face, set, kind->second)));
+          holes.push_back(hb_points(opening.at("geometry").at("boundary"), metres_));
+      add_cut(face, holes, index_of(modifiers_.material(face, set, kind->second)));
     }
     add_openings(face, set);
   }
@@ -165,6 +236,7 @@ class HoneybeeScene {
     NamedRoom body{value_or(room, "display_name", room.at("identifier").get<std::string>()),
                    value_or<std::string>(room, "story", ""),
                    {}};
+    report_unread(room, "rooms", {"faces", "indoor_shades", "outdoor_shades"});
     add_shades(room, set);
     for (const HbJson& face : room.at("faces")) {
       body.faces.push_back(hb_points(face.at("geometry").at("boundary"), metres_));
@@ -200,9 +272,12 @@ class HoneybeeScene {
     scene_.cameras.push_back({eye, eye + way.stableNormalized(), angle, view.at("identifier").get<std::string>()});
   }
 
+  static constexpr double tolerance = 1e-3;  // metres; drawings are exact to it
+
   HoneybeeModifiers modifiers_;
   double metres_;
   Scene scene_;
+  LeftOut left_out_;
   std::set<std::string> done_;  // openings between rooms
 };
 

@@ -50,6 +50,7 @@ class MitsubaReader {
     scene_.inputs.insert(scene_.inputs.end(), meshes_.files.begin(), meshes_.files.end());
     scene_.sha256 = sha256(digests);
     for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
     return with_used_materials(std::move(scene_));
   }
 
@@ -73,9 +74,9 @@ class MitsubaReader {
     if (kind == "shapegroup") return;  // stands where instances say
     if (kind == "instance") return add_instance(shape, above, depth);
     if (!is_mitsuba_shape(kind))
-      return left_out_.add("shapes that cannot be read are left out, of the kind " + kind, name);
+      return left_out_.lose("shapes that cannot be read are left out, of the kind " + kind, name);
     const std::optional<FacetedShape> faces = mitsuba_shape(file_, shape, meshes_);
-    if (!faces) return left_out_.add("meshes that are not there, left out", file_.word(shape, "filename", ""));
+    if (!faces) return left_out_.lose("meshes that are not there, left out", file_.word(shape, "filename", ""));
     const std::optional<MaterialIndex> material = material_of(shape, name);
     if (!material) return;
     if (kind == "sphere" || kind == "disk" || kind == "cylinder")

@@ -56,6 +56,7 @@ class RadianceReader {
     scene_.sha256 = sha256(digests_);
     scene_ = with_far_sources(std::move(scene_), sources_);
     for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
     return {with_used_materials(std::move(scene_)), std::move(modifiers_)};
   }
 
@@ -132,11 +133,11 @@ class RadianceReader {
     if (words.empty() || words[0] != "xform") {
       const bool is_sky = !words.empty() && (words[0] == "gensky" || words[0] == "gendaylit");
       if (is_sky)
-        return left_out_.add(
+        return left_out_.lose(
             "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
             where + " !" + words[0]);
       constexpr std::size_t most = 60;
-      left_out_.add(
+      left_out_.lose(
           "programs other than !xform are not run, what they would print is left out; run them and put it in "
           "their place",
           where + " !" + std::string(trimmed(command.words[0])).substr(0, most));
@@ -160,8 +161,8 @@ class RadianceReader {
     const std::string where = at_line(file, primitive.line);
     if (primitive.words.empty()) throw InputError(where, primitive.kind + " " + primitive.name + " names no file");
     if (fs::path(primitive.words[0]).extension() != ".rad") {
-      left_out_.add("left out, of the kind " + primitive.kind + ", whose octrees and meshes cannot be read",
-                    frame.prefix + primitive.name);
+      left_out_.lose("left out, of the kind " + primitive.kind + ", whose octrees and meshes cannot be read",
+                     frame.prefix + primitive.name);
       return;
     }
     RadianceXform xform = xform_of(std::span(primitive.words).subspan(1), file, where);

@@ -41,7 +41,9 @@ Scene set_upright(Scene scene, const ReadOptions& options) {
 [[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
   std::string reasons;
   for (const Problem& problem : scene.problems) {
-    if (problem.kind != ProblemKind::zero_area && problem.kind != ProblemKind::self_intersecting) continue;
+    const bool is_reason = problem.kind == ProblemKind::zero_area || problem.kind == ProblemKind::left_out ||
+                           problem.kind == ProblemKind::self_intersecting;
+    if (!is_reason) continue;
     reasons += (reasons.empty() ? "" : "; ") + problem.what;
   }
   if (!reasons.empty()) throw InputError(scene.file, "none of its faces can be used: " + reasons);

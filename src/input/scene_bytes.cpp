@@ -17,6 +17,9 @@ void write_polygon(MessageWriter& out, const Polygon& polygon) {
   out.plain(polygon.group);
   out.plain(polygon.line);
   out.plain(polygon.texture_map);
+  out.plain(polygon.back_material.has_value());
+  if (polygon.back_material) out.plain(*polygon.back_material);
+  out.plain(polygon.back_texture_map);
 }
 
 Polygon read_polygon(MessageReader& in) {
@@ -27,6 +30,8 @@ Polygon read_polygon(MessageReader& in) {
   polygon.group = in.plain<std::uint32_t>();
   polygon.line = in.plain<std::uint32_t>();
   polygon.texture_map = in.plain<std::uint32_t>();
+  if (in.plain<bool>()) polygon.back_material = in.plain<MaterialIndex>();
+  polygon.back_texture_map = in.plain<std::uint32_t>();
   return polygon;
 }
 
@@ -188,6 +193,12 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(static_cast<std::uint8_t>(found.property));
     out.plain(found.materials);
   }
+  out.plain(scene.problems.size());
+  for (const Problem& problem : scene.problems) {
+    out.plain(static_cast<std::uint8_t>(problem.kind));
+    out.plain(problem.count);
+    out.text(problem.what);
+  }
   out.plain(scene.rooms.size());
   for (const NamedRoom& room : scene.rooms) write_room(out, room);
   out.text(scene.file);
@@ -220,6 +231,12 @@ Scene scene_from_bytes(std::string_view bytes) {
   for (UnsimulatedMaterials& found : scene.unsimulated) {
     found.property = static_cast<UnsimulatedProperty>(in.plain<std::uint8_t>());
     found.materials = in.plain<std::size_t>();
+  }
+  scene.problems.resize(in.count());
+  for (Problem& problem : scene.problems) {
+    problem.kind = static_cast<ProblemKind>(in.plain<std::uint8_t>());
+    problem.count = in.plain<std::size_t>();
+    problem.what = in.text();
   }
   scene.rooms.resize(in.count());
   for (NamedRoom& room : scene.rooms) room = read_room(in);

@@ -8,7 +8,7 @@
 namespace patchlight {
 
 /// A scene as bytes, for another process of this program on this machine: vertices, polygons, materials, groups, notes,
-/// checksum, unit and upright direction.
+/// problems without their faces, checksum, unit and upright direction.
 std::string scene_bytes(const Scene& scene);
 
 /// The scene that scene_bytes() turned into these bytes. \throws std::runtime_error when they are not such bytes.

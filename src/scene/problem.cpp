@@ -16,6 +16,8 @@ const char* name_of(ProblemKind kind) {
       return "unknown_material";
     case ProblemKind::self_intersecting:
       return "self_intersecting";
+    case ProblemKind::left_out:
+      return "left_out";
     case ProblemKind::implausible_size:
       return "implausible_size";
     case ProblemKind::full_reflectance:

@@ -18,6 +18,7 @@ std::string listed(const Scene& scene, const std::vector<ProblemFace>& faces) {
   Polygon first;
   first.file = faces.front().file;
   first.line = faces.front().line;
+  first.group = static_cast<std::uint32_t>(scene.groups.size());  // unknown
   std::ostringstream text;
   text << counted(faces.size(), "face") << (faces.size() == 1 ? " (" : " (first at ") << place_of(scene, first) << ')';
   return text.str();

@@ -10,7 +10,9 @@
 #include "scene/weld.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
+#include <string>
 
 namespace patchlight {
 namespace {
@@ -133,10 +135,23 @@ Scene clean_corners(Scene scene) {
                       "with corners that repeat the one before, or are the tips of spikes without width; left out");
 }
 
+// " wall" or "s roof, wall, ...": the first five names.
+std::string first_names(const std::set<std::string>& names) {
+  constexpr std::size_t most = 5;
+  std::string text = names.size() == 1 ? " " : "s ";
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (count < most) text += (count > 0 ? ", " : "") + name;
+    ++count;
+  }
+  return count > most ? text + ", ..." : text;
+}
+
 // Leaves out polygons without area and cuts those that are not simple and planar.
 Scene make_simple(Scene scene) {
   const double width = weld_distance(scene);
   Faces narrow, crossing, lost, bent;
+  std::set<std::string> lost_objects;
   std::vector<Polygon> polygons;
   polygons.reserve(scene.polygons.size());
   for (const Polygon& polygon : scene.polygons) {
@@ -145,6 +160,7 @@ Scene make_simple(Scene scene) {
     if (pieces.kind == ProblemKind::non_planar) bent.push_back(problem_face(scene, polygon));
     if (pieces.kind == ProblemKind::self_intersecting) {
       (pieces.polygons.empty() ? lost : crossing).push_back(problem_face(scene, polygon));
+      if (pieces.polygons.empty()) lost_objects.insert(group_name(scene, polygon.group));
     }
     scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
     for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
@@ -155,8 +171,9 @@ Scene make_simple(Scene scene) {
                        "with corners that do not lie in one plane; cut into triangles");
   scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
                        "with an outline that crosses itself; cut at the crossings, all parts facing one way");
-  return with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(lost),
-                      "with an outline that crosses itself so that no area can be told; left out");
+  return with_problem(
+      std::move(scene), ProblemKind::left_out, std::move(lost),
+      "with an outline that crosses itself, without a clear area; left out, of the object" + first_names(lost_objects));
 }
 
 std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {

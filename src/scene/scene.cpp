@@ -231,7 +231,8 @@ bool has_lamp(const Scene& scene) {
 
 std::string place_of(const Scene& scene, const Polygon& polygon) {
   const std::string& file = polygon.file < scene.files.size() ? scene.files[polygon.file] : scene.file;
-  return polygon.line > 0 ? file + ":" + std::to_string(polygon.line) : file;
+  if (polygon.line > 0) return file + ":" + std::to_string(polygon.line);
+  return polygon.group < scene.groups.size() ? file + ": " + scene.groups[polygon.group] : file;
 }
 
 std::string group_name(const Scene& scene, std::uint32_t group) {

@@ -18,6 +18,7 @@ enum class ProblemKind : std::uint8_t {
   unknown_material,       ///< a usemtl that no material file defines
   self_intersecting,      ///< a face whose outline crosses itself
   // The answer may differ from what is meant.
+  left_out,             ///< the scene lacks objects, faces or light sources of a file
   implausible_size,     ///< the unit is probably another, or sizes and numbers do not go together
   full_reflectance,     ///< a reflectance of 1: nothing is absorbed
   moved_material_file,  ///< an mtllib found at another place than it names
