@@ -18,6 +18,8 @@ const char* name_of(ProblemKind kind) {
       return "self_intersecting";
     case ProblemKind::implausible_size:
       return "implausible_size";
+    case ProblemKind::guessed_up:
+      return "guessed_up";
     case ProblemKind::full_reflectance:
       return "full_reflectance";
     case ProblemKind::moved_material_file:

@@ -19,6 +19,7 @@ enum class ProblemKind : std::uint8_t {
   self_intersecting,      ///< a face whose outline crosses itself
   // The answer may differ from what is meant.
   implausible_size,     ///< the unit is probably another, or sizes and numbers do not go together
+  guessed_up,           ///< the upright axis is a guess, and light or sensors depend on it
   full_reflectance,     ///< a reflectance of 1: nothing is absorbed
   moved_material_file,  ///< an mtllib found at another place than it names
   no_material,          ///< faces before any usemtl
