@@ -117,6 +117,8 @@ Scene merge_scenes(std::vector<Scene> scenes) {
   merged.metres_per_unit = scenes[0].metres_per_unit;
   merged.up = scenes[0].up;
   merged.up_stated = scenes[0].up_stated;
+  merged.unit_stated =
+      std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.unit_stated; });
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     checksums.push_back(scenes[k].sha256);
     names += (k == 0 ? "" : " + ") + scenes[k].file;

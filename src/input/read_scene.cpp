@@ -96,7 +96,7 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
 }
 
 SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& options) {
-  if (options.metres_per_unit == 1) {
+  if (options.metres_per_unit.value_or(1) == 1) {
     require_within(options.confine, file, file.string());
     return read_scene_file(file, options.confine);
   }
@@ -234,7 +234,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
 }
 
 Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options) {
-  assert(options.metres_per_unit > 0 && !files.empty());
+  assert(options.metres_per_unit.value_or(1) > 0 && !files.empty());
   std::vector<Scene> models;
   std::vector<SceneFile> scene_files;
   RadianceModifiers modifiers;  // of the files so far

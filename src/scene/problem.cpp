@@ -49,6 +49,8 @@ const char* name_of(ProblemKind kind) {
 }
 
 Severity severity_of(ProblemKind kind) {
+  // A model without a lamp is complete: a sky or a luminaire can light it.
+  if (kind == ProblemKind::no_lamp) return Severity::warning;
   if (kind <= ProblemKind::self_intersecting) return Severity::error;
   return kind <= ProblemKind::overlapping_faces ? Severity::warning : Severity::remark;
 }
