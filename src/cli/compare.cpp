@@ -14,6 +14,7 @@
 #include "output/write_comparison.h"
 #include "page/write_page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
