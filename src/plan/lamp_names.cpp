@@ -11,13 +11,13 @@
 namespace patchlight {
 namespace {
 
-constexpr std::array lamp_words = {"lights",   "emit",     "emitter",   "emitters", "emission",   "emissive",  "emitting",
-                                   "glow",     "glowing",  "bulb",      "bulbs",    "lightbulb",  "neon",      "luminous",
-                                   "spotlight", "downlight", "floodlight", "ceilinglight", "arealight"};
+constexpr std::array lamp_words = {
+    "lights", "lamp",     "lamps",     "desklamp",  "floorlamp",  "emit", "emitter",  "emitters",  "emission",   "emissive",
+    "glow",   "emitting", "glowing",   "bulb",      "bulbs",      "neon", "luminous", "lightbulb", "ceilinglight",
+    "led",    "spotlight", "downlight", "floodlight", "arealight"};
 
-// Words in other languages, and compounds, end in these.
-constexpr std::array lamp_endings = {"lamp", "lamps", "lampe", "lampen", "leuchte", "leuchten", "luminaire",
-                                     "luminaires"};
+// Compounds, those of other languages among them, end in these.
+constexpr std::array lamp_endings = {"lampe", "lampen", "leuchte", "leuchten", "luminaire", "luminaires"};
 
 // After "light" these make a colour or a kind of material.
 constexpr std::array<std::string_view, 24> light_things = {

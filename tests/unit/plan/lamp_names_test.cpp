@@ -13,7 +13,7 @@ TEST(LampNames, AreFoundByWords) {
 
 TEST(LampNames, AreNotPartsOfOtherWordsOrColours) {
   for (const char* name : {"Concrete-CastinSituLightweight", "Skylight", "daylight glass", "Light Grey", "light_oak",
-                           "LightBrown", "slight", "illumination", "plywood", ""})
+                           "LightBrown", "slight", "pipe clamp", "illumination", "plywood", ""})
     EXPECT_FALSE(is_name_of_lamp(name)) << name;
 }
 
