@@ -233,7 +233,7 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   std::string models;
   for (const std::filesystem::path& file : arguments.models) models += " " + shell_word(shown_name(file.string()));
   const ReadOptions& read = arguments.read;
-  const bool has_more = read.metres_per_unit != 1 || read.up || !read.settings.empty() || !read.only.empty() ||
+  const bool has_more = read.metres_per_unit || read.up || !read.settings.empty() || !read.only.empty() ||
                         !read.leave_out.empty() || read.detail > 0 || read.keep_faces || !read.format.empty();
   const std::string result = arguments.models.front().stem().string();
   const std::string setting = report.first_light ? report.first_light->setting : "";
@@ -280,9 +280,8 @@ ExitCode check(const CheckArguments& arguments) {
               << lamp_lines(report, scene.luminaires.size()) << daylight_lines(scene)
               << problem_lines(scene, report, arguments.all) << std::flush;
   }
-  if (report.usable) return good;
-  print_message("error", scene.file + ": found no lamp: " + report.first_light->advice);
-  return input_error;
+  if (!report.usable) print_message("note", scene.file + ": found no lamp: " + report.first_light->advice);
+  return good;
 }
 
 }  // namespace patchlight::cli

@@ -14,6 +14,7 @@
 #include "output/write_comparison.h"
 #include "page/write_page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -36,11 +37,17 @@ std::string table(const Comparison& comparison) {
   return text_table(rows);
 }
 
+// Those of the spectral radius, at most six.
+int known_digits(const Comparison& comparison) {
+  const double share = comparison.spectral_radius_error / comparison.spectral_radius;
+  return share > 1e-6 ? std::max(1, static_cast<int>(-std::log10(share))) : 6;
+}
+
 std::string facts(const Scene& scene, const Comparison& comparison) {
   std::ostringstream text;
   text << shown_name(scene.file) << ": " << comparison.simulation.mesh.size()
        << " patches; closure: " << comparison.simulation.transport.closure << "; spectral radius of K "
-       << rounded(comparison.spectral_radius, 6);
+       << rounded(comparison.spectral_radius, known_digits(comparison));
   for (const SolverRun& run : comparison.runs) {
     if (run.contestant.solver != Solver::jacobi || !std::isfinite(run.rate)) continue;
     text << ", which is Jacobi's rate; observed " << rounded(run.rate, 6);

@@ -89,7 +89,7 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
   CompareArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.options = options.compare;
   arguments.output = options.output;
   arguments.page = options.page;

@@ -109,7 +109,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   FormFactorArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
   arguments.request.assembly.close = !options.raw;

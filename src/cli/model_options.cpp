@@ -101,7 +101,7 @@ void add_file_options(CLI::App& command, ModelOptions& options) {
   command
       .add_option_function<std::string>(
           "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); },
-          "length of one model unit; default m")
+          "length of one model unit, instead of what the file states;\ndefault: as the file states, else m")
       ->option_text("m|cm|mm|in|ft");
   add_up_option(command, options.up);
   add(command, "--confine", "FOLDER",

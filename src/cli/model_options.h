@@ -15,7 +15,7 @@ struct ModelOptions {
   std::vector<std::string> models;
   std::string format;
   std::vector<std::string> settings;
-  double metres_per_unit = 1;
+  std::optional<double> metres_per_unit;
   std::optional<Vector> up;
   std::vector<std::string> only, leave_out;
   double detail = 0;

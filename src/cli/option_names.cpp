@@ -15,6 +15,8 @@ namespace {
 // Fields with a value come before the same without one.
 const std::vector<OptionName>& usual_names() {
   static const std::vector<OptionName> names = {{"read.settings", "--set"},
+                                                {"read.up=", "--up "},
+                                                {"read.up", "--up"},
                                                 {"read.daylight.sky=", "--sky "},
                                                 {"read.daylight.sky", "--sky"},
                                                 {"read.daylight.sun=", "--sun "},

@@ -6,6 +6,7 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
+#include "cli/scene_warnings.h"
 #include "cli/summary.h"
 #include "mesh/nested_mesh.h"
 #include "output/whole_file.h"
@@ -81,6 +82,7 @@ ExitCode plan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
   const Scene scene = read_scene(arguments.models, arguments.read);
+  print_scene_warnings(scene);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   check(arguments.request, scene);
   const Plan planned = make_plan(scene, arguments.request);

@@ -48,7 +48,7 @@ PlanArguments finish_plan(const PlanOptions& options) {
   PlanArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = with_fitting_solver(in_metres(options.request, options.model.metres_per_unit), false);
+  arguments.request = with_fitting_solver(in_metres(options.request, options.model.metres_per_unit.value_or(1)), false);
   arguments.json = options.json;
   check(arguments.request);
   require_not_read({{"--json", arguments.json}}, arguments.models);

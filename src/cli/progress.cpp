@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "cli/interrupt.h"
+#include "cli/scene_warnings.h"
 
 #include <cmath>
 #include <iostream>
@@ -81,7 +82,9 @@ Observer observer_on(ProgressLine& line) {
 
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer) {
   if (!observer({.stage = Stage::read})) throw Cancelled();
-  return read_scene(models, options);
+  Scene scene = read_scene(models, options);
+  print_scene_warnings(scene);
+  return scene;
 }
 
 }  // namespace patchlight::cli

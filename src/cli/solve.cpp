@@ -16,6 +16,7 @@
 #include "cli/option_names.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
+#include "cli/scene_warnings.h"
 #include "cli/sensors.h"
 #include "cli/solution_options.h"
 #include "cli/solve_input.h"
@@ -219,6 +220,8 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, Progres
   SolveInput input = read(arguments, observer);
   results.scene = std::move(input.scene);
   reading.finish(Stage::read);
+  line.hide();
+  print_scene_warnings(results.scene);
   tell_of_long_work(results.scene, arguments, line);
 
   // 2. Solve

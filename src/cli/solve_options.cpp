@@ -83,7 +83,7 @@ SolveArguments finish_solve(const SolveOptions& options) {
   SolveArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.form_factors = options.form_factors;
   arguments.checkpoint = options.checkpoint;
   arguments = with_solution(std::move(arguments), "solve", options.solution);

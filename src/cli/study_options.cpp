@@ -68,7 +68,7 @@ StudyArguments finish_study(const StudyCommandOptions& options) {
   StudyArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.options = options.study;
   arguments.output = options.output;
   arguments.page = options.page;

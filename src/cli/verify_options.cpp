@@ -88,7 +88,7 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   VerifyArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit);
+  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.options = options.verify;
   arguments.options.seed = arguments.request.assembly.seed;
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;

@@ -77,8 +77,8 @@ std::string unit_name(double metres_per_unit) {
   return "m";
 }
 
-std::string model_tables(const Scene& scene, const std::vector<std::filesystem::path>& models, double metres_per_unit,
-                         const std::filesystem::path& file) {
+std::string model_tables(const Scene& scene, const std::vector<std::filesystem::path>& models,
+                         std::optional<double> metres_per_unit, const std::filesystem::path& file) {
   std::set<std::string> classes;
   for (std::uint32_t group = 0; group < scene.groups.size(); ++group) {
     const std::string name = group_name(scene, group);
@@ -92,7 +92,7 @@ std::string model_tables(const Scene& scene, const std::vector<std::filesystem::
     const std::filesystem::path relative = absolute.lexically_relative(folder);
     const bool is_near = !relative.empty() && *relative.begin() != "..";
     text << "[[model]]\nfile = " << toml_text((is_near ? relative : absolute).string()) << '\n';
-    if (metres_per_unit != 1) text << "unit = " << toml_text(unit_name(metres_per_unit)) << '\n';
+    if (metres_per_unit) text << "unit = " << toml_text(unit_name(*metres_per_unit)) << '\n';
     text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
     std::string list;
     for (const std::string& name : classes) {
@@ -245,8 +245,8 @@ std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& pla
 
 }  // namespace
 
-std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem::path>& models, double metres_per_unit,
-                           const std::filesystem::path& file) {
+std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem::path>& models,
+                           std::optional<double> metres_per_unit, const std::filesystem::path& file) {
   const std::vector<NamedFloor> places = scene.rooms.empty() ? floors_of_groups(scene) : rooms_of(scene);
   std::ostringstream text;
   text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"

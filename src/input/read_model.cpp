@@ -15,10 +15,12 @@
 #include "input/read_radiance.h"
 #include "input/read_stl.h"
 #include "input/read_xml.h"
+#include "input/stated_unit.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <algorithm>
+#include <array>
 #include <system_error>
 #include <utility>
 
@@ -45,6 +47,24 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
   if (format == "xml") return read_xml(file, metres_per_unit, confine);
   throw InputError(file.string(),
                    "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
+}
+
+// With the given unit instead of that of the file, which states one unless it is XML of Mitsuba.
+Scene read_in_unit(const std::filesystem::path& file, const std::string& format, std::optional<double> metres_per_unit,
+                   const std::filesystem::path& confine) {
+  constexpr std::array<const char*, 6> stating = {"dae", "ifc", "gltf", "glb", "hbjson", "xml"};
+  const bool states_unit = std::find(stating.begin(), stating.end(), format) != stating.end();
+  if (!states_unit) return read_format(file, format, metres_per_unit.value_or(1), confine);
+  Scene scene = read_format(file, format, 1, confine);
+  // Mitsuba states neither its unit nor the upright axis, the others both.
+  scene.unit_stated = scene.up_stated && !metres_per_unit;
+  if (!metres_per_unit) return scene;
+  double stated = scene.metres_per_unit;
+  if (format == "dae") stated = collada_unit(read_text(file, file.string(), "the model file"));
+  if (format == "ifc") stated = ifc_unit(read_text(file, file.string(), "the model file"));
+  if (*metres_per_unit != stated) scene = read_format(file, format, *metres_per_unit / stated, confine);
+  scene.metres_per_unit = *metres_per_unit;
+  return scene;
 }
 
 // "; did you mean 'room.obj'?" when its folder has a file of such a name; nothing where it cannot be read.
@@ -91,15 +111,16 @@ void require_file(const std::filesystem::path& file, const std::string& where, b
   }
 }
 
-FileModel read_model(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
-                     const std::filesystem::path& confine, RadianceModifiers known) {
+FileModel read_model(const std::filesystem::path& file, const std::string& format,
+                     std::optional<double> metres_per_unit, const std::filesystem::path& confine,
+                     RadianceModifiers known) {
   require_within(confine, file, file.string());
   FileModel model;
   if (format == "rad") {
-    RadianceModel read = read_radiance(file, metres_per_unit, confine, std::move(known));
+    RadianceModel read = read_radiance(file, metres_per_unit.value_or(1), confine, std::move(known));
     model = {std::move(read.scene), std::move(read.modifiers)};
   } else {
-    model = {without_doubtful_panes(read_format(file, format, metres_per_unit, confine)), std::move(known)};
+    model = {without_doubtful_panes(read_in_unit(file, format, metres_per_unit, confine)), std::move(known)};
   }
   if (file != "-") model.scene.inputs.push_back(file);
   return model;

@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace patchlight {
@@ -34,6 +35,51 @@ namespace {
 Scene set_upright(Scene scene, const ReadOptions& options) {
   if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);
   scene.up_stated = scene.up_stated || options.up;
+  return scene;
+}
+
+// The first entry that depends on the upright axis: "the sky", for example; empty if there is none.
+std::string upright_part(const LightEntries& lights) {
+  const auto hangs_down = [](const LuminaireEntry& entry) {
+    const auto& light = entry.luminaire.light;
+    return !entry.aim && (std::holds_alternative<WebLight>(light) || std::holds_alternative<SpotLight>(light));
+  };
+  if (lights.weather) return "the weather";
+  if (lights.sky) return "the sky";
+  if (lights.sun && !lights.sun->direction) return "the sun";
+  const bool has_luminaire = std::any_of(lights.luminaires.begin(), lights.luminaires.end(), hangs_down);
+  return has_luminaire ? "the aim of luminaires" : "";
+}
+
+std::string upright_part(const DaylightSetting& daylight) {
+  if (daylight.weather) return "the weather";
+  if (daylight.sky) return "the sky";
+  return daylight.sun ? "the sun" : "";
+}
+
+std::string upright_part(const ReadOptions& options, const std::vector<SceneFile>& files) {
+  std::string part = upright_part(options.daylight);
+  for (const SceneFile& file : files) {
+    if (part.empty()) part = upright_part(file.lights);
+    const bool has_grid = std::any_of(file.sensors.begin(), file.sensors.end(), [](const auto& entry) {
+      return std::holds_alternative<FloorGrid>(entry);
+    });
+    if (part.empty() && has_grid) part = "the sensor grid";
+  }
+  return part;
+}
+
+// With a problem where `part` of the scene depends on a guess.
+Scene with_guess_of_up(Scene scene, const std::string& part) {
+  std::erase_if(scene.problems, [](const Problem& problem) { return problem.kind == ProblemKind::guessed_up; });
+  if (scene.up_stated || part.empty()) return scene;
+  const bool is_y = std::abs(scene.up.y()) > 0.5;
+  scene.problems.push_back({ProblemKind::guessed_up, 1,
+                            std::string("no file states the upright axis, and ") + part + " depends on it; " +
+                                (is_y ? "y" : "z") + " is a guess by the areas of faces. Give read.up=" + (is_y ? "y" : "z") +
+                                " if it is right, else read.up=" + (is_y ? "z" : "y") +
+                                "; a scene file has the key up",
+                            {}});
   return scene;
 }
 
@@ -53,7 +99,7 @@ Scene set_upright(Scene scene, const ReadOptions& options) {
 }
 
 SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& options) {
-  if (options.metres_per_unit == 1) {
+  if (options.metres_per_unit.value_or(1) == 1) {
     require_within(options.confine, file, file.string());
     return read_scene_file(file, options.confine);
   }
@@ -191,7 +237,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
 }
 
 Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options) {
-  assert(options.metres_per_unit > 0 && !files.empty());
+  assert(options.metres_per_unit.value_or(1) > 0 && !files.empty());
   std::vector<Scene> models;
   std::vector<SceneFile> scene_files;
   RadianceModifiers modifiers;  // of the files so far
@@ -219,7 +265,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (scene.polygons.empty()) refuse_for_lack_of_faces(scene);
   check(scene);
   scene = with_fewer_faces(std::move(scene), options, scene_files);
-  scene = set_upright(std::move(scene), options);
+  scene = with_guess_of_up(set_upright(std::move(scene), options), upright_part(options, scene_files));
   for (const SceneFile& file : scene_files) {
     scene = with_sensors(with_lights(std::move(scene), file.lights), file);
   }
@@ -228,7 +274,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   scene = maintained(std::move(scene), options, scene_files);
   check_limits(scene);
   std::vector<std::string> notes;
-  for (const Problem& problem : scene.problems) notes.push_back(problem.what);
+  for (const Problem& problem : scene.problems) {
+    if (problem.kind != ProblemKind::guessed_up) notes.push_back(problem.what);
+  }
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
 }
@@ -236,7 +284,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
 Scene with_options(Scene scene, const ReadOptions& options) {
   scene = with_settings(std::move(scene), options.settings);
   check(scene);
-  scene = set_upright(std::move(scene), options);
+  scene = with_guess_of_up(set_upright(std::move(scene), options), upright_part(options.daylight));
   if (asks_for_daylight(options.daylight)) scene = with_other_daylight(std::move(scene), options);
   if (are_of_wavelengths(bands_of(scene)) && asks_for_new_light(options))
     scene.notes.emplace_back(

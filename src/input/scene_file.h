@@ -19,7 +19,7 @@ namespace patchlight {
 struct ModelEntry {
   std::filesystem::path file;
   std::string where;                         ///< "room.toml:3", for messages
-  double metres_per_unit = 1;                ///< of the model file
+  std::optional<double> metres_per_unit;     ///< of the model file; if not given, as it states, else 1
   std::optional<Eigen::Affine3d> placement;  ///< metres to metres
   FaceChoice choice;                         ///< what of it takes part
 };

@@ -57,13 +57,40 @@ constexpr std::array<PerezRow, 8> perez_table = {{
 // (1 - exp(-0.32 / cos zeta)) (0.91 + 10 exp(-3 gamma) + 0.45 cos^2 gamma), the second factor over 0.91.
 constexpr std::array<double, 5> cie_clear_coefficients = {-1, -0.32, 10 / 0.91, -3, 0.45 / 0.91};
 
-// Perez et al. 1993, eqs. 4 to 7.
-std::array<double, 5> perez_coefficients(double clearness, double brightness, double sun_zenith_angle) {
+// A coefficient as a line over the brightness: at_zero + slope * brightness.
+struct BrightnessLine {
+  double at_zero, slope;
+
+  double at(double brightness) const { return at_zero + slope * brightness; }
+  // Where the line ends to be above 0, on the way down from a brightness where it is.
+  double lower_end() const { return slope > 0 ? -at_zero / slope : 0; }
+};
+
+BrightnessLine line_of(const std::array<double, 4>& x, double sun_zenith_angle) {
+  return {x[0] + x[1] * sun_zenith_angle, x[2] + x[3] * sun_zenith_angle};
+}
+
+// The brightness at which the table holds. Radiance's gendaylit takes 0.01 to 0.6, and at least 0.2 for a clearness of
+// 1.065 to 2.8, where the fit has no darker skies. Where both a and b are above 0, a exp(b / cos zeta) has no bound
+// towards the horizon: the brightness is lowered until one of them is 0.
+double valid_brightness(double clearness, double brightness, double sun_zenith_angle) {
   const std::size_t category = perez_class(clearness);
+  const double lowest = category > 0 && category < 5 ? 0.2 : 0.01;
+  const double valid = std::clamp(brightness, lowest, 0.6);
+  const BrightnessLine a = line_of(perez_table[category][0], sun_zenith_angle);
+  const BrightnessLine b = line_of(perez_table[category][1], sun_zenith_angle);
+  if (a.at(valid) <= 0 || b.at(valid) <= 0) return valid;
+  return std::max({lowest, a.lower_end(), b.lower_end()});
+}
+
+// Perez et al. 1993, eqs. 4 to 7.
+std::array<double, 5> perez_coefficients(double clearness, double stated_brightness, double sun_zenith_angle) {
+  const std::size_t category = perez_class(clearness);
+  const double brightness = valid_brightness(clearness, stated_brightness, sun_zenith_angle);
   const PerezRow& x = perez_table[category];
   std::array<double, 5> coefficients{};
   for (std::size_t k = 0; k < 5; ++k) {
-    coefficients[k] = x[k][0] + x[k][1] * sun_zenith_angle + brightness * (x[k][2] + x[k][3] * sun_zenith_angle);
+    coefficients[k] = line_of(x[k], sun_zenith_angle).at(brightness);
   }
   if (category > 0) return coefficients;
   const auto& c = x[2];

@@ -20,8 +20,9 @@ struct SkyModel {
 
 /// Uniform: the same radiance everywhere. CIE overcast: (1 + 2 sin altitude) / 3 of the zenith's (Moon and Spencer
 /// 1942). CIE clear: ISO 15469:2004, in the form of Kittler 1967. Perez: Perez, Seals and Michalsky 1993, eqs. 2 to 7
-/// and table 1. The radiance is such that the sky gives its horizontal irradiance, to 1e-5 of it, or else its zenith
-/// radiance. A Perez sky whose fit has no light, far outside the data that it was made from, is uniform.
+/// and table 1. The fit takes the brightness within its limits: 0.01 to 0.6, at least 0.2 for a clearness of 1.065 to
+/// 2.8, and below the values at which the horizon has no bound. The radiance is such that the sky gives its horizontal
+/// irradiance, to 1e-5 of it, or else its zenith radiance. A Perez sky whose fit has no light is uniform.
 SkyModel sky_model(const Sky& sky, const Vector& up);
 
 /// Relative radiance of the sky in a unit direction not below the horizon; never negative.

@@ -118,6 +118,7 @@ nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& com
   json["closure"] = simulation.transport.closure;
   json["reference_relative_residual"] = comparison.reference_residual;
   json["spectral_radius"] = comparison.spectral_radius;
+  json["spectral_radius_error"] = comparison.spectral_radius_error;
   json["runs"] = Json::array();
   for (const SolverRun& run : comparison.runs) json["runs"].push_back(run_part(run, simulation.mesh.size()));
   return json;

@@ -1,8 +1,8 @@
 #include "plan/first_light.h"
 
-#include "base/lower_case.h"
 #include "base/shell_word.h"
 #include "plan/first_few.h"
+#include "plan/lamp_names.h"
 #include "scene/sealed_room.h"
 
 #include <algorithm>
@@ -25,12 +25,8 @@ std::vector<LampHint> possible_lamps(const Scene& scene) {
   if (!scene.lamp_hints.empty()) return scene.lamp_hints;
   std::vector<LampHint> hints;
   for (const Material& material : scene.materials) {
-    const std::string name = in_lower_case(material.name);
-    for (const char* part : {"light", "lamp", "lumin", "emit", "emissi", "glow", "bulb", "neon", "leucht"}) {
-      if (name.find(part) == std::string::npos) continue;
+    if (is_name_of_lamp(material.name))
       hints.push_back({material.name, Spectrum::Constant(1, usual_radiance), "its name"});
-      break;
-    }
   }
   return hints;
 }

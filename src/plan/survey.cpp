@@ -35,7 +35,7 @@ constexpr std::array<Unit, 5> units = {
     {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
 
 std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
-  if (size >= smallest_plausible && size <= largest_plausible) return std::nullopt;
+  if (scene.unit_stated || (size >= smallest_plausible && size <= largest_plausible)) return std::nullopt;
   const double in_model_units = size / scene.metres_per_unit;
   const auto distance = [&](const Unit& unit) {
     return std::abs(std::log(in_model_units * unit.metres / usual_size)) + std::log(unit.handicap);
@@ -50,7 +50,7 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
 }
 
 std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
-  if (size >= smallest_plausible && size <= largest_plausible) return {};
+  if (scene.unit_stated || (size >= smallest_plausible && size <= largest_plausible)) return {};
   const std::string advice =
       guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
                   ": read.metres_per_unit=" + shortest(guess->metres_per_unit)

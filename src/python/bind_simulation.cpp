@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "cli/arguments.h"
 #include "cli/picture.h"
+#include "cli/summary.h"
 #include "light/photometry.h"
 #include "output/report_json.h"
 #include "page/write_page.h"
@@ -121,6 +122,17 @@ py::bytes page_of_run(const SolvedScene& self) {
                     .pictures = {&picture}});
   }
   return html;
+}
+
+std::vector<std::string> notes_of(const SolvedScene& self) { return cli::notes(*self.scene, self.simulation); }
+
+// Why results are worse than what was asked for.
+std::vector<std::string> warnings_of(const SolvedScene& self) {
+  const Report report = report_of(*self.scene, self.request, self.simulation);
+  if (report.solution.unfinished) return {cli::explain_unfinished(report)};
+  if (!report.solution.converged) return {cli::explain_not_converged(report)};
+  if (!is_accurate(report)) return {cli::explain_not_accurate(report)};
+  return {};
 }
 
 void write_run(const SolvedScene& self, const std::string& file) {
@@ -243,6 +255,11 @@ void bind_simulation(py::module_& module) {
           },
           "lx")
       .def_property_readonly("size", [](const SolvedScene& self) { return self.simulation.mesh.size(); })
+      .def_property_readonly(
+          "converged", [](const SolvedScene& self) { return self.simulation.solution.converged; },
+          "the solver has reached its tolerance")
+      .def_property_readonly("notes", &notes_of, "what is not simulated, and other remarks")
+      .def_property_readonly("_warnings", &warnings_of)
       .def_property_readonly(
           "solution",
           [](const SolvedPointer& self) { return std::shared_ptr<Solution>(self, &self->simulation.solution); })

@@ -20,6 +20,8 @@ const char* name_of(ProblemKind kind) {
       return "left_out";
     case ProblemKind::implausible_size:
       return "implausible_size";
+    case ProblemKind::guessed_up:
+      return "guessed_up";
     case ProblemKind::full_reflectance:
       return "full_reflectance";
     case ProblemKind::moved_material_file:
@@ -49,6 +51,8 @@ const char* name_of(ProblemKind kind) {
 }
 
 Severity severity_of(ProblemKind kind) {
+  // A model without a lamp is complete: a sky or a luminaire can light it.
+  if (kind == ProblemKind::no_lamp) return Severity::warning;
   if (kind <= ProblemKind::self_intersecting) return Severity::error;
   return kind <= ProblemKind::overlapping_faces ? Severity::warning : Severity::remark;
 }

@@ -65,6 +65,13 @@ Field with_expected(const Field& unshot, const RadiosityProblem& problem, const 
   return waiting;
 }
 
+// The patch with the most flux to shoot, summed over the bands.
+Eigen::Index brightest(const Field& waiting, const Eigen::VectorXd& area) {
+  Eigen::Index source = 0;
+  (waiting.abs().rowwise().sum() * area.array()).maxCoeff(&source);
+  return source;
+}
+
 // How many shots there may be after the lamps'.
 std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eigen::Index lamps) {
   const std::int64_t most = std::min<std::int64_t>(static_cast<std::int64_t>(options.max_iterations) * patches,
@@ -94,7 +101,9 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field overshot = shot == Shot::overshot ? with_expected(unshot, problem, mean_reflectance) : Field();
     const Field& waiting = shot == Shot::overshot ? overshot : unshot;
-    const Eigen::Index source = coarse.next_source(waiting);
+    // A first picture needs to know where the light of each group of patches goes.
+    const bool explores = iterations.options().max_rows.has_value();
+    const Eigen::Index source = explores ? coarse.next_source(waiting) : brightest(waiting, problem.area);
     const Field shot_radiosity = waiting.row(source);
     // Nothing is left to shoot: what there is is the solution.
     const bool is_done = (shot_radiosity == 0).all();

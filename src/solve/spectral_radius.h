@@ -5,10 +5,19 @@
 
 namespace patchlight {
 
-/// The spectral radius of K = rho o F, per band, from below: ||G w|| / ||w|| of the power iteration for the symmetric
-/// matrix G that is similar to it, from equal irradiance everywhere. It never falls, and its error falls by the square
-/// of the ratio of the two largest sizes of eigenvalues with each of the `steps` applications. 0 where nothing is
-/// reflected.
+/// The spectral radius of K = rho o F, per band.
+struct SpectralRadius {
+  Eigen::ArrayXd value;  ///< from below, but for rounding
+  Eigen::ArrayXd error;  ///< an eigenvalue lies within this of the value
+};
+
+/// By so many steps of Lanczos for the symmetric matrix G that is similar to K, from equal irradiance everywhere. Where
+/// sheets scatter light to their other sides, by the power iteration ||G w|| / ||w||. Neither falls with the steps. The
+/// value is 0 where nothing is reflected. Each step applies the transport once.
+SpectralRadius spectral_radius_with_error(const TransportOperator& transport, const RadiosityProblem& problem,
+                                          int steps);
+
+/// The value alone.
 Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const RadiosityProblem& problem, int steps);
 
 }  // namespace patchlight

@@ -160,7 +160,9 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     if (!reference.trapped.empty()) return reference;
     constexpr int steps = 60;
     const Eigen::ArrayXd strongest_lamp = highest(problem.exitance);
-    comparison.spectral_radius = largest((strongest_lamp > 0).select(spectral_radius(transport, problem, steps), 0.0));
+    const SpectralRadius radius = spectral_radius_with_error(transport, problem, steps);
+    comparison.spectral_radius = largest((strongest_lamp > 0).select(radius.value, 0.0));
+    comparison.spectral_radius_error = largest((strongest_lamp > 0).select(radius.error, 0.0));
     const ConvergenceTest test{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
       if (keeps_entries(contestant.storage))

@@ -17,6 +17,10 @@ constexpr double least_order = 0.5;
 // Below this share of the light nothing is worth a word.
 constexpr double least_error = 1e-6;
 
+// So many times fewer patches have edges of four times the length: the error of the reference, which is left out of
+// the ratio of errors, is small beside them.
+constexpr double far_coarser = 16;
+
 // The largest number of patches that is looked at beyond the finest mesh, as a multiple of its own.
 constexpr double farthest = 16;
 
@@ -61,12 +65,43 @@ const StudySetting& coarser_of(const StudySweep& sweep) {
   return sweep.settings[sweep.settings.size() - std::min<std::size_t>(3, sweep.settings.size())];
 }
 
+// Where errors are differences of two meshes: e = C (h^p - h_ref^p), solved for p.
+double order_beside_reference(const StudySetting& coarse, const StudySetting& fine, double reference_patches) {
+  const double ratio = coarse.error / fine.error;
+  const double ln_x1 = 0.5 * std::log(reference_patches / coarse.patches);
+  const double ln_x2 = 0.5 * std::log(reference_patches / fine.patches);
+  if (!(ratio > 1) || !std::isfinite(ratio) || !(ln_x2 > 0) || !(ln_x1 > ln_x2)) return unknown;
+  double low = -10;
+  double high = 10;
+  while (high - low > 1e-6) {
+    const double middle = 0.5 * (low + high);
+    (ratio_of_errors(middle, ln_x1, ln_x2) < ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// By the coarsest and the finest of the last three settings that are far coarser than the reference; where fewer than
+// two are, by the last three of all, with the error of the reference in the model.
+double observed_order(const StudySweep& by_size, double reference_patches) {
+  std::vector<StudySetting> far;
+  for (const StudySetting& setting : by_size.settings) {
+    if (reference_patches >= far_coarser * setting.patches) far.push_back(setting);
+  }
+  if (far.size() >= 2) {
+    const double order = order_in_edge(far[far.size() - std::min<std::size_t>(3, far.size())], far.back(),
+                                       reference_patches);
+    if (!std::isnan(order)) return order;
+  }
+  if (std::isinf(reference_patches)) return unknown;
+  return order_beside_reference(coarser_of(by_size), by_size.settings.back(), reference_patches);
+}
+
 // Beyond the finest mesh: error = e (N / n)^(p/2), seconds = t (n / N)^q, q from 1 to 2.
 Price extrapolated(double error, const StudySweep& by_size, const StudyReference& reference) {
   Price price{error};
   const StudySetting& fine = by_size.settings.back();
   const StudySetting& coarse = coarser_of(by_size);
-  price.order = std::min(2.0, order_in_edge(coarse, fine, patches_of(reference)));
+  price.order = std::min(2.0, observed_order(by_size, patches_of(reference)));
   if (!(price.order > 0)) return price;
   const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
   if (!(more <= farthest)) return price;
@@ -130,20 +165,9 @@ std::string limit_of(const ErrorParts& parts, double bar) {
 }  // namespace
 
 double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches) {
-  const double ratio = coarse.error / fine.error;
-  if (std::isinf(reference_patches)) {
-    return 2 * slope(coarse.error, fine.error, static_cast<double>(fine.patches) / coarse.patches);
-  }
-  const double ln_x1 = 0.5 * std::log(reference_patches / coarse.patches);
-  const double ln_x2 = 0.5 * std::log(reference_patches / fine.patches);
-  if (!(ratio > 1) || !std::isfinite(ratio) || !(ln_x2 > 0) || !(ln_x1 > ln_x2)) return unknown;
-  double low = -10;
-  double high = 10;
-  while (high - low > 1e-6) {
-    const double middle = 0.5 * (low + high);
-    (ratio_of_errors(middle, ln_x1, ln_x2) < ratio ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  const bool falls = std::isinf(reference_patches) || coarse.error > fine.error;
+  if (!falls || !(reference_patches >= far_coarser * fine.patches)) return unknown;
+  return 2 * slope(coarse.error, fine.error, static_cast<double>(fine.patches) / coarse.patches);
 }
 
 double patches_of(const StudyReference& reference) {
@@ -160,7 +184,7 @@ StudySweep with_orders(StudySweep sweep, double reference_patches) {
 
 double richardson_bar(const StudySweep& by_size, double reference_patches) {
   const StudySetting& fine = by_size.settings.back();
-  const double observed = order_in_edge(coarser_of(by_size), fine, reference_patches);
+  const double observed = observed_order(by_size, reference_patches);
   const double order = std::isnan(observed) ? least_order : std::clamp(observed, least_order, 2.0);
   // e = C (h^p - h_ref^p), and C h_ref^p is what the reference is off.
   return fine.error / std::expm1(0.5 * order * std::log(reference_patches / fine.patches));

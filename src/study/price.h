@@ -8,16 +8,17 @@
 
 namespace patchlight {
 
-/// The power p with which an error falls with the edge of the patches, from `coarse` to `fine`, when both were measured
-/// against a reference with the same kind of error: (x1^p - 1) / (x2^p - 1) = e1 / e2, x = sqrt(reference / patches).
-/// Infinitely many patches stand for the truth. Not a number where the errors do not fall.
+/// The power p with which an error falls with the edge of the patches: e1 / e2 = (h1 / h2)^p from `coarse` to `fine`.
+/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall, or
+/// where the edges of `fine` are less than four times as long as those of the reference.
 double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
 
 /// The sweep with its orders filled in.
 StudySweep with_orders(StudySweep sweep, double reference_patches);
 
 /// The error of a reference: Richardson's extrapolation from its difference to the finest setting of a sweep of
-/// patches, by the order observed from two sizes before on, taken as no less than 1/2 and no more than 2.
+/// patches. The order is the observed one, at least 1/2 and at most 2: from plain ratios of errors where two settings
+/// are far coarser than the reference, else with the error of the reference in the model.
 double richardson_bar(const StudySweep& by_size, double reference_patches);
 
 /// The number of patches that its mesh has at least the fineness of a uniform one of; infinite for the closed form.

@@ -156,18 +156,18 @@ std::optional<Eigen::VectorXd> row_scales(const ExchangeAreas& S, const Eigen::V
   return std::nullopt;
 }
 
-// No patch sees more than its hemisphere: rows that add up to far more than their area are cut down to it, by the
-// smaller of both patches' factors, which keeps the matrix symmetric. Without this, light could grow from bounce to
-// bounce. Rows that exceed it by less stay, as noise raises as many as it lowers: cutting these alone would take light
-// away.
-ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, const Eigen::VectorXd& sums) {
-  constexpr double gross_excess = 1.1;
-  const Eigen::VectorXd factor =
-      (sums.array() > gross_excess * area.array()).select(area.array() / sums.array(), 1.0).matrix();
+// No patch sees more than its hemisphere: rows that exceed their area by more than three standard errors are cut down
+// to it, by the smaller of both patches' factors, which keeps the matrix symmetric. Without this, light could grow from
+// bounce to bounce. Rows that exceed it by less stay, as noise raises as many as it lowers: cutting these alone would
+// take light away. `variances` are those of the sums, m^4.
+ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, const Eigen::VectorXd& variances) {
+  const Eigen::ArrayXd sums = row_sums(raw).array();
+  const Eigen::ArrayXd most = area.array() + 3 * variances.array().sqrt();
+  const Eigen::VectorXd factor = (sums > most).select(area.array() / sums, 1.0).matrix();
   ExchangeAreas S = changed(
       std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) { return entry * std::min(factor[i], factor[j]); });
   return {std::move(S), Eigen::VectorXd::Zero(area.size()),
-          "rows above 1.1 cut to 1: open scene, and the least change has negative entries"};
+          "rows above 1 by three standard errors cut to 1: open scene, and the least change has negative entries"};
 }
 
 // What it takes to close.
@@ -189,7 +189,8 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   if (!lambda)
     return keep_exchange_areas(std::move(raw),
                                "no symmetric exchange areas with this pattern have the wanted row sums");
-  const Eigen::VectorXd change = lambda->cwiseProduct(W.times(Eigen::VectorXd::Ones(area.size()))) + W.times(*lambda);
+  const Eigen::VectorXd variances = W.times(Eigen::VectorXd::Ones(area.size()));
+  const Eigen::VectorXd change = lambda->cwiseProduct(variances) + W.times(*lambda);
   if (stays_positive(raw, *lambda, W)) {
     ExchangeAreas closed = changed(std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) {
       return entry + W.at(i, j, entry) * ((*lambda)[i] + (*lambda)[j]);
@@ -199,7 +200,7 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   }
 
   // 2. Scaling keeps every entry positive, but needs exact targets.
-  if (!lost.closed()) return limited(std::move(raw), area, raw_sums);
+  if (!lost.closed()) return limited(std::move(raw), area, variances);
   const auto scale = row_scales(raw, target.sum, observer);
   if (!scale) return keep_exchange_areas(std::move(raw), "no symmetric scaling has the wanted row sums");
   ExchangeAreas closed = changed(

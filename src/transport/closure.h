@@ -15,7 +15,8 @@ namespace patchlight {
 struct ClosedExchangeAreas {
   ExchangeAreas exchange_areas;  ///< entries narrowed toward zero
   Eigen::VectorXd remainder;     ///< m^2, what narrowing took from each row; applied as remainder_i B_i
-  std::string method;            ///< "least squares", "scaling", "rows above 1.1 cut to 1" or "none", with the reason
+  std::string method;            ///< "least squares", "scaling", "rows above 1 by three standard errors cut to 1" or
+                                 ///< "none", with the reason
 };
 
 /// What the assembly knows of the errors of its entries, for weighing them against a measured lost share.

@@ -27,10 +27,24 @@ constexpr double perez_coefficients_of_classes[8][20] = {
     {-1.0500,  0.0289,  0.4260,  0.3590, -0.3250, 0.1156, 0.7781, 0.0025,  31.0625, -14.5000,
      -46.1148, 55.3750, -7.2312, 0.4050, 13.3500, 0.6234, 1.5000, -0.6426, 1.8564,  0.5636}};
 
+// The brightness that the fit takes: from 0.01 (0.2 for the clearnesses 1.065 to 2.8) to 0.6, and not beyond the first
+// value at which the gradation 1 + a exp(b / cos zeta) grows without bound towards the horizon.
+double brightness_of_fit(const double* x, std::size_t row, double brightness, double zenith) {
+  double fit = std::min(std::max(brightness, row >= 1 && row <= 4 ? 0.2 : 0.01), 0.6);
+  const double a = x[0] + x[1] * zenith;
+  const double b = x[4] + x[5] * zenith;
+  const double a_slope = x[2] + x[3] * zenith;
+  const double b_slope = x[6] + x[7] * zenith;
+  if (a + fit * a_slope > 0 && b + fit * b_slope > 0)
+    fit = std::max(a_slope > 0 ? -a / a_slope : 0.01, b_slope > 0 ? -b / b_slope : 0.01);
+  return fit;
+}
+
 // Equations 3 to 7 of the paper, with the sun's zenith angle in radians.
-std::array<double, 5> perez_sky(double clearness, double brightness, double zenith) {
+std::array<double, 5> perez_sky(double clearness, double stated_brightness, double zenith) {
   const std::size_t row = perez_class(clearness);
   const double* const x = perez_coefficients_of_classes[row];
+  const double brightness = brightness_of_fit(x, row, stated_brightness, zenith);
   std::array<double, 5> sky{};
   for (std::size_t k = 0; k < sky.size(); ++k)
     sky[k] = x[4 * k] + x[4 * k + 1] * zenith + brightness * (x[4 * k + 2] + x[4 * k + 3] * zenith);

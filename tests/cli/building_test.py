@@ -67,6 +67,23 @@ class BuildingTest(ToolTest):
         self.refused(INPUT, ["--leave-out", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
                      "--leave-out", "flor")
 
+    def test_a_guessed_upright_axis_is_warned_of_where_light_depends_on_it(self):
+        """A tall box that is open at the top looks as if y were upright. -q hides no warning of wrong results."""
+        self.write("box.obj", "mtllib court.mtl\nusemtl stone\n"
+                              "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 0 1 0\nv 0 0 3\nv 4 0 3\nv 4 1 3\nv 0 1 3\n"
+                              "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
+        run = ("solve", "box.obj", "--sky", "overcast:1000lx", "--patches", 100, "-q", "--report", "a.json")
+        guessed = self.run_tool(*run)
+        self.assertEqual(guessed.returncode, GOOD, guessed.stderr)
+        self.assertIn("warning: box.obj: no file states the upright axis, and the sky depends on it", guessed.stderr)
+        self.assertIn("--up z", guessed.stderr)
+        self.assertNotIn("--up", self.run_tool(*run, "--up", "z").stderr)
+        self.assertIn("guessed_up", self.run_tool("check", "box.obj", "--sky", "overcast").stdout)
+        self.write("box.toml", '[[model]]\nfile = "box.obj"\n[sun]\ndirection = [0, 0, 1]\nilluminance = 100\n')
+        self.assertNotIn("--up", self.run_tool("plan", "box.toml").stderr)
+        self.write("box.toml", '[[model]]\nfile = "box.obj"\n[sky]\nkind = "overcast"\nilluminance = 100\n')
+        self.assertIn("--up", self.run_tool("plan", "box.toml").stderr)
+
     def test_a_model_without_lamps_is_told_of_the_sky(self):
         self.refused(INPUT, ["--sky overcast:10000lx", "patchlight new MODEL -o SCENE.toml"], "solve", "court.obj",
                      "-o", "x.vtp")

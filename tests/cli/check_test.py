@@ -58,11 +58,11 @@ class CheckTest(ToolTest):
 
     def test_without_a_lamp_it_names_the_setting_that_switches_one_on(self):
         self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ka 20 10 5"))
-        done = self.check("room.obj", code=INPUT)
+        done = self.check("room.obj")
         setting = "--set lamp.radiance=20,10,5"
         self.assertIn(setting, done.stdout)
         self.assertIn(setting, done.stderr)
-        self.assertFalse(self.report("room.obj", code=INPUT)["usable"])
+        self.assertFalse(self.report("room.obj")["usable"])
         self.check("room.obj", *setting.split())
         solved = self.run_tool("solve", "room.obj", "-o", "room.vtp", "--patches", "50")
         self.assertEqual(solved.returncode, INPUT)
@@ -76,7 +76,7 @@ class CheckTest(ToolTest):
         """What it proposes lights the room: the command that comes next, and the one that this leads to."""
         dark = MATERIALS.replace("Ke 10 9 8\n", "")
         self.write("room.mtl", dark)
-        done = self.check("room.obj", code=INPUT)
+        done = self.check("room.obj")
         self.assertNotIn("--sky", done.stdout + done.stderr)
         self.assertIn("no daylight gets into the room (room.obj:19), as no face of it lets light through", done.stderr)
         words = self.next_of(done)
@@ -84,7 +84,7 @@ class CheckTest(ToolTest):
 
         self.write("room.mtl", dark.replace("lamp", "panel"))
         self.write("room.obj", ROOM.replace("usemtl lamp", "usemtl panel"))
-        words = self.next_of(self.check("room.obj", code=INPUT))
+        words = self.next_of(self.check("room.obj"))
         self.assertEqual(words, "new room.obj -o room.toml".split())
         self.assertEqual(self.run_tool(*words).returncode, GOOD)
         text = (self.folder / "room.toml").read_text()
@@ -98,7 +98,7 @@ class CheckTest(ToolTest):
     def test_an_open_room_without_a_lamp_is_offered_a_sky(self):
         self.write("room.mtl", MATERIALS.replace("Ke 10 9 8\n", ""))
         self.write("room.obj", ROOM.replace("f 4 8 5 1\n", ""))
-        done = self.check("room.obj", code=INPUT)
+        done = self.check("room.obj")
         self.assertIn("--sky overcast:10000lx", done.stderr)
         self.assertIn("--sky", self.next_of(done))
 

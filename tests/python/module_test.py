@@ -311,6 +311,22 @@ class ModuleTest(unittest.TestCase):
         in_centimetres = pl.solve(BOX, unit="cm", patches=60).area.sum()
         self.assertAlmostEqual(in_centimetres / pl.solve(BOX, unit="m", patches=60).area.sum(), 1e-4, 9)
 
+    def test_an_option_that_a_call_does_not_use_is_refused(self):
+        for name, value in (("html", "a.html"), ("output", "a.vtp"), ("form_factors", "a.ff"), ("picture", "a.png")):
+            with self.assertRaisesRegex(pl.InputError, f"{name}: found an option that solve"):
+                pl.solve(self.scene, patches=60, **{name: value})
+        with self.assertRaisesRegex(pl.InputError, "tolerance"):
+            pl.transport(self.scene, patches=60, tolerance=0.1)
+        with self.assertRaisesRegex(pl.InputError, "solver"):
+            pl.solve(self.scene, own=lambda apply, E, rho, direct: direct, patches=60, solver="cg")
+
+    def test_a_solution_that_has_not_converged_is_warned_of(self):
+        with self.assertWarnsRegex(UserWarning, "converge"):
+            cut = pl.solve(self.scene, patches=60, solver="jacobi", max_iterations=1, no_error_bars=True)
+        self.assertFalse(cut.converged)
+        self.assertTrue(self.solved.converged)
+        self.assertIsInstance(self.solved.notes, list)
+
     def test_plan_page_picture_and_docs(self):
         self.assertIn("occlusion", [decision["effect"] for decision in pl.plan(self.scene, patches=400)["decisions"]])
         page = self.solved.page().decode()

@@ -72,7 +72,8 @@ struct BandsAsked {
 
 /// How a model file is to be taken.
 struct ReadOptions {
-  double metres_per_unit = 1;     ///< length of one model unit; with formats that state their unit, a further factor
+  std::optional<double> metres_per_unit = {};  ///< length of one model unit, above 0, instead of the unit that the file
+                                               ///< states; if not given, that one, else 1
   std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
   std::vector<MaterialSetting> settings = {};
   std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be

@@ -11,8 +11,8 @@ namespace patchlight {
 
 /// What can be wrong with a model, worst first.
 enum class ProblemKind : std::uint8_t {
+  no_lamp,                ///< nothing emits; a warning, as a sky or a luminaire can be added
   // Something the model means is lost.
-  no_lamp,                ///< nothing emits
   covered_lamp,           ///< a lamp lies under another face in the same plane
   missing_material_file,  ///< an mtllib that is nowhere
   unknown_material,       ///< a usemtl that no material file defines
@@ -20,6 +20,7 @@ enum class ProblemKind : std::uint8_t {
   // The answer may differ from what is meant.
   left_out,             ///< the scene lacks objects, faces or light sources of a file
   implausible_size,     ///< the unit is probably another, or sizes and numbers do not go together
+  guessed_up,           ///< the upright axis is a guess, and light or sensors depend on it
   full_reflectance,     ///< a reflectance of 1: nothing is absorbed
   moved_material_file,  ///< an mtllib found at another place than it names
   no_material,          ///< faces before any usemtl
@@ -35,7 +36,7 @@ enum class ProblemKind : std::uint8_t {
   welded_vertices      ///< different vertices at one place
 };
 
-/// An error keeps a scene from being solved; a warning may make the solution wrong; a remark only tells.
+/// An error loses something that the model means; a warning may make the solution wrong; a remark only tells.
 enum class Severity : std::uint8_t { error, warning, remark };
 
 /// A face as it stands in the model.

@@ -118,6 +118,7 @@ struct Scene {
   std::vector<std::filesystem::path> inputs;  ///< every file that was read for it, or that its materials name
   std::string sha256;                         ///< of the model file and its material files, hexadecimal
   double metres_per_unit = 1;                 ///< length of one unit of the model file
+  bool unit_stated = false;                   ///< the model files state their unit, and no caller gave another
   Vector up = Vector::UnitZ();
   bool up_stated = false;          ///< the model file or who reads it says which way is up
   Vector north = Vector::UnitY();  ///< unit, at right angles to up

@@ -9,9 +9,11 @@
 Keywords are the options of the command-line tool with _ for -: patchlight solve --help, or help(pl.solve), has them with
 their units. Lengths are metres but in read(), whose `unit` is that of the model.
 """
+import warnings
+
 from patchlight import _core
 from patchlight._core import InputError, Material, OutputError, Scene, Simulation, Solution, Transport, solvers
-from patchlight.options import arguments_of, command_of, parted
+from patchlight.options import OF_GOALS, OF_SOLVING, OF_WRITING, arguments_of, command_of, parted, refuse_unused
 from patchlight.transport import sensitivities, sensor_sensitivities
 from patchlight import scene as _scene
 from patchlight import simulation as _simulation
@@ -24,7 +26,12 @@ __all__ = ["InputError", "Material", "OutputError", "Scene", "Simulation", "Solu
 def read(*models, **options):
     """Reads one model, or several that together are one scene. Options say how: unit, up, set, only, leave_out, detail,
     keep_faces, sky, sun, ground, weather, points (a file of sensors)."""
-    return _scene.remember(_core.read(arguments_of(models, options)), models, options)
+    refuse_unused("read()", options, OF_WRITING)
+    scene = _core.read(arguments_of(models, options))
+    for problem in scene.problems:
+        if problem["kind"] == "guessed_up":
+            warnings.warn(problem["what"], stacklevel=2)
+    return _scene.remember(scene, models, options)
 
 
 def check(scene):
@@ -37,6 +44,7 @@ def plan(scene, **options):
     """What solve() would do, and why: effects with their reasons, expected patches, seconds and bytes."""
     import json
 
+    refuse_unused("plan()", options, OF_WRITING)
     return json.loads(_core.plan(scene, _arguments(scene, options)))
 
 
@@ -92,19 +100,29 @@ def solve(scene, own=None, progress=None, **options):
     own: a function in place of the solver; it takes apply (H = F B for arrays of patches x bands), E, rho and H_direct, and
     returns the irradiance H. progress: True for a bar of tqdm, or a function of stage and share.
 
+    A solution that has not converged, or is less accurate than accuracy= asks for, is a warning of Python's
+    warnings.warn(); solved.converged and solved.notes have the same to read.
+
     Options, as those of the tool:
 
     """
+    refuse_unused("solve()", options, OF_WRITING)
+    if own is not None:
+        refuse_unused("solve(own=...)", options, OF_SOLVING)
     scene, options = _read_first(scene, options)
     changes = _scene.changes(scene)
     if own is not None:
         changes.append(f"solved by {getattr(own, '__name__', 'a function')}() in place of the solver")
-    return _run(_core.solve, scene, options, progress, own, changes)
+    solved = _run(_core.solve, scene, options, progress, own, changes)
+    for text in solved._warnings:
+        warnings.warn(text, stacklevel=2)
+    return solved
 
 
 def transport(scene, progress=None, **options):
     """Form factors between the patches of a scene, closed, kept in memory: apply(), operator, form_factors(), solve() by
-    any of patchlight.solvers. Options as of solve()."""
+    any of patchlight.solvers. Options as of solve(), but for those of its solver and its goal."""
+    refuse_unused("transport()", options, {**OF_WRITING, **OF_SOLVING, **OF_GOALS})
     return _run(_core.transport, *_read_first(scene, options), progress)
 
 

@@ -30,6 +30,31 @@ OF_READING = {"format", "unit", "confine", "up", "set", "only", "leave_out", "de
               "color_error", "sky", "sun", "ground", "weather", "points"}
 
 
+# What these ask for is a method here: hint for each.
+OF_WRITING = {
+    **dict.fromkeys(("o", "output", "ambient_occlusion"), "solved.write(FILE)"),
+    "html": "solved.write_page(FILE)",
+    "report": "solved.report()",
+    **dict.fromkeys(("picture", "camera", "projection", "view", "size", "quality", "false_color", "picture_error",
+                     "picture_samples", "picture_error_map"), "solved.picture(...)"),
+    **dict.fromkeys(("points_output", "map", "map_range"), "solved.sensors()"),
+    **dict.fromkeys(("series", "lightmap", "texel", "form_factors", "checkpoint", "discard", "quiet", "verbose", "q", "v"),
+                    "the tool patchlight"),
+}
+
+# A transport has no solver until its method solve() is called, and no goal.
+OF_SOLVING = dict.fromkeys(("solver", "tolerance", "max_iterations", "relaxation", "max_rows"), "transport.solve(NAME, ...)")
+OF_GOALS = dict.fromkeys(("accuracy", "time", "interest", "keep_mesh", "error_bars", "no_error_bars"), "pl.solve(...)")
+
+
+def refuse_unused(call, options, unused):
+    """Raises InputError for options that a call would not use: `unused` has their names, and what has them instead."""
+    for name in options:
+        instead = unused.get(name.rstrip("_"))
+        if instead is not None:
+            raise _core.InputError(f"{name}: found an option that {call} does not use; expected it in {instead}")
+
+
 def parted(options):
     """Those of reading, and the others."""
     reading = {name: value for name, value in options.items() if name.rstrip("_") in OF_READING}

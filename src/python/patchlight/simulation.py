@@ -1,6 +1,7 @@
 """What is seen of a solved scene: report, page and pictures."""
 import html
 import json
+import warnings
 
 import numpy
 
@@ -47,6 +48,18 @@ def described(self):
     return f"<patchlight.Simulation of {self.size} patches>"
 
 
+_sensors = _core.Simulation.sensors
+
+
+def sensors(self):
+    """Irradiance and illuminance of the scene's sensors with standard errors; "warnings" are warned of as well."""
+    read = _sensors(self)
+    for text in read["warnings"]:
+        warnings.warn(text, stacklevel=2)
+    return read
+
+
+_core.Simulation.sensors = sensors
 _core.Simulation.cells = cells
 _core.Simulation.report = report
 _core.Simulation.write_page = write_page

@@ -101,6 +101,15 @@ TEST_F(Gbxml, LengthsHaveTheUnitOfTheFile) {
   }
 }
 
+TEST_F(Gbxml, AGivenUnitReplacesThatOfTheFile) {
+  const Scene stated = read(building("Millimeters"));
+  EXPECT_TRUE(stated.unit_stated);
+  const Scene given = read_scene(stated.file, {.metres_per_unit = 1});
+  EXPECT_NEAR(area_of(given, "floor"), 12, 1e-9);
+  EXPECT_EQ(given.metres_per_unit, 1);
+  EXPECT_FALSE(given.unit_stated);
+}
+
 TEST_F(Gbxml, SpacesAreRoomsOfTheirStoreys) {
   const Scene scene = read(building());
   ASSERT_EQ(scene.rooms.size(), 1U);

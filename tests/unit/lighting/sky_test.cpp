@@ -107,7 +107,7 @@ TEST(SkyModel, BelowTheHorizonIsGround) {
 TEST(SkyModel, IsNeverNegative) {
   // For all classes, brightnesses and heights of the sun that weather files hold.
   for (const double clearness : {1.0, 1.1, 1.3, 1.7, 2.3, 3.5, 5.0, 8.0}) {
-    for (const double brightness : {0.02, 0.1, 0.3, 0.5}) {
+    for (const double brightness : {0.02, 0.1, 0.3, 0.5, 0.7, 2.0}) {
       for (const double altitude : {2.0, 30.0, 85.0}) {
         Sky sky = sky_of(SkyKind::perez);
         sky.clearness = clearness;
@@ -119,6 +119,58 @@ TEST(SkyModel, IsNeverNegative) {
           const double value = radiance(model, direction(h, 17))[0];
           EXPECT_TRUE(value >= 0 && std::isfinite(value)) << clearness << ' ' << brightness << ' ' << altitude;
         }
+      }
+    }
+  }
+}
+
+// The clearness (Perez et al. 1990, eq. 1), brightness and sun of a measured hour, as measured_daylight() makes them.
+Sky measured_sky(double direct_normal, double diffuse, double altitude) {
+  Sky sky = *measured_daylight({direct_normal, diffuse, 172}, direction(altitude, 0), Vector::UnitZ(), 1).sky;
+  sky.horizontal_irradiance = Spectrum::Constant(1, diffuse);
+  return sky;
+}
+
+TEST(SkyModel, OfPerezTakesTheBrightnessWithinTheLimitsOfTheFit) {
+  Sky sky = sky_of(SkyKind::perez);
+  const auto coefficients = [&](double clearness, double brightness) {
+    sky.clearness = clearness;
+    sky.brightness = brightness;
+    return sky_model(sky, Vector::UnitZ()).coefficients;
+  };
+  EXPECT_EQ(coefficients(1, 1.4), coefficients(1, 0.6));
+  EXPECT_EQ(coefficients(1.3, 0.05), coefficients(1.3, 0.2));
+  EXPECT_EQ(coefficients(8, 0.001), coefficients(8, 0.01));
+  // At the horizon, Z = pi / 2, and a clearness of 3: a = -1.5921 + 3.2149 Delta is 0 at 0.4952, b is above 0 there.
+  sky.sun_direction = direction(0, 0);
+  EXPECT_NEAR(coefficients(3, 0.55)[0], 0, 1e-12);
+  EXPECT_NEAR(coefficients(3, 0.49)[0], -1.5921 + 3.2149 * 0.49, 1e-4);
+}
+
+// A facade that looks at the sun gets at most four times the horizontal irradiance. Before, some got a thousand times.
+TEST(SkyModel, OfPerezGivesEveryMeasuredIrradianceAndNoFacadeMoreThanTheSunGives) {
+  for (const double direct_normal : {0.0, 100.0, 400.0, 1000.0}) {
+    for (const double diffuse : {10.0, 40.0, 100.0, 300.0}) {
+      for (const double altitude : {0.5, 2.0, 15.0, 90.0}) {
+        const SkyModel sky = sky_model(measured_sky(direct_normal, diffuse, altitude), Vector::UnitZ());
+        double horizontal = 0;
+        double facade = 0;
+        constexpr int n = 300;
+        for (int i = 0; i < n; ++i) {
+          for (int k = 0; k < n; ++k) {
+            // Equal solid angles, so that the lowest tenth of a degree counts as little as it should.
+            const double sine = (i + 0.5) / n;
+            const double azimuth = 2 * pi * (k + 0.5) / n;
+            const double across = std::sqrt(1 - sine * sine);
+            const double value =
+                radiance(sky, {across * std::cos(azimuth), across * std::sin(azimuth), sine})[0] * 2 * pi / n / n;
+            horizontal += value * sine;
+            facade += value * std::max(0.0, across * std::cos(azimuth));
+          }
+        }
+        const auto hour = [&] { return ::testing::Message() << direct_normal << ' ' << diffuse << ' ' << altitude; };
+        EXPECT_NEAR(horizontal, diffuse, 0.01 * diffuse) << hour();
+        EXPECT_LT(facade, 4 * diffuse) << hour();
       }
     }
   }

@@ -69,6 +69,13 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
   EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
 }
 
+TEST(Survey, DoubtsNoUnitThatTheFileStates) {
+  Scene tiny = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
+  tiny.unit_stated = true;
+  EXPECT_FALSE(has(survey_of(tiny), ProblemKind::implausible_size));
+  EXPECT_FALSE(survey_of(tiny).unit_guess);
+}
+
 // The room is 5.6 m long, less than 30 m, and ends at x = 4 m.
 TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
   Scene scene = furnished_room(0.5);

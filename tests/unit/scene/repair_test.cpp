@@ -352,7 +352,7 @@ TEST(WorstFirst, SortsByKindAndKeepsTheOrderWithinOne) {
   std::string order;
   for (const Problem& problem : sorted) order += problem.what;
   EXPECT_EQ(order, "cbda");
-  EXPECT_EQ(severity_of(ProblemKind::no_lamp), Severity::error);
+  EXPECT_EQ(severity_of(ProblemKind::no_lamp), Severity::warning);
   EXPECT_EQ(severity_of(ProblemKind::non_planar), Severity::warning);
   EXPECT_EQ(severity_of(ProblemKind::welded_vertices), Severity::remark);
 }

@@ -46,6 +46,30 @@ TEST(SpectralRadius, IsThatOfADenseEigensolver) {
   }
 }
 
+// Two rooms that see little of each other have two eigenvalues close together: the power iteration takes hundreds of
+// steps for them. K has the blocks [[.7 (1 - e), .7 e], [.7 e, .69 (1 - e)]] for even light in each room.
+TEST(SpectralRadius, OfTwoRoomsIsFoundInFewSteps) {
+  ExchangeAreas S(2 * size);
+  const ExchangeAreas room = made_up();
+  for (PatchIndex i = 0; i < size; ++i) {
+    for (PatchIndex j = i + 1; j < size; ++j) {
+      S.set(i, j, static_cast<float>(room.at(i, j)));
+      S.set(size + i, size + j, static_cast<float>(room.at(i, j)));
+    }
+  }
+  S.set(0, size, 0.05F);
+  const Eigen::VectorXd area = row_sums(S);
+  RadiosityProblem problem{{Field::Constant(2 * size, 1, 0.7)}, Field::Zero(2 * size, 1), area};
+  problem.scattering.reflectance.bottomRows(size) = 0.69;
+  const auto transport = dense_transport(keep_exchange_areas(S, "test"), area);
+  const Eigen::MatrixXd F = transport->apply(Field(Eigen::MatrixXd::Identity(2 * size, 2 * size))).matrix();
+  const Eigen::MatrixXd K = problem.scattering.reflectance.col(0).matrix().asDiagonal() * F;
+  const double exact = K.eigenvalues().cwiseAbs().maxCoeff();
+  const SpectralRadius found = spectral_radius_with_error(*transport, problem, 30);
+  EXPECT_NEAR(found.value[0], exact, 1e-9);
+  EXPECT_GE(found.error[0] + 1e-12, std::abs(found.value[0] - exact));
+}
+
 // For a symmetric matrix ||G w|| / ||w|| never exceeds the radius and does not fall from step to step: ||G w||^2 =
 // <w, G^2 w> <= ||w|| ||G^2 w||.
 TEST(SpectralRadius, IsApproachedFromBelow) {

@@ -147,29 +147,44 @@ TEST(PathSources, SunShinesThroughTwoPanesAtAnAngle) {
   }
 }
 
+void expect_the_solvers_radiance(const Sky& sky, const Vector& up) {
+  const SkyModel of_solver = sky_model(sky, up);
+  const SkyRadiance own(sky, up);
+  for (int k = 0; k < 200; ++k) {
+    const double z = 1 - (2 * k + 1) / 200.0;
+    const double across = std::sqrt(1 - z * z);
+    const Vector direction(across * std::cos(2.4 * k), across * std::sin(2.4 * k), z);
+    const double expected = radiance(of_solver, direction)[0];
+    EXPECT_NEAR(own.radiance_from(direction)[0], expected, 2e-4 * expected)
+        << static_cast<int>(sky.kind) << ' ' << sky.clearness << ' ' << sky.brightness;
+  }
+}
+
 // Both normalizations integrate a function of two angles by some 1e5 points: 1e-4 of each other.
 TEST(PathSources, SkiesAreThoseOfTheSolver) {
   const Vector up = Vector(0.2, -0.1, 1).normalized();
-  for (const SkyKind kind : {SkyKind::uniform, SkyKind::cie_overcast, SkyKind::cie_clear, SkyKind::perez}) {
-    for (const double clearness : {1.0, 1.1, 1.4, 1.7, 2.3, 3.5, 5.0, 8.0}) {
-      Sky sky;
-      sky.kind = kind;
-      sky.horizontal_irradiance = watts(70);
-      sky.sun_direction = Vector(0.5, -0.3, 0.6).normalized();
+  Sky sky;
+  sky.horizontal_irradiance = watts(70);
+  sky.sun_direction = Vector(0.5, -0.3, 0.6).normalized();
+  sky.ground_radiance = watts(3);
+  for (const SkyKind kind : {SkyKind::uniform, SkyKind::cie_overcast, SkyKind::cie_clear}) {
+    sky.kind = kind;
+    expect_the_solvers_radiance(sky, up);
+  }
+  // Brightnesses within the fit, and on either side of it.
+  sky.kind = SkyKind::perez;
+  for (const double clearness : {1.0, 1.1, 1.4, 1.7, 2.3, 3.5, 5.0, 8.0}) {
+    for (const double brightness : {0.05, 0.2, 1.4}) {
       sky.clearness = clearness;
-      sky.brightness = 0.2;
-      sky.ground_radiance = watts(3);
-      const SkyModel of_solver = sky_model(sky, up);
-      const SkyRadiance own(sky, up);
-      for (int k = 0; k < 200; ++k) {
-        const double z = 1 - (2 * k + 1) / 200.0;
-        const double across = std::sqrt(1 - z * z);
-        const Vector direction(across * std::cos(2.4 * k), across * std::sin(2.4 * k), z);
-        const double expected = radiance(of_solver, direction)[0];
-        EXPECT_NEAR(own.radiance_from(direction)[0], expected, 2e-4 * expected) << static_cast<int>(kind) << clearness;
-      }
+      sky.brightness = brightness;
+      expect_the_solvers_radiance(sky, up);
     }
   }
+  // A sun at the horizon, where brightness has a lower limit.
+  sky.sun_direction = up.unitOrthogonal();
+  sky.clearness = 3;
+  sky.brightness = 0.8;
+  expect_the_solvers_radiance(sky, up);
 }
 
 TEST(PathSources, SkyThroughAHoleHasItsFormFactor) {
