@@ -75,8 +75,8 @@ double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from
   return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
 }
 
-// Let radiosity vary linearly with standard deviation sigma. Its mean over an end of share v differs from the patch's by
-// sqrt(3) (1 - v) sigma. Sensors behind a grid see the same end of all its faces, so these errors add up.
+// Let radiosity vary linearly with standard deviation sigma. Its mean over an end of share v differs from the patch's
+// by sqrt(3) (1 - v) sigma. Sensors behind a grid see the same end of all its faces, so these errors add up.
 Spectrum error_of_hidden_share(const Slopes& slopes, PatchIndex j, double visible) {
   const double hidden = std::max(0.0, 1 - visible);
   return hidden * slopes.residual.row(j).max(std::numbers::sqrt3 * slopes.unknown.row(j));

@@ -119,8 +119,7 @@ Scene merge_scenes(std::vector<Scene> scenes) {
   merged.up_stated = scenes[0].up_stated;
   merged.north = scenes[0].north;
   merged.north_stated = scenes[0].north_stated;
-  merged.unit_stated =
-      std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.unit_stated; });
+  merged.unit_stated = std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.unit_stated; });
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     checksums.push_back(scenes[k].sha256);
     names += (k == 0 ? "" : " + ") + scenes[k].file;

@@ -15,8 +15,8 @@
 #include "input/read_radiance.h"
 #include "input/read_stl.h"
 #include "input/read_xml.h"
-#include "input/stated_unit.h"
 #include "input/stated_panes.h"
+#include "input/stated_unit.h"
 #include "input/text.h"
 
 #include <algorithm>

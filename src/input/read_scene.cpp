@@ -61,9 +61,8 @@ std::string upright_part(const ReadOptions& options, const std::vector<SceneFile
   std::string part = upright_part(options.daylight);
   for (const SceneFile& file : files) {
     if (part.empty()) part = upright_part(file.lights);
-    const bool has_grid = std::any_of(file.sensors.begin(), file.sensors.end(), [](const auto& entry) {
-      return std::holds_alternative<FloorGrid>(entry);
-    });
+    const bool has_grid = std::any_of(file.sensors.begin(), file.sensors.end(),
+                                      [](const auto& entry) { return std::holds_alternative<FloorGrid>(entry); });
     if (part.empty() && has_grid) part = "the sensor grid";
   }
   return part;
@@ -74,11 +73,12 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
   std::erase_if(scene.problems, [](const Problem& problem) { return problem.kind == ProblemKind::guessed_up; });
   if (scene.up_stated || part.empty()) return scene;
   const bool is_y = std::abs(scene.up.y()) > 0.5;
-  scene.problems.push_back({ProblemKind::guessed_up, 1,
+  scene.problems.push_back({ProblemKind::guessed_up,
+                            1,
                             std::string("no file states the upright axis, and ") + part + " depends on it; " +
-                                (is_y ? "y" : "z") + " is a guess by the areas of faces. Give read.up=" + (is_y ? "y" : "z") +
-                                " if it is right, else read.up=" + (is_y ? "z" : "y") +
-                                "; a scene file has the key up",
+                                (is_y ? "y" : "z") +
+                                " is a guess by the areas of faces. Give read.up=" + (is_y ? "y" : "z") +
+                                " if it is right, else read.up=" + (is_y ? "z" : "y") + "; a scene file has the key up",
                             {}});
   return scene;
 }

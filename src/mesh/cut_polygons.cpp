@@ -267,8 +267,8 @@ std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene&
     const bool is_loose = !loose.empty() && !loose[p].empty();
     if (!all && !is_loose && (same_detail || lines.empty())) return;
     const auto polygon = static_cast<PolygonIndex>(p);
-    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, edges.max_edge), front_normal(scene, polygon), lines,
-                              detail, grid);
+    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, edges.max_edge), front_normal(scene, polygon),
+                              lines, detail, grid);
   });
   return polygons;
 }

@@ -11,18 +11,18 @@
 namespace patchlight {
 namespace {
 
-constexpr std::array lamp_words = {
-    "lights", "lamp",     "lamps",     "desklamp",  "floorlamp",  "emit", "emitter",  "emitters",  "emission",   "emissive",
-    "glow",   "emitting", "glowing",   "bulb",      "bulbs",      "neon", "luminous", "lightbulb", "ceilinglight",
-    "led",    "spotlight", "downlight", "floodlight", "arealight"};
+constexpr std::array lamp_words = {"lights",       "lamp",     "lamps",     "desklamp",  "floorlamp",  "emit",
+                                   "emitter",      "emitters", "emission",  "emissive",  "glow",       "emitting",
+                                   "glowing",      "bulb",     "bulbs",     "neon",      "luminous",   "lightbulb",
+                                   "ceilinglight", "led",      "spotlight", "downlight", "floodlight", "arealight"};
 
 // Compounds, those of other languages among them, end in these.
 constexpr std::array lamp_endings = {"lampe", "lampen", "leuchte", "leuchten", "luminaire", "luminaires"};
 
 // After "light" these make a colour or a kind of material.
 constexpr std::array<std::string_view, 24> light_things = {
-    "grey", "gray",  "brown", "blue",  "green", "red",      "yellow", "beige",  "pink", "orange",  "purple", "cyan",
-    "wood", "oak",   "pine",  "maple", "stone", "concrete", "brick",  "marble", "tan",  "weight", "steel",  "metal"};
+    "grey", "gray", "brown", "blue",  "green", "red",      "yellow", "beige",  "pink", "orange", "purple", "cyan",
+    "wood", "oak",  "pine",  "maple", "stone", "concrete", "brick",  "marble", "tan",  "weight", "steel",  "metal"};
 
 bool is_small(char letter) { return letter >= 'a' && letter <= 'z'; }
 

@@ -50,9 +50,9 @@ struct SolverRun {
 
 /// All solvers on one matrix.
 struct Comparison {
-  Simulation simulation;          ///< with the reference as its solution
-  double reference_residual = 0;  ///< relative residual of the reference
-  double spectral_radius = 0;     ///< of K, the worst band: the rate that Jacobi should have
+  Simulation simulation;             ///< with the reference as its solution
+  double reference_residual = 0;     ///< relative residual of the reference
+  double spectral_radius = 0;        ///< of K, the worst band: the rate that Jacobi should have
   double spectral_radius_error = 0;  ///< of it; its digits below this are not known
   std::vector<SolverRun> runs;
 };

@@ -88,8 +88,8 @@ double observed_order(const StudySweep& by_size, double reference_patches) {
     if (reference_patches >= far_coarser * setting.patches) far.push_back(setting);
   }
   if (far.size() >= 2) {
-    const double order = order_in_edge(far[far.size() - std::min<std::size_t>(3, far.size())], far.back(),
-                                       reference_patches);
+    const double order =
+        order_in_edge(far[far.size() - std::min<std::size_t>(3, far.size())], far.back(), reference_patches);
     if (!std::isnan(order)) return order;
   }
   if (std::isinf(reference_patches)) return unknown;

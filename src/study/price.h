@@ -9,8 +9,8 @@
 namespace patchlight {
 
 /// The power p with which an error falls with the edge of the patches: e1 / e2 = (h1 / h2)^p from `coarse` to `fine`.
-/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall, or
-/// where the edges of `fine` are less than four times as long as those of the reference.
+/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall,
+/// or where the edges of `fine` are less than four times as long as those of the reference.
 double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
 
 /// The sweep with its orders filled in.

@@ -74,7 +74,7 @@ struct BandsAsked {
 struct ReadOptions {
   std::optional<double> metres_per_unit = {};  ///< length of one model unit, above 0, instead of the unit that the file
                                                ///< states; if not given, that one, else 1
-  std::optional<Vector> up = {};  ///< if not given, what the file says, else upright_axis() of the scene
+  std::optional<Vector> up = {};               ///< if not given, what the file says, else upright_axis() of the scene
   std::vector<MaterialSetting> settings = {};
   std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be
   std::vector<std::string> only = {};       ///< objects, groups or materials, nothing else takes part; empty: all

@@ -11,7 +11,7 @@ namespace patchlight {
 
 /// What can be wrong with a model, worst first.
 enum class ProblemKind : std::uint8_t {
-  no_lamp,                ///< nothing emits; a warning, as a sky or a luminaire can be added
+  no_lamp,  ///< nothing emits; a warning, as a sky or a luminaire can be added
   // Something the model means is lost.
   covered_lamp,           ///< a lamp lies under another face in the same plane
   missing_material_file,  ///< an mtllib that is nowhere

@@ -12,8 +12,9 @@ TEST(StatedUnit, OfColladaIsItsAttributeMeter) {
 }
 
 TEST(StatedUnit, OfIfcIsItsPrefixOrItsConversion) {
-  EXPECT_EQ(ifc_unit("#7=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n#8 = IFCSIUNIT(*, .LENGTHUNIT., .MILLI., .METRE.);"),
-            0.001);
+  EXPECT_EQ(
+      ifc_unit("#7=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n#8 = IFCSIUNIT(*, .LENGTHUNIT., .MILLI., .METRE.);"),
+      0.001);
   EXPECT_EQ(ifc_unit("#8=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);"), 1);
   EXPECT_EQ(ifc_unit("#8=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);#9=IFCCONVERSIONBASEDUNIT(#10,.LENGTHUNIT.,'FOOT',#11);"),
             0.3048);

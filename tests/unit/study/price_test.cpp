@@ -52,7 +52,8 @@ TEST(Order, AllowsForTheErrorOfTheReference) {
     const auto error = [p](double n, double m) { return std::pow(n, -p / 2) - std::pow(m, -p / 2); };
     const StudySetting coarse = setting(400, 1, error(400, 6400));
     const StudySetting fine = setting(1600, 1, error(1600, 6400));
-    EXPECT_TRUE(std::isnan(order_in_edge(coarse, fine, 6400))) << "the edges of the finer one are two of the reference's";
+    EXPECT_TRUE(std::isnan(order_in_edge(coarse, fine, 6400)))
+        << "the edges of the finer one are two of the reference's";
     StudySweep sweep{"patch size", Swept::patch_size, {coarse, fine}};
     // And the bar is the reference's own error.
     EXPECT_NEAR(richardson_bar(sweep, 6400), std::pow(6400, -p / 2), 1e-5 * std::pow(6400, -p / 2));
