@@ -24,16 +24,16 @@ constexpr std::array<std::string_view, 24> light_things = {
     "grey", "gray", "brown", "blue",  "green", "red",      "yellow", "beige",  "pink", "orange", "purple", "cyan",
     "wood", "oak",  "pine",  "maple", "stone", "concrete", "brick",  "marble", "tan",  "weight", "steel",  "metal"};
 
-bool is_small(char letter) { return letter >= 'a' && letter <= 'z'; }
+bool is_small_letter(char letter) { return letter >= 'a' && letter <= 'z'; }
 
-bool is_capital(char letter) { return letter >= 'A' && letter <= 'Z'; }
+bool is_capital_letter(char letter) { return letter >= 'A' && letter <= 'Z'; }
 
 // In small letters.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
   for (std::size_t k = 0; k < name.size(); ++k) {
-    const bool is_letter = is_small(name[k]) || is_capital(name[k]) || static_cast<unsigned char>(name[k]) >= 0x80;
-    const bool begins = is_capital(name[k]) && k > 0 && is_small(name[k - 1]);
+    const bool is_letter = is_small_letter(name[k]) || is_capital_letter(name[k]) || static_cast<unsigned char>(name[k]) >= 0x80;
+    const bool begins = is_capital_letter(name[k]) && k > 0 && is_small_letter(name[k - 1]);
     if ((!is_letter || begins) && !words.back().empty()) words.emplace_back();
     if (is_letter) words.back() += name[k];
   }

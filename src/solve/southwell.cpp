@@ -66,7 +66,7 @@ Field with_expected(const Field& unshot, const RadiosityProblem& problem, const 
 }
 
 // The patch with the most flux to shoot, summed over the bands.
-Eigen::Index brightest(const Field& waiting, const Eigen::VectorXd& area) {
+Eigen::Index brightest_patch(const Field& waiting, const Eigen::VectorXd& area) {
   Eigen::Index source = 0;
   (waiting.abs().rowwise().sum() * area.array()).maxCoeff(&source);
   return source;
@@ -103,7 +103,7 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
     const Field& waiting = shot == Shot::overshot ? overshot : unshot;
     // A first picture needs to know where the light of each group of patches goes.
     const bool explores = iterations.options().max_rows.has_value();
-    const Eigen::Index source = explores ? coarse.next_source(waiting) : brightest(waiting, problem.area);
+    const Eigen::Index source = explores ? coarse.next_source(waiting) : brightest_patch(waiting, problem.area);
     const Field shot_radiosity = waiting.row(source);
     // Nothing is left to shoot: what there is is the solution.
     const bool is_done = (shot_radiosity == 0).all();
