@@ -39,7 +39,7 @@ inline Triangles with_box(Triangles shape, const Point& low, const Point& high, 
 
 /// A closed room of 3 x 2.4 x 2.1 m with a box that floats in it. Most coordinates are no binary fractions.
 inline Triangles room() {
-  Triangles shape = with_box({}, Point(0, 0, 0), Point(3, 2.4, 2.1), true);
+  Triangles shape = with_box(Triangles(), Point(0, 0, 0), Point(3, 2.4, 2.1), true);
   return with_box(shape, Point(1.1, 0.7, 0.3), Point(1.9, 1.3, 0.9), false);
 }
 
