@@ -35,15 +35,6 @@ def main(build, version, cmake, compiler):
         run(folder / "consumer" / "own_solver", MODEL)
         assert (folder / "cube.ply").read_bytes().startswith(b"ply\n")
 
-        # A consumer with wider vectors than the library's aligns memory as the library does.
-        wide = folder / "wide"
-        run(cmake, "-S", HERE / "consumer", "-B", wide, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={installed}",
-            f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_CXX_FLAGS=-march=native")
-        run(cmake, "--build", wide)
-        run(wide / "consumer", MODEL, folder / "wide.ply")
-        run(wide / "own_solver", MODEL)
-        assert (folder / "wide.ply").read_bytes() == (folder / "cube.ply").read_bytes()
-
         # Of what the whole library is linked with, the core has what meshes and rays need.
         core = folder / "consumer_of_core" / "consumer_of_core"
         run(core)
