@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import mutate  # noqa: E402  it holds a scene file with everything
 
-CODES = [0, 0, 2, 2, 0, 0, 0, 0, 0, 0, 1, 2]  # of the commands
+CODES = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2]  # of the commands
 
 LOCALES = ["de_DE", "tr_TR"]
 
