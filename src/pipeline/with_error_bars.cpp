@@ -31,6 +31,7 @@ namespace {
 // Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
 // patches, for the sake of time: the mean over the patches around takes the noise away.
 constexpr int rays_from_quarters = 8;
+constexpr int max_rays_for_accuracy = 16;  // where an accuracy is requested
 
 int usual_rays_of_quarters(PatchIndex patches) {
   constexpr PatchIndex very_many_patches = 100'000;
@@ -170,7 +171,7 @@ int rays_of_quarters(const Simulation& simulation) {
   const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
   const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
   const double of_accuracy =
-      asked ? std::min(static_cast<double>(rays_from_quarters) / usual, usual_accuracy / *asked) : 1;
+      asked ? std::min(static_cast<double>(max_rays_for_accuracy) / usual, usual_accuracy / *asked) : 1;
   return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 

@@ -190,7 +190,7 @@ TEST(LocalCuts, GoOnWherePairsNoLongerFit) {
   request.accuracy.relative_error = 0.02;
   AssemblyOptions pairs = request.assembly;
   pairs.storage = Storage::tiles;
-  request.resources.memory = memory_needed(1000, pairs, request.accuracy);
+  request.resources.memory = memory_needed(1100, pairs, request.accuracy);
   const Simulation s = simulate(room_with_board(), request);
   EXPECT_EQ(s.plan.assembly.storage, Storage::rays);
   EXPECT_LE(s.accuracy.back().total, 0.02);
