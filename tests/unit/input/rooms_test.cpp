@@ -100,7 +100,7 @@ TEST_F(Rooms, OfNoSuchNameAreRefusedWithANearOne) {
 TEST_F(Rooms, AreInANewSceneFile) {
   const Scene scene = read_scene(folder_ / "house.ifc");
   const Scene again =
-      read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")));
+      read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, {}, folder_ / "new.toml")));
   EXPECT_TRUE(again.sky.has_value());
   EXPECT_EQ(again.sensors.size(), 2U);
   ASSERT_EQ(again.cameras.size(), 2U);
@@ -118,7 +118,7 @@ TEST_F(Rooms, WithTheLargestWindowsAreViewedFirst) {
   scene.materials.back().transmittance = Spectrum::Constant(scene.materials[0].reflectance.size(), 0.8);
   const auto pane = static_cast<MaterialIndex>(scene.materials.size() - 1);
   const auto first_view = [&] {
-    return read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")))
+    return read_scene(write("new.toml", new_scene_file(scene, {folder_ / "house.ifc"}, {}, folder_ / "new.toml")))
         .cameras.at(0)
         .name;
   };
@@ -144,7 +144,7 @@ TEST_F(Rooms, ThatNoDaylightGetsIntoHaveALampEachInANewSceneFile) {
   box.up = Vector::UnitZ();
   box.rooms = house.rooms;
   const Scene again =
-      read_scene(write("new.toml", new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml")));
+      read_scene(write("new.toml", new_scene_file(box, {folder_ / "house.ifc"}, {}, folder_ / "new.toml")));
   EXPECT_FALSE(again.sky.has_value());
   ASSERT_EQ(again.luminaires.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -161,11 +161,11 @@ TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
   for (int k = 0; k < 15; ++k) box.rooms.push_back({"room " + std::to_string(k), "", living.faces});
   for (std::vector<Point>& face : box.rooms[1].faces)
     for (Point& corner : face) corner.head<2>() *= 0.1;
-  const std::string text = new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml");
+  const std::string text = new_scene_file(box, {folder_ / "house.ifc"}, {}, folder_ / "new.toml");
   EXPECT_NE(text.find("\n# No lamp stands in: \"room 1\", \"room 13\", \"room 14\".\n"), std::string::npos) << text;
   EXPECT_EQ(read_scene(write("new.toml", text)).luminaires.size(), 12U);
   box.rooms.resize(1);
-  EXPECT_EQ(new_scene_file(box, {folder_ / "house.ifc"}, 1, folder_ / "new.toml").find("No lamp stands"),
+  EXPECT_EQ(new_scene_file(box, {folder_ / "house.ifc"}, {}, folder_ / "new.toml").find("No lamp stands"),
             std::string::npos);
 }
 
@@ -176,7 +176,7 @@ TEST_F(Rooms, HaveNoLampWhereNoPlaceIsFound) {
   const Point a(0, 0, 0), b(0, 4, 0), c(4, 0, 0), top(0, 0, 3);
   for (const std::vector<Point>& face : {std::vector{a, c, b}, {a, b, top}, {a, top, c}, {b, c, top}})
     spire = test::with_polygon(std::move(spire), face);
-  const std::string text = new_scene_file(spire, {folder_ / "house.ifc"}, 1, folder_ / "new.toml");
+  const std::string text = new_scene_file(spire, {folder_ / "house.ifc"}, {}, folder_ / "new.toml");
   for (const std::string line : {"# for which no place was found.\n# [[luminaire]]\n",
                                  "\n# name = \"lamp\"\n# kind = ", "\n# positions = [[X, Y, Z]]\n# lumens = 3000\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
