@@ -38,8 +38,8 @@ Scene with_point(Scene scene, const MitsubaFile& file, const pugi::xml_node& emi
 // The intensity on the axis holds up to the beam width and falls linearly to 0 at the cutoff angle. The profile of a
 // spot has the same half width; its field makes the flux the same within 7 %.
 Scene with_spot(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
-  const double cutoff = file.number(emitter, "cutoff_angle", file.number(emitter, "cutoffAngle", 20));
-  const double beam = file.number(emitter, "beam_width", file.number(emitter, "beamWidth", 0.75 * cutoff));
+  const double cutoff = file.number(emitter, "cutoffangle", 20);
+  const double beam = file.number(emitter, "beamwidth", 0.75 * cutoff);
   if (!(0 <= beam && beam < cutoff && cutoff <= 90))
     throw InputError(file.place(emitter), "found a spot with a beam width of " + rounded(beam) +
                                               " and a cutoff angle of " + rounded(cutoff) +

@@ -34,6 +34,7 @@ double error_of_first(double distance, float entry, int cuts = 0) {
   const RadiosityProblem problem;
   Solution solution;
   solution.irradiance = Field::Constant(2, 1, 3);
+  solution.radiosity = Field::Constant(2, 1, 6);  // the dark rest of the hemisphere makes this the range
   const Field errors = gap_errors(two_squares(distance), transport_with(entry), {problem, solution}, cuts);
   EXPECT_EQ(errors(1, 0), 0) << "no ray of it meets anything";
   return errors(0, 0);
