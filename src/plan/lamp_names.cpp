@@ -32,7 +32,8 @@ bool is_capital_letter(char letter) { return letter >= 'A' && letter <= 'Z'; }
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
   for (std::size_t k = 0; k < name.size(); ++k) {
-    const bool is_letter = is_small_letter(name[k]) || is_capital_letter(name[k]) || static_cast<unsigned char>(name[k]) >= 0x80;
+    const bool is_letter =
+        is_small_letter(name[k]) || is_capital_letter(name[k]) || static_cast<unsigned char>(name[k]) >= 0x80;
     const bool begins = is_capital_letter(name[k]) && k > 0 && is_small_letter(name[k - 1]);
     if ((!is_letter || begins) && !words.back().empty()) words.emplace_back();
     if (is_letter) words.back() += name[k];
