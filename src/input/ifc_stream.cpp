@@ -11,6 +11,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -56,10 +57,12 @@ std::string room_name(const std::string& name, const std::string& long_name) {
   return name + " " + long_name;
 }
 
-// Collects what the lines say.
+// Collects the scene from the lines.
 class IfcScene {
  public:
-  IfcScene(const std::string& file, double scale) : scale_(scale) { scene_.file = file; }
+  IfcScene(const std::string& file, std::optional<double> metres_per_unit) : metres_per_unit_(metres_per_unit) {
+    scene_.file = file;
+  }
 
   void add(const IfcJson& line) {
     if (line.contains("refusal")) throw InputError(scene_.file, line.at("refusal").get<std::string>());
@@ -70,6 +73,8 @@ class IfcScene {
         scene_.materials.push_back(ifc_material(line));
       }
     }
+    // Points come in metres by the unit that the file states.
+    if (line.contains("unit") && metres_per_unit_) scale_ = *metres_per_unit_ / line.at("unit").get<double>();
     if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
     if (line.contains("space")) add_space(line);
     if (line.contains("without_faces"))
@@ -125,7 +130,8 @@ class IfcScene {
   }
 
   Scene scene_;
-  double scale_;
+  std::optional<double> metres_per_unit_;
+  double scale_ = 1;
   LeftOut left_out_;
   std::map<std::string, std::uint32_t> groups_;
   std::map<std::uint64_t, std::size_t> rooms_;
@@ -134,8 +140,8 @@ class IfcScene {
 
 }  // namespace
 
-Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, double scale) {
-  IfcScene read(file, scale);
+Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::optional<double> metres_per_unit) {
+  IfcScene read(file, metres_per_unit);
   try {
     while (!lines.empty()) {
       const std::size_t end = std::min(lines.find('\n'), lines.size());
@@ -146,8 +152,8 @@ Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, doubl
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(file, std::string("what the reader of this format wrote is damaged: ") + error.what() +
-                               "; export the file again");
+    throw InputError(
+        file, std::string("the output of the IFC reader is damaged: ") + error.what() + "; export the file again");
   }
 }
 

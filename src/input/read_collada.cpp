@@ -32,4 +32,16 @@ Scene read_collada(const std::filesystem::path& file, double metres_per_unit, co
   return scene;
 }
 
+double collada_unit(std::string_view text) {
+  const std::size_t unit = text.find("<unit");
+  if (unit == std::string_view::npos) return 1;
+  const std::string_view element = text.substr(unit, text.find('>', unit) - unit);
+  const std::size_t key = element.find("meter=");
+  if (key == std::string_view::npos || key + 7 >= element.size()) return 1;
+  const std::size_t begin = key + 7;
+  const std::size_t end = element.find_first_of("\"'", begin);
+  const double metres = finite_number(element.substr(begin, end - begin)).value_or(1);
+  return metres > 0 ? metres : 1;
+}
+
 }  // namespace patchlight

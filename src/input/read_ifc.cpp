@@ -49,11 +49,12 @@ Program ifc_reader(const std::string& file) {
 
 }  // namespace
 
-Scene read_ifc(const fs::path& file, double metres_per_unit) {
+Scene read_ifc(const fs::path& file, std::optional<double> metres_per_unit) {
   const std::string bytes = read_text(file, file.string(), "the model file");
   const std::string lines = output_isolated(file.string(), ifc_reader(file.string()), bytes);
   Scene scene = scene_of_ifc_stream(lines, file.string(), metres_per_unit);
-  scene.metres_per_unit = metres_per_unit;
+  scene.metres_per_unit = metres_per_unit.value_or(1);
+  scene.unit_stated = !metres_per_unit;
   scene.up = Vector::UnitZ();
   scene.up_stated = true;
   scene.sha256 = sha256({&bytes, 1});

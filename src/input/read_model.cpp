@@ -16,7 +16,6 @@
 #include "input/read_stl.h"
 #include "input/read_xml.h"
 #include "input/stated_panes.h"
-#include "input/stated_unit.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -41,7 +40,6 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
   if (format == "stl") return read_stl(file, metres_per_unit);
   if (format == "off") return read_off(file, metres_per_unit);
   if (format == "dae") return read_collada(file, metres_per_unit, confine);
-  if (format == "ifc") return read_ifc(file, metres_per_unit);
   if (format == "gltf" || format == "glb") return read_gltf(file, metres_per_unit, confine);
   if (format == "hbjson") return read_hbjson(file, metres_per_unit);
   if (format == "xml") return read_xml(file, metres_per_unit, confine);
@@ -52,7 +50,8 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
 // With the given unit instead of that of the file, which states one unless it is XML of Mitsuba.
 Scene read_in_unit(const std::filesystem::path& file, const std::string& format, std::optional<double> metres_per_unit,
                    const std::filesystem::path& confine) {
-  constexpr std::array<const char*, 6> stating = {"dae", "ifc", "gltf", "glb", "hbjson", "xml"};
+  if (format == "ifc") return read_ifc(file, metres_per_unit);
+  constexpr std::array<const char*, 5> stating = {"dae", "gltf", "glb", "hbjson", "xml"};
   const bool states_unit = std::find(stating.begin(), stating.end(), format) != stating.end();
   if (!states_unit) return read_format(file, format, metres_per_unit.value_or(1), confine);
   Scene scene = read_format(file, format, 1, confine);
@@ -61,7 +60,6 @@ Scene read_in_unit(const std::filesystem::path& file, const std::string& format,
   if (!metres_per_unit) return scene;
   double stated = scene.metres_per_unit;
   if (format == "dae") stated = collada_unit(read_text(file, file.string(), "the model file"));
-  if (format == "ifc") stated = ifc_unit(read_text(file, file.string(), "the model file"));
   if (*metres_per_unit != stated) scene = read_format(file, format, *metres_per_unit / stated, confine);
   scene.metres_per_unit = *metres_per_unit;
   return scene;

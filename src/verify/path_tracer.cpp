@@ -384,10 +384,10 @@ PathEstimate trace_all(const PathTracer& tracer, std::size_t receivers, const St
   return estimate;
 }
 
-}  // namespace
-
-PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
-                              const PathOptions& options, const Observer& observer) {
+// The same for patches and for regions, on which paths start at random.
+template <class Receiver>
+PathEstimate trace_from_surfaces(const Scene& scene, const KeptSides& sides, std::span<const Receiver> receivers,
+                                 const PathOptions& options, const Observer& observer) {
   const PathTracer tracer(scene, sides, options);
   const auto starts = [&](std::size_t k, std::uint32_t paths, std::uint64_t seed) {
     return tracer.starts(receivers[k], paths, seed);
@@ -395,13 +395,16 @@ PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::s
   return trace_all(tracer, receivers.size(), starts, options, observer);
 }
 
+}  // namespace
+
+PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
+                              const PathOptions& options, const Observer& observer) {
+  return trace_from_surfaces(scene, sides, receivers, options, observer);
+}
+
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathRegion> regions,
                               const PathOptions& options, const Observer& observer) {
-  const PathTracer tracer(scene, sides, options);
-  const auto starts = [&](std::size_t k, std::uint32_t paths, std::uint64_t seed) {
-    return tracer.starts(regions[k], paths, seed);
-  };
-  return trace_all(tracer, regions.size(), starts, options, observer);
+  return trace_from_surfaces(scene, sides, regions, options, observer);
 }
 
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Sensor> sensors,

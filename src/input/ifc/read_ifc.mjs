@@ -310,6 +310,5 @@ async function main() {
 // web-ifc and the module loader write to the console, which is for our lines alone.
 for (const level of ['log', 'info', 'warn', 'error', 'debug']) console[level] = () => {};
 main().catch((error) => {
-  const isMissing = error?.code === 'MODULE_NOT_FOUND';
-  write(isMissing ? { missing: 'web-ifc' } : { refusal: `cannot be read: ${String(error?.message ?? error)}` });
+  write({ refusal: `cannot be read: ${String(error?.message ?? error)}` });
 });
