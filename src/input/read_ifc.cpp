@@ -24,7 +24,7 @@ fs::path program_file(const std::string& name) {
   std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
   for (std::string folder; std::getline(folders, folder, ':');) {
     std::error_code error;
-    const fs::path file = fs::canonical(fs::path(folder) / name, error);
+    fs::path file = fs::canonical(fs::path(folder) / name, error);
     if (!error && fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0) return file;
   }
   return {};
