@@ -119,7 +119,7 @@ std::size_t npy_count(const std::filesystem::path& file) {
   std::ifstream stream;
   const std::vector<std::size_t> shape = shape_of(value_of(open_npy(file, stream), "'shape':"));
   if (shape.size() == 1) return shape[0];
-  throw InputError(file.string(), "found another array than one of one dimension; make the form factors anew");
+  throw InputError(file.string(), "found another array than one of one dimension; compute the form factors again");
 }
 
 template <class Number>
@@ -133,7 +133,7 @@ void read_npy_pieces(const std::filesystem::path& file, std::size_t count,
                     bytes / sizeof(Number) == count;
   if (!good)
     throw InputError(file.string(), "found another array than one of " + std::to_string(count) + " numbers of type '" +
-                                        type_of<Number>() + "'; make the form factors anew");
+                                        type_of<Number>() + "'; compute the form factors again");
   constexpr std::size_t bytes_of_piece = std::size_t{1} << 18;
   std::vector<Number> piece(std::min(count, bytes_of_piece / sizeof(Number)));
   for (std::size_t first = 0; first < count; first += piece.size()) {
@@ -260,8 +260,8 @@ std::vector<std::uint8_t> read_npy_bytes(const std::filesystem::path& file, std:
   const bool good = value_of(text, "'descr':").starts_with("'|u1'") && shape == std::vector{count} &&
                     std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream.tellg()) == count;
   if (!good) {
-    throw InputError(file.string(),
-                     "found another array than one of " + std::to_string(count) + " bytes; make the form factors anew");
+    throw InputError(file.string(), "found another array than one of " + std::to_string(count) +
+                                        " bytes; compute the form factors again");
   }
   std::vector<std::uint8_t> values(count);
   stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count));

@@ -7,6 +7,7 @@
 #include "archive/row_sums.h"
 #include "archive/sampling_error_json.h"
 #include "base/parallel.h"
+#include "files/reason.h"
 #include "files/regular_file.h"
 #include "transport/narrow.h"
 
@@ -106,12 +107,12 @@ FormFactorInfo info_of(const nlohmann::json& json) {
 
 void require_positive(const std::filesystem::path& file, const Eigen::VectorXd& values) {
   if (values.allFinite() && (values.array() > 0).all()) return;
-  throw InputError(file.string(), "found an area that is not above 0; make the form factors anew");
+  throw InputError(file.string(), "found an area that is not above 0; compute the form factors again");
 }
 
 void require_shares(const std::filesystem::path& file, const Eigen::MatrixXd& values) {
   if (values.allFinite() && (values.array() >= 0).all() && (values.array() <= 1).all()) return;
-  throw InputError(file.string(), "found a share outside 0 to 1; make the form factors anew");
+  throw InputError(file.string(), "found a share outside 0 to 1; compute the form factors again");
 }
 
 // Can this be an entry of F? `exchange_area` is A_i F_ij and `other` A_j F_ji, in m^2.
@@ -161,11 +162,11 @@ bool take(const Rows& rows, PatchRange columns, ExchangeAreas& S) {
       std::ostringstream text;
       text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
            << " where A_j F_ji = " << other
-           << "; expected equal numbers, finite and not negative. Make the form factors anew";
+           << "; expected equal numbers, finite and not negative. Compute the form factors again";
       throw InputError(file.string(), text.str());
     }
   }
-  throw InputError(file.string(), "found a form factor that cannot be; make the form factors anew");
+  throw InputError(file.string(), "found a form factor that cannot be; compute the form factors again");
 }
 
 // S_ij = A_i F_ij from the rows of F.
@@ -215,8 +216,8 @@ FormFactorInfo read_form_factor_info(const std::filesystem::path& folder) {
     if (json.at("kind") != file_name::kind) throw InputError("kind", "found " + json.at("kind").dump());
     return info_of(json);
   } catch (const std::exception& error) {
-    throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
-                                        "); make the form factors anew");
+    throw InputError(file.string(), "is not as patchlight form-factors writes it (" + reason_of(error) +
+                                        "); compute the form factors again");
   }
 }
 
@@ -231,7 +232,7 @@ void require_same_geometry(const std::filesystem::path& folder, const FormFactor
        << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
        << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
           "mesh.patches; with mesh.sides=auto "
-          "the lamps decide, too. Or make them anew: patchlight form-factors MODEL -o "
+          "the lamps decide, too. Or compute them again: patchlight form-factors MODEL -o "
        << folder.string();
   throw InputError(folder.string(), text.str());
 }
@@ -251,7 +252,7 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
   require_same_geometry(folder, info, mesh);
   if (info.format != MatrixFormat::npy) {
     throw InputError(folder.string(),
-                     "found F.mtx; expected F.npy. Make the form factors anew, with the matrix as npy");
+                     "found F.mtx; expected F.npy. Compute the form factors again, with the matrix as npy");
   }
   const std::size_t size = info.patches;
   auto [area, lost] = read_shares(folder, info);

@@ -6,10 +6,12 @@
 #include "output/read_vtk.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
+#include "scene/extent.h"
 #include "visibility/covered_places.h"
 #include "visibility/tracing.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,22 +19,58 @@
 namespace patchlight {
 namespace {
 
-void require_sound(const StoredSolution& stored, const Scene& scene, const std::filesystem::path& file) {
-  const Eigen::Index bands = number_of_bands(scene);
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
+  throw InputError(file.string(), found + "; expected a solution as patchlight has written it: solve the scene again");
+}
+
+// Indices name what exists, and patches follow each other in the order of the scene's polygons, the front before the
+// back.
+void require_indices(const StoredSolution& stored, const Scene& scene, const std::filesystem::path& file) {
   const auto is_known = [&](std::uint32_t vertex) { return vertex < stored.vertices.size(); };
-  bool sound =
-      stored.radiosity.cols() == bands && stored.exitance.cols() == bands && stored.reflectance.cols() == bands;
+  bool sound = true;
   for (std::size_t k = 0; k < stored.corners.size(); ++k) {
     sound = sound && stored.polygon[k] < scene.polygons.size() &&
             std::all_of(stored.corners[k].begin(), stored.corners[k].end(), is_known);
-    // In the order of the scene's polygons, the front before the back.
     if (k > 0)
       sound =
           sound && std::pair(stored.polygon[k - 1], stored.side[k - 1]) <= std::pair(stored.polygon[k], stored.side[k]);
   }
   for (const Middle& middle : stored.middles)
     sound = sound && is_known(middle.vertex) && is_known(middle.ends[0]) && is_known(middle.ends[1]);
-  if (!sound) throw InputError(file.string(), "its patches do not fit the scene; expected a file as it was written");
+  if (!sound) refuse(file, "its patches do not fit the scene");
+}
+
+void require_values(const StoredSolution& stored, Eigen::Index bands, const std::filesystem::path& file) {
+  for (const Field* field : {&stored.radiosity, &stored.exitance, &stored.reflectance})
+    if (field->cols() != bands) refuse(file, "its bands are not those of the scene");
+  const auto lie_between_0_and = [](const Field& field, double most) {
+    return (field >= 0).all() && (field <= most).all();  // false for numbers that are not finite
+  };
+  constexpr double largest = std::numeric_limits<float>::max();
+  if (!lie_between_0_and(stored.radiosity, largest) || !lie_between_0_and(stored.exitance, largest))
+    refuse(file, "its radiosities are not finite, or negative");
+  if (!lie_between_0_and(stored.reflectance, 1)) refuse(file, "its reflectances do not lie between 0 and 1");
+}
+
+// Patches lie within the box of their polygon, and together they are no larger than it.
+void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesystem::path& file) {
+  constexpr double rounding = 1e-6;
+  const double length = rounding * extent_of(scene);
+  for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
+    const std::vector<Point> corners = corner_points(scene, static_cast<PolygonIndex>(slot / 2));
+    Box box;
+    for (const Point& corner : corners) box.extend(corner);
+    double area = 0;
+    for (PatchIndex patch = mesh.first_patch[slot]; patch < mesh.first_patch[slot + 1]; ++patch) {
+      bool sound = mesh.area[patch] > 0;
+      for (const std::uint32_t vertex : mesh.corners[patch])
+        sound = sound && box.exteriorDistance(mesh.vertices[vertex]) <= length;
+      if (!sound) refuse(file, "a patch does not lie in its polygon, or has no area");
+      area += mesh.area[patch];
+    }
+    if (area > area_vector(corners).norm() * (1 + 100 * rounding))
+      refuse(file, "the patches of a polygon are larger than it");
+  }
 }
 
 PatchMesh mesh_of(StoredSolution& stored, const Scene& scene) {
@@ -93,10 +131,12 @@ Simulation read_solution(const std::filesystem::path& file, const Scene& scene) 
                      "it is the solution of another scene: faces, materials or lights differ; expected that of the "
                      "models and options that are given; solve these, or give those that it was solved with");
   }
-  require_sound(stored, scene, file);
+  require_indices(stored, scene, file);
+  require_values(stored, number_of_bands(scene), file);
   Simulation simulation;
   simulation.mesh = mesh_of(stored, scene);
   const PatchMesh& mesh = simulation.mesh;
+  require_places(mesh, scene, file);
   Plan& plan = simulation.plan;
   plan.sides = sides_of(mesh, scene);
   plan.decisions = std::move(stored.decisions);

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "archive/file_names.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <sstream>
@@ -35,16 +36,15 @@ void require_raw_row_sums(const std::filesystem::path& file, const Eigen::Vector
     if (sums[i] >= 0 && sums[i] <= most[i]) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << " before closure; expected 0 to "
-         << most[i] << ". Make the form factors anew";
+         << most[i] << ". Compute the form factors again";
     throw InputError(file.string(), text.str());
   }
 }
 
-// Rows above 1.1 were cut to 1, each entry by the smaller of both patches' factors: a row keeps at least the smallest
-// factor of all, also one that was not cut itself.
+// Each entry was scaled by the smaller factor of its two rows: a row keeps at least the smallest factor of all, also
+// one that was not cut itself, and a cut row sum is still above 1.
 Range range_of_cut_row(double raw, double largest) {
-  const double most = raw > 1.1 * (1 + rounding) ? 1 : raw;
-  return {raw / std::max(1.0, largest) * (1 - rounding), most * (1 + rounding)};
+  return {raw / std::max(1.0, largest) * (1 - rounding), raw * (1 + rounding)};
 }
 
 // Where sum_j F_ij of a row must lie. As computed it is the stored sum, but for rounding. Closure makes it 1 in a
@@ -54,7 +54,7 @@ Range row_sum_range(const FormFactorInfo& info, const Exchange& exchange, Eigen:
   constexpr double most_overshoot = 0.2;
   const double raw = exchange.raw_row_sum[i];
   if (!is_closed(info)) return {raw - rounding * (1 + raw), raw + rounding * (1 + raw)};
-  if (info.closure.starts_with("rows above")) return range_of_cut_row(raw, largest);
+  if (info.closure.starts_with(cut_row_sums)) return range_of_cut_row(raw, largest);
   if (exchange.lost.closed()) return {raw > 0 ? 1 - rounding : 0, 1 + rounding};
   const double seen = 1 - exchange.lost.escaped[i] - exchange.lost.at_backs[i];
   return {std::min(raw, seen) - most_overshoot, std::max(raw, seen) + most_overshoot};
@@ -72,7 +72,7 @@ void require_row_sums(const std::filesystem::path& folder, const FormFactorInfo&
     if (sums[i] >= range.low && sums[i] <= range.high) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << "; expected " << range.low << " to "
-         << range.high << ", as raw_row_sum.npy and lost_share.npy say. Make the form factors anew";
+         << range.high << ", as raw_row_sum.npy and lost_share.npy say. Compute the form factors again";
     throw InputError((folder / file_name::dense).string(), text.str());
   }
 }

@@ -7,6 +7,7 @@
 #include "archive/file_names.h"
 #include "archive/json_values.h"
 #include "archive/lights_json.h"
+#include "files/reason.h"
 #include "files/regular_file.h"
 #include "output/write_bytes.h"
 
@@ -183,9 +184,10 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
 }
 
 [[noreturn]] void refuse_lights(const std::filesystem::path& folder) {
-  throw InputError(folder.string(),
-                   "its scene has luminaires, sun or sky, which earlier versions did not keep with form factors; make "
-                   "them anew: patchlight form-factors MODEL -o FOLDER");
+  throw InputError(
+      folder.string(),
+      "its scene has luminaires, sun or sky, which earlier versions did not keep with form factors; compute "
+      "them again: patchlight form-factors MODEL -o FOLDER");
 }
 
 StoredScene stored_scene_of(const Json& json) {
@@ -247,7 +249,7 @@ StoredScene read_stored_scene(const std::filesystem::path& folder) {
   std::ifstream stream(file);
   if (!stream) {
     throw InputError(folder.string(), std::string("there is no ") + file_name::scene +
-                                          " in it, as form factors of earlier versions have none; make them anew: "
+                                          " in it, as form factors of earlier versions have none; compute them again: "
                                           "patchlight form-factors MODEL -o FOLDER");
   }
   StoredScene stored;
@@ -257,8 +259,8 @@ StoredScene read_stored_scene(const std::filesystem::path& folder) {
     lights_left_out = !json.contains("lights") && json.at("has_point_or_daylight").get<bool>();
     stored = stored_scene_of(json);
   } catch (const std::exception& error) {
-    throw InputError(file.string(), std::string("is not what patchlight form-factors writes (") + error.what() +
-                                        "); make the form factors anew");
+    throw InputError(file.string(), "is not as patchlight form-factors writes it (" + reason_of(error) +
+                                        "); compute the form factors again");
   }
   if (lights_left_out) refuse_lights(folder);
   return stored;

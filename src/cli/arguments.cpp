@@ -33,7 +33,7 @@ namespace {
 constexpr const char* exit_codes =
     "Exit codes: 0 good, 1 usage, 2 input, 3 not converged or not as accurate as asked (results are\n"
     "written), 4 out of memory, 5 a validation or verification failed, 6 output cannot be written,\n"
-    "70 internal error, 130 interrupted (solve and relight write what is there unless --discard is given).";
+    "70 internal error, 128 + n stopped by signal n, as 130 by Ctrl-C (solve and relight write the results so far unless --discard is given).";
 
 // ": did you mean --max-edge?" when an option is at most two letters away, nothing otherwise.
 std::string near_option(const CLI::App& command, const std::string& unknown) {

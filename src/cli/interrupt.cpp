@@ -13,11 +13,13 @@ namespace {
 
 // A signal handler can reach nothing but static state.
 std::atomic<bool> stop_asked{false};
+std::atomic<int> last_signal{SIGINT};
 std::atomic<bool> end_asked{false};
 std::atomic<bool> keeping{false};
 std::atomic<bool> writing{false};
 std::atomic<bool> on_terminal{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may use lock-free atomics only");
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may use lock-free atomics only");
 
 constexpr suseconds_t patience_microseconds = 500'000;
 
@@ -30,13 +32,14 @@ void say(std::string_view message) {
 extern "C" void end_at_once(int) {
   if (writing) return;
   say("\npatchlight: error: interrupted; no further file was written\n");
-  _exit(interrupted_run);
+  _exit(interrupted_run());
 }
 
 extern "C" void ask_to_stop(int signal) {
+  last_signal = signal;
   const bool again = stop_asked.exchange(true);
-  if (keeping && signal == SIGINT && !again) {
-    say("\npatchlight: note: stopping, to write what is there; Ctrl-C once more ends without\n");
+  if (keeping && !again) {
+    say("\npatchlight: note: stopping to write the results so far; a second signal (Ctrl-C) ends without them\n");
     return;
   }
   end_asked = true;
@@ -66,6 +69,8 @@ void watch_interrupts() {
 }
 
 bool interrupted() { return stop_asked; }
+
+ExitCode interrupted_run() { return static_cast<ExitCode>(signal_base + last_signal); }
 
 void keep_what_is_there() { keeping = true; }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cli/exit_code.h"
+
 namespace patchlight::cli {
 
 /// From now on SIGINT, SIGTERM and SIGHUP, unless the caller ignores them, ask the run to stop: interrupted() becomes
@@ -10,11 +12,14 @@ void watch_interrupts();
 /// True once the run was asked to stop.
 bool interrupted();
 
-/// From now on there is something to write: the first Ctrl-C only asks the run to stop, however long that takes. A
-/// second one, SIGTERM and SIGHUP end it as before.
+/// The exit code of a run that was stopped: 128 and the number of the last signal.
+ExitCode interrupted_run();
+
+/// From now on there is something to write: the first signal only asks the run to stop, however long that takes. A
+/// second one ends it.
 void keep_what_is_there();
 
-/// After such a first Ctrl-C: forgets it, so that what is there can be written; the next one ends the run. False when
+/// After such a first signal: forgets it, so that what is there can be written; the next one ends the run. False when
 /// the run was asked to end.
 bool may_write_what_is_there();
 

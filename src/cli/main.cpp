@@ -20,6 +20,9 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <variant>
 
 namespace {
@@ -45,6 +48,13 @@ ExitCode run(int count, const char* const* values) {
   }
   if (const auto* to_render = std::get_if<RenderArguments>(&arguments)) return render(*to_render);
   return solve(std::get<SolveArguments>(arguments));
+}
+
+// The limit of processes of a user or a container. TBB reports it as a runtime_error that names the function.
+bool is_process_limit(const std::exception& error) {
+  const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr) return of_system->code() == std::errc::resource_unavailable_try_again;
+  return std::string_view(error.what()).starts_with("pthread_create");
 }
 
 ExitCode failed(ExitCode code, const char* what) {
@@ -77,8 +87,13 @@ int main(int count, char** values) {
   } catch (const std::bad_alloc&) {
     return failed(out_of_memory, "the memory is used up; ask for fewer patches with --patches or --max-edge");
   } catch (const Cancelled&) {
-    return failed(interrupted_run, "interrupted; no further file was written");
+    return failed(interrupted_run(), "interrupted; no further file was written");
   } catch (const std::exception& error) {
+    if (is_process_limit(error)) {
+      return failed(out_of_memory,
+                    "no further thread or process may start, as the limit of processes is reached (ulimit -u, "
+                    "RLIMIT_NPROC); use --threads 1, or raise the limit");
+    }
     return failed(internal_error, (std::string("internal error: ") + error.what()).c_str());
   }
 }

@@ -161,7 +161,7 @@ ExitCode render(const RenderArguments& arguments) {
   if (!stopped) return good;
   print_message("warning", unfinished ? "interrupted; the last picture is unfinished, with larger errors than asked for"
                                       : "interrupted; what is written is finished");
-  return interrupted_run;
+  return interrupted_run();
 }
 
 }  // namespace patchlight::cli

@@ -3,11 +3,13 @@
 #include "patchlight/base/error.h"
 
 #include "input/read_points.h"
+#include "input/text.h"
 
 namespace patchlight::cli {
 
 Scene with_points(Scene scene, const SolveArguments& arguments) {
   if (arguments.points.empty()) return scene;
+  require_within(arguments.read.confine, arguments.points, "--points");
   scene.sensors.push_back(read_points(arguments.points, scene.metres_per_unit));
   return scene;
 }

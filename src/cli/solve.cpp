@@ -56,7 +56,6 @@ struct Views {
   std::optional<InputError> lightmap_error;
 };
 
-// All that is computed before anything is written.
 struct Results {
   Scene scene;
   Simulation simulation;
@@ -181,16 +180,25 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
   return views;
 }
 
-// Without them when the run is stopped meanwhile, so that the solution is not lost.
-Results with_views(Results results, const SolveArguments& arguments, const Observer& observer) {
+// Without the views that are not finished when the run is stopped.
+Views views_until_stopped(const Scene& scene, Simulation& simulation, const SolveArguments& arguments,
+                          const Observer& observer) {
   if (!arguments.discards) keep_what_is_there();
+  Views views;
   try {
-    results.views = views_of(results.scene, results.simulation, arguments, observer);
+    views = views_of(scene, simulation, arguments, observer);
   } catch (const Cancelled&) {
-    results.simulation.unfinished = true;
+    simulation.unfinished = true;
   }
   if (!may_write_what_is_there()) throw Cancelled();
-  return results;
+  return views;
+}
+
+Report report_on(const Results& results, const Request& request) {
+  const SensorView& sensors = results.views.sensors;
+  const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
+  return report_of(results.scene, request, results.simulation,
+                   are_read ? sensor_facts(results.scene.sensors, sensors.readings, sensors.warnings) : SensorFacts{});
 }
 
 // Tells of each mesh as soon as it is solved, unless the run is quiet.
@@ -210,12 +218,11 @@ void tell_of_long_work(const Scene& scene, const SolveArguments& arguments, Prog
   for (const Problem& problem : problems_with_sensors(scene)) print_message("note", problem.what);
 }
 
-Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, ProgressLine& line) {
-  const Observer observer = observer_on(line);
+// The scene and its solution.
+Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, ProgressLine& line, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
 
-  // 1. Read the scene and the points
   StageClock reading;
   SolveInput input = read(arguments, observer);
   results.scene = std::move(input.scene);
@@ -224,7 +231,6 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, Progres
   print_scene_warnings(results.scene);
   tell_of_long_work(results.scene, arguments, line);
 
-  // 2. Solve
   Iterates iterates(!arguments.series.empty());
   const auto observed = [&](const Progress& progress) {
     iterates.add(progress);
@@ -235,21 +241,12 @@ Results compute(const SolveArguments& arguments, Checkpoint& checkpoint, Progres
   with.look = tell_of_meshes(arguments, line);
   with.row_blocks = checkpoint.blocks({results.scene, input.request.effects});
   simulation = simulate(results.scene, input.request, observed, with);
-  // Who stops a run that comes to its end all the same wants what it has.
   if (!may_write_what_is_there()) throw Cancelled();
   results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   results.provenance = {.command_line = arguments.command_line,
                         .exposure = exposure_of(results.scene, simulation),
                         .scene_hash = scene_hash(results.scene)};
-
-  // 3. Look at the solution, and tell of it
-  results = with_views(std::move(results), arguments, observer);
-  const SensorView& sensors = results.views.sensors;
-  const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
-  results.report =
-      report_of(results.scene, arguments.request, simulation,
-                are_read ? sensor_facts(results.scene.sensors, sensors.readings, sensors.warnings) : SensorFacts{});
   return results;
 }
 
@@ -280,52 +277,72 @@ Page page_of_run(const Results& results, const SolvedSurface& surface) {
   return page;
 }
 
-// Writes one file after the other, the series last, and lets them appear together; the run can be stopped between two.
-// Returns the files written.
-std::vector<std::filesystem::path> write(const SolveArguments& arguments, const Results& results) {
-  std::vector<std::filesystem::path> written;
-  WholeFiles files;
-  const auto write_to = [&](const std::filesystem::path& file, const auto& write_it) {
+// Files that appear together. The run can be stopped between two of them.
+class Outputs {
+ public:
+  template <typename Write>
+  void add(const std::filesystem::path& file, const Write& write) {
     if (file.empty()) return;
     if (interrupted()) throw Cancelled();
-    files.write(file, write_it);
-    written.push_back(file);
-  };
-  using Path = std::filesystem::path;
-  const WritingGuard guard;
-  if (!arguments.results.empty() || !arguments.page.empty()) {
-    const SolvedSurface surface = surface_of(results.scene, results.simulation, arguments.ambient_distance);
-    write_to(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, surface)); });
-    for (const Path& file : arguments.results) {
-      write_to(file, [&](const Path& to) { write_result(to, surface, results.provenance); });
-    }
+    files_.write(file, write);
+    written_.push_back(file);
   }
+  void publish() {
+    if (interrupted()) throw Cancelled();
+    files_.publish();
+  }
+  std::vector<std::filesystem::path> written() const { return written_; }
+
+ private:
+  WholeFiles files_;
+  std::vector<std::filesystem::path> written_;
+};
+
+// Writes the solution, before views of it begin that may take long.
+std::vector<std::filesystem::path> write_solution(const SolveArguments& arguments, const Results& results,
+                                                  const std::optional<SolvedSurface>& surface) {
+  Outputs outputs;
+  const WritingGuard guard;
+  for (const std::filesystem::path& file : arguments.results) {
+    outputs.add(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
+  }
+  outputs.publish();
+  return outputs.written();
+}
+
+// Writes the views, the report and, last, the series.
+std::vector<std::filesystem::path> write_views(const SolveArguments& arguments, const Results& results,
+                                               const std::optional<SolvedSurface>& surface) {
+  using Path = std::filesystem::path;
+  Outputs outputs;
+  const WritingGuard guard;
+  outputs.add(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, *surface)); });
   const Views& views = results.views;
   if (views.picture) {
-    write_to(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
-    write_to(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
+    outputs.add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
+    outputs.add(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
   }
   for (const Path& file : views.points_outputs) {
-    write_to(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
+    outputs.add(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
   }
   if (views.lightmap) {
     if (interrupted()) throw Cancelled();
     write_lightmap(arguments.lightmap.folder, results.scene, results.simulation, *views.lightmap, results.provenance);
-    written.push_back(arguments.lightmap.folder);
   }
-  write_to(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
+  outputs.add(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   if (arguments.series.empty()) {
-    if (interrupted()) throw Cancelled();
-    files.publish();
-    return written;
+    outputs.publish();
+  } else {
+    write_series(
+        arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
+        [](const Progress&) { return !interrupted(); },
+        [&](const std::string& collection) {
+          outputs.add(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
+          outputs.publish();
+        });
   }
-  write_series(
-      arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
-      [](const Progress&) { return !interrupted(); },
-      [&](const std::string& collection) {
-        write_to(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
-        files.publish();
-      });
+  std::vector<Path> written = outputs.written();
+  if (views.lightmap) written.push_back(arguments.lightmap.folder);
   return written;
 }
 
@@ -348,11 +365,20 @@ ExitCode solve(const SolveArguments& arguments) {
   const ThreadLimit limit(arguments.request.resources.threads);
   const bool quiet = arguments.verbosity == Verbosity::quiet;
   if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
-  const Results results = [&] {
-    ProgressLine line(progress_shown(quiet));
-    return compute(arguments, checkpoint, line);
-  }();
-  const std::vector<std::filesystem::path> written = write(arguments, results);
+  // 1. Solve, and write the solution
+  std::optional<ProgressLine> line(progress_shown(quiet));
+  const Observer observer = observer_on(*line);
+  Results results = solved(arguments, checkpoint, *line, observer);
+  std::optional<SolvedSurface> surface;
+  if (!arguments.results.empty() || !arguments.page.empty())
+    surface.emplace(surface_of(results.scene, results.simulation, arguments.ambient_distance));
+  std::vector<std::filesystem::path> written = write_solution(arguments, results, surface);
+
+  // 2. Look at it, and write the views
+  results.views = views_until_stopped(results.scene, results.simulation, arguments, observer);
+  results.report = report_on(results, arguments.request);
+  line.reset();
+  for (std::filesystem::path& file : write_views(arguments, results, surface)) written.push_back(std::move(file));
   if (!results.report.solution.unfinished) checkpoint.remove();
 
   if (const std::string note = checkpoint.note(); !note.empty() && !quiet) print_message("note", note);
@@ -370,7 +396,7 @@ ExitCode solve(const SolveArguments& arguments) {
   if (results.views.lightmap_error) throw InputError(*results.views.lightmap_error);
   if (results.report.solution.unfinished) {
     print_message("warning", explain_unfinished(results.report));
-    return interrupted_run;
+    return interrupted_run();
   }
   if (!results.report.solution.converged) {
     print_message("warning", explain_not_converged(results.report));

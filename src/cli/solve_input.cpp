@@ -34,7 +34,7 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
   std::ostringstream text;
   text << "found form factors of " << info.patches << " patches with edges up to " << info.max_edge << " m, made from "
        << info.model << "; this model takes at least " << least
-       << " such patches. Give the model of then, or make them anew: patchlight form-factors MODEL -o FOLDER";
+       << " such patches. Give the model of then, or compute them again: patchlight form-factors MODEL -o FOLDER";
   throw InputError(folder.string(), text.str());
 }
 
@@ -61,7 +61,7 @@ void require_same_panes(const std::filesystem::path& folder, const StoredShares&
     text << "found form factors with a face that lets the share " << 1 - then
          << " of an even sky's light go on, through "
          << "it or as from a mirror; now it lets " << 1 - now << " go on. Set the transmittance, index and specular "
-         << "reflectance of then, or make them anew: patchlight form-factors MODEL -o FOLDER";
+         << "reflectance of then, or compute them again: patchlight form-factors MODEL -o FOLDER";
     throw InputError(folder.string(), text.str());
   }
 }
@@ -75,13 +75,14 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
     throw InputError(
         arguments.form_factors.string(),
         "found patches that end where faces touch, with --no-contact-lines; leave that out, or make the form "
-        "factors anew with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
+        "factors again with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
   request.mesh.contact_lines = info.contact_lines;
   request.mesh.contact_line_count = info.contact_line_count;
   if (request.mesh.graded_edges && !info.graded_edges)
-    throw InputError(arguments.form_factors.string(),
-                     "found even patches, with --graded-edges; leave that out, or make the form factors anew with it: "
-                     "patchlight form-factors MODEL --graded-edges -o FOLDER");
+    throw InputError(
+        arguments.form_factors.string(),
+        "found even patches, with --graded-edges; leave that out, or compute the form factors again with it: "
+        "patchlight form-factors MODEL --graded-edges -o FOLDER");
   request.mesh.graded_edges = info.graded_edges;
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {
@@ -100,10 +101,11 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
     request.effects.force.push_back(Effect::closure);
     return request;
   }
-  throw InputError(arguments.form_factors.string(),
-                   "found form factors whose rows are closed (" + info.closure +
-                       "); expected them as computed, without closure. Make them anew: patchlight form-factors MODEL "
-                       "--raw -o FOLDER");
+  throw InputError(
+      arguments.form_factors.string(),
+      "found form factors whose rows are closed (" + info.closure +
+          "); expected them as computed, without closure. Compute them again: patchlight form-factors MODEL "
+          "--raw -o FOLDER");
 }
 
 }  // namespace

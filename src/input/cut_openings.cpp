@@ -235,20 +235,49 @@ std::size_t holes_in(const ShapeCutter& cutter, const std::vector<Shape>& shapes
   return holes;
 }
 
-// A polygon on both sides of a line that opens holes; nothing where GEOS fails.
-std::vector<Shape> cut_through_holes(const ShapeCutter& cutter, const GEOSGeometry* polygon,
-                                     const std::vector<FlatRing>& rings) {
-  Eigen::AlignedBox2d box = box_of(rings[0]);
+// A polygon on both sides of a line; nothing where GEOS fails.
+std::vector<Shape> sides_of(const ShapeCutter& cutter, const GEOSGeometry* polygon, const FlatRing& outline,
+                            const CutLine& line) {
+  Eigen::AlignedBox2d box = box_of(outline);
   const FlatPoint margin = FlatPoint::Constant(0.1 * box.diagonal().norm());
   box = Eigen::AlignedBox2d(box.min() - margin, box.max() + margin);
+  std::vector<Shape> sides;
+  for (const Eigen::AlignedBox2d& half : halves_of(box, line)) sides.push_back(cutter.within(polygon, half));
+  return sides[0] && sides[1] ? std::move(sides) : std::vector<Shape>{};
+}
+
+std::vector<Shape> cut_through_holes(const ShapeCutter& cutter, const GEOSGeometry* polygon,
+                                     const std::vector<FlatRing>& rings) {
   for (const bool through_middle : {false, true}) {
-    std::vector<Shape> sides;
-    for (const Eigen::AlignedBox2d& half : halves_of(box, best_cut(rings, cutter.grid(), through_middle)))
-      sides.push_back(cutter.within(polygon, half));
-    if (!sides[0] || !sides[1]) continue;
-    if (holes_in(cutter, sides) + 1 < rings.size()) return sides;
+    std::vector<Shape> sides = sides_of(cutter, polygon, rings[0], best_cut(rings, cutter.grid(), through_middle));
+    if (!sides.empty() && holes_in(cutter, sides) + 1 < rings.size()) return sides;
   }
   return {};
+}
+
+// Later passes take the square of the corners of one polygon, so that a wall with many windows along its edge is cut in
+// two at its middle corner until no part has more than this.
+constexpr std::size_t most_corners_of_part = 256;
+
+// The longer way across the outline, at the median of its corners.
+CutLine middle_cut(FlatRing outline) {
+  CutLine line;
+  box_of(outline).sizes().maxCoeff(&line.axis);
+  const auto middle = outline.begin() + static_cast<std::ptrdiff_t>(outline.size() / 2);
+  std::nth_element(outline.begin(), middle, outline.end(),
+                   [&](const FlatPoint& a, const FlatPoint& b) { return a[line.axis] < b[line.axis]; });
+  line.at = (*middle)[line.axis];
+  return line;
+}
+
+// Two sides with fewer corners each; nothing where the cut does not help.
+std::vector<Shape> cut_in_two(const ShapeCutter& cutter, const GEOSGeometry* polygon, const FlatRing& outline) {
+  std::vector<Shape> sides = sides_of(cutter, polygon, outline, middle_cut(outline));
+  for (const Shape& side : sides) {
+    for (const GEOSGeometry* part : cutter.polygons_of(side.get()))
+      if (cutter.rings_of(part)[0].size() >= outline.size()) return {};
+  }
+  return sides;
 }
 
 // The outlines of polygons without holes that make up the shape; nothing where GEOS fails.
@@ -262,12 +291,15 @@ std::optional<std::vector<FlatRing>> simple_parts(const ShapeCutter& cutter, Sha
     if (!next) return std::nullopt;
     for (const GEOSGeometry* polygon : cutter.polygons_of(next.get())) {
       std::vector<FlatRing> rings = cutter.rings_of(polygon);
-      if (rings.size() == 1) {
-        parts.push_back(std::move(rings[0]));
-        continue;
+      const bool has_holes = rings.size() > 1;
+      std::vector<Shape> sides;
+      if (has_holes) {
+        sides = cut_through_holes(cutter, polygon, rings);
+        if (sides.empty()) return std::nullopt;
+      } else if (rings[0].size() > most_corners_of_part) {
+        sides = cut_in_two(cutter, polygon, rings[0]);
       }
-      std::vector<Shape> sides = cut_through_holes(cutter, polygon, rings);
-      if (sides.empty()) return std::nullopt;
+      if (sides.empty()) parts.push_back(std::move(rings[0]));
       std::move(sides.begin(), sides.end(), std::back_inserter(left));
     }
   }

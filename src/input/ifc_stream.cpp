@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "files/reason.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/stated_panes.h"
@@ -152,8 +153,7 @@ Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(
-        file, std::string("the output of the IFC reader is damaged: ") + error.what() + "; export the file again");
+    throw InputError(file, "the output of the IFC reader is damaged: " + reason_of(error) + "; export the file again");
   }
 }
 

@@ -2,20 +2,9 @@
 
 #include "base/rounded.h"
 #include "input/text.h"
-
-#include <set>
+#include "input/unique_names.h"
 
 namespace patchlight {
-namespace {
-
-std::string unique_name(const std::string& name, std::size_t number, const std::set<std::string>& taken) {
-  const std::string base = name.empty() ? "material " + std::to_string(number) : name;
-  std::string unique = base;
-  for (int copy = 2; taken.count(unique) > 0; ++copy) unique = base + " (" + std::to_string(copy) + ")";
-  return unique;
-}
-
-}  // namespace
 
 Material default_material() { return {"default", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}; }
 
@@ -37,13 +26,12 @@ Scene with_used_materials(Scene scene) {
     if (polygon.back_material) number[*polygon.back_material] = 0;
   }
   std::vector<Material> materials;
-  std::set<std::string> taken;
+  UniqueNames names;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     if (number[m] == unused) continue;
     number[m] = static_cast<MaterialIndex>(materials.size());
     Material material = scene.materials[m];
-    material.name = unique_name(material.name, m, taken);
-    taken.insert(material.name);
+    material.name = names.unique(material.name.empty() ? "material " + std::to_string(m) : material.name);
     materials.push_back(std::move(material));
   }
   for (Polygon& polygon : scene.polygons) {

@@ -1,10 +1,12 @@
 #include "input/merge_scenes.h"
 
 #include "files/sha256.h"
+#include "input/unique_names.h"
 
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <map>
 
 namespace patchlight {
 namespace {
@@ -25,20 +27,6 @@ bool same_values(const Material& a, const Material& b) {
          same_values(a.diffuse_transmittance, b.diffuse_transmittance);
 }
 
-std::vector<Material>::const_iterator find(const std::vector<Material>& materials, const std::string& name) {
-  return std::find_if(materials.begin(), materials.end(), [&](const Material& m) { return m.name == name; });
-}
-
-// "wall (b.obj)", or "wall (b.obj 2)" where that is taken.
-std::string free_name(const std::vector<Material>& taken, const std::string& name, const std::string& file) {
-  const std::string stem = name + " (" + std::filesystem::path(file).filename().string();
-  std::string candidate = stem + ")";
-  for (int copy = 2; find(taken, candidate) != taken.end(); ++copy) {
-    candidate = stem + " " + std::to_string(copy) + ")";
-  }
-  return candidate;
-}
-
 // The scene with another one's materials added; what becomes of those is their index in the scene.
 struct MergedPalette {
   std::vector<Material> materials;
@@ -48,17 +36,29 @@ struct MergedPalette {
 
 MergedPalette with_materials(std::vector<Material> materials, const Scene& added) {
   MergedPalette palette;
+  UniqueNames names;
+  std::map<std::string, MaterialIndex> index;
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    index.emplace(names.unique(materials[m].name), static_cast<MaterialIndex>(m));
+  const std::string file = std::filesystem::path(added.file).filename().string();
   for (Material material : added.materials) {
-    auto found = find(materials, material.name);
-    if (found != materials.end() && !same_values(*found, material)) {
-      const std::string name = free_name(materials, material.name, added.file);
+    const auto known = index.find(material.name);
+    if (known != index.end() && same_values(materials[known->second], material)) {
+      palette.index.push_back(known->second);
+      continue;
+    }
+    if (known != index.end()) {
+      const std::string name = names.unique(material.name + " (" + file + ")");
       palette.notes.push_back("material '" + material.name + "' of " + added.file +
                               " differs from that of an earlier file and is called '" + name + "'");
       material.name = name;
-      found = materials.cend();
+    } else {
+      names.unique(material.name);
     }
-    palette.index.push_back(static_cast<MaterialIndex>(found - materials.cbegin()));
-    if (found == materials.cend()) materials.push_back(std::move(material));
+    const auto number = static_cast<MaterialIndex>(materials.size());
+    index.emplace(material.name, number);
+    palette.index.push_back(number);
+    materials.push_back(std::move(material));
   }
   palette.materials = std::move(materials);
   return palette;

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "input/reading_limits.h"
 #include "input/text.h"
 #include "input/turned_about.h"
 
@@ -73,12 +74,12 @@ std::optional<Spectrum> MitsubaFile::picture(const pugi::xml_node& texture) cons
 
 void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,
                       std::uint32_t line) {
-  constexpr std::size_t most_files = 1000;
   require_within(confine, file, where);
   std::error_code error;
   open_.push_back(std::filesystem::weakly_canonical(file, error));
-  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 || files_.size() == most_files)
-    throw InputError(where, "includes " + file.string() + ", which includes this file again, or over 1,000 files");
+  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 ||
+      files_.size() == reading_limits::files)
+    throw InputError(where, "includes " + file.string() + ", which includes this file again, or over 200,000 files");
   files_.push_back(std::make_unique<XmlFile>(read_xml_file(file, where)));
   lines_.push_back(line);
   const XmlFile& xml = *files_.back();
@@ -98,7 +99,10 @@ void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::
   for (const pugi::xml_node& node : root.children()) {
     const std::string_view kind = node.name();
     if (kind == "default") {
-      defaults_.emplace(node.attribute("name").value(), node.attribute("value").value());
+      const std::string value = node.attribute("value").value();
+      if (value.size() > reading_limits::variable_length)
+        throw InputError(place_of(xml, node), "<default> has a value of more than 4,096 characters; expected fewer");
+      defaults_.emplace(node.attribute("name").value(), value);
     } else if (kind == "include") {
       add(file.parent_path() / text(node, "filename"), confine, place_of(xml, node),
           line == 0 ? line_of(xml, node) : line);
@@ -144,6 +148,10 @@ std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute)
                                         "value=\"1\"/>");
     result += best->second;
     at += best->first.size();
+    if (result.size() > reading_limits::text_length)
+      throw InputError(place(node), std::string(attribute) +
+                                        " has more than a million characters, with the values of its "
+                                        "variables; expected fewer");
   }
   return result;
 }

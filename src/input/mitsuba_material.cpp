@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "input/mitsuba_spectrum.h"
+#include "input/reading_limits.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
@@ -62,8 +63,6 @@ class MaterialReader {
   }
 
  private:
-  static constexpr int deepest = 64;
-
   void simplify(const std::string& what) { read_.simplified.push_back(what); }
 
   void add(const pugi::xml_node& bsdf, int depth) {
@@ -72,7 +71,7 @@ class MaterialReader {
       simplify("surfaces without a BSDF have the reflectance 0.5");
       read_.material.reflectance = rgb(0.5, 0.5, 0.5);
     } else if (is_one_of(wrappers, kind)) {
-      if (depth == deepest) throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
+      if (depth == reading_limits::nesting) throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
       if (kind != "twosided") simplify(kind + " is left out, what it is put around counts");
       add(file_.nested(bsdf, "bsdf"), depth + 1);
     } else if (is_one_of(glass_kinds, kind)) {

@@ -2,7 +2,7 @@
 
 #include "input/assimp_scene.h"
 #include "input/decoded_pictures.h"
-#include "input/isolated.h"
+#include "input/scene_bytes.h"
 #include "input/text.h"
 
 #include <utility>

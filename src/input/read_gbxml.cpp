@@ -9,6 +9,7 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/text.h"
+#include "input/unique_names.h"
 
 #include <algorithm>
 #include <map>
@@ -137,17 +138,16 @@ class GbxmlReader {
   }
 
   MaterialIndex index_of(const Material& material) {
-    // Window types of one name may let different shares of light through.
-    Material named = material;
-    for (int copy = 2;; ++copy) {
-      const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
-                                      [&](const Material& one) { return one.name == named.name; });
-      const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
-      if (found == scene_.materials.end()) scene_.materials.push_back(named);
-      const Spectrum& other = scene_.materials[index].transmittance;
-      if (other.size() == named.transmittance.size() && (other == named.transmittance).all()) return index;
-      named.name = material.name + " (" + std::to_string(copy) + ")";
+    // Window types of one name may have different transmittances.
+    const Spectrum& transmittance = material.transmittance;
+    const auto [found, is_new] = materials_by_transmittance_.emplace(
+        std::pair(material.name, std::vector<double>(transmittance.begin(), transmittance.end())),
+        static_cast<MaterialIndex>(scene_.materials.size()));
+    if (is_new) {
+      scene_.materials.push_back(material);
+      scene_.materials.back().name = material_names_.unique(material.name);
     }
+    return found->second;
   }
 
   // The faces of a space: its shell, else what is around it.
@@ -177,15 +177,8 @@ class GbxmlReader {
         continue;
       }
       scene_.rooms.push_back(
-          {free_name(name_of(space)), storey == storeys.end() ? "" : storey->second, std::move(faces)});
+          {room_names_.unique(name_of(space)), storey == storeys.end() ? "" : storey->second, std::move(faces)});
     }
-  }
-
-  // Names of rooms tell them apart.
-  std::string free_name(const std::string& name) {
-    std::string free = name;
-    for (int copy = 2; !room_names_.insert(free).second; ++copy) free = name + " (" + std::to_string(copy) + ")";
-    return free;
   }
 
   const XmlFile& xml_;
@@ -194,7 +187,9 @@ class GbxmlReader {
   Scene scene_;
   LeftOut left_out_;
   std::map<std::string, std::vector<std::vector<Point>>> faces_of_space_;
-  std::set<std::string> room_names_;
+  UniqueNames room_names_;
+  UniqueNames material_names_;
+  std::map<std::pair<std::string, std::vector<double>>, MaterialIndex> materials_by_transmittance_;
   double turned_ = 0;  // what is up in plan to true north, degrees
 };
 

@@ -6,9 +6,9 @@
 #include "input/gltf_material.h"
 #include "input/gltf_model.h"
 #include "input/gltf_texture.h"
-#include "input/isolated.h"
 #include "input/left_out.h"
 #include "input/materials.h"
+#include "input/scene_bytes.h"
 #include "input/texture_maps.h"
 
 #include <array>
@@ -59,7 +59,7 @@ class GltfCollector {
     // Section 3.5.2: no node is below two others. A few that are, below each other, would be added millions of times.
     if (!exists || is_added_[static_cast<std::size_t>(index)]) {
       throw InputError(scene_.file, "node " + std::to_string(index) +
-                                        " is missing, or there twice, in the tree of nodes; export the model anew");
+                                        " is missing, or there twice, in the tree of nodes; export the model again");
     }
     is_added_[static_cast<std::size_t>(index)] = 1;
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
@@ -164,7 +164,7 @@ class GltfCollector {
     }
     for (const double index : accessor_values(model_, primitive.indices, 1, scene_.file)) {
       if (!(index >= 0 && index < vertices)) {
-        throw InputError(scene_.file, "a triangle names a vertex that is not there; export the model anew");
+        throw InputError(scene_.file, "a triangle names a vertex that is not there; export the model again");
       }
       corners.push_back(static_cast<std::uint32_t>(index));
     }

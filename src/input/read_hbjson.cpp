@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "files/reason.h"
 #include "files/sha256.h"
 #include "input/cut_openings.h"
 #include "input/honeybee_modifiers.h"
@@ -300,9 +301,7 @@ Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
     scene.sha256 = sha256({&bytes, 1});
     return scene;
   } catch (const HbJson::exception& error) {
-    std::string what = error.what();
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    throw InputError(file.string(), "is not a good honeybee model: " + what + "; export it anew");
+    throw InputError(file.string(), "is not a good honeybee model: " + reason_of(error) + "; export it again");
   }
 }
 

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/error.h"
 
+#include "files/isolated.h"
 #include "files/sha256.h"
 #include "input/ifc_stream.h"
-#include "input/isolated.h"
 #include "input/share_folder.h"
 #include "input/text.h"
 

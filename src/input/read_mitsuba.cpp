@@ -8,6 +8,8 @@
 #include "input/mitsuba_emitters.h"
 #include "input/mitsuba_material.h"
 #include "input/mitsuba_shape.h"
+#include "input/reading_limits.h"
+#include "input/unique_names.h"
 
 #include <algorithm>
 #include <map>
@@ -55,9 +57,6 @@ class MitsubaReader {
   }
 
  private:
-  static constexpr int deepest = 16;
-  static constexpr std::size_t most_polygons = 10'000'000;
-
   static std::string stem(const std::string& name) { return std::filesystem::path(name).stem().string(); }
 
   // Its id, the name of its mesh, or its kind.
@@ -87,14 +86,18 @@ class MitsubaReader {
 
   void add_instance(const pugi::xml_node& instance, const Eigen::Matrix4d& above, int depth) {
     const pugi::xml_node group = file_.nested(instance, "shape");
-    if (depth == deepest) throw InputError(file_.place(instance), "instances stand in each other more than 16 deep");
-    for (const pugi::xml_node& shape : group.children("shape"))
+    if (depth == reading_limits::nesting)
+      throw InputError(file_.place(instance), "instances stand in each other more than 64 deep; expected fewer levels");
+    for (const pugi::xml_node& shape : group.children("shape")) {
+      if (++copies_ > reading_limits::copies)
+        throw InputError(file_.place(instance), "instances hold more than 1,000,000 shapes; expected fewer");
       add_shape(shape, above * file_.to_world(instance), depth + 1);
+    }
   }
 
   void add_faces(const pugi::xml_node& shape, const FacetedShape& faces, const Eigen::Matrix4d& to_scene,
                  MaterialIndex material, std::uint32_t group) {
-    if (scene_.polygons.size() + faces.faces.size() > most_polygons)
+    if (scene_.polygons.size() + faces.faces.size() > reading_limits::polygons)
       throw InputError(file_.place(shape), "there are more than 10,000,000 faces, counting instances; expected fewer");
     const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
     for (const Point& point : faces.points) scene_.vertices.emplace_back((to_scene * point.homogeneous()).head<3>());
@@ -140,10 +143,7 @@ class MitsubaReader {
   }
 
   std::uint32_t free_group(const std::string& name) {
-    std::string free = name;
-    int& copy = copies_[name];  // the last number that was given
-    while (!groups_.insert(free).second) free = name + " (" + std::to_string(++copy + 1) + ")";
-    scene_.groups.push_back(free);
+    scene_.groups.push_back(group_names_.unique(name));
     return static_cast<std::uint32_t>(scene_.groups.size() - 1);
   }
 
@@ -151,8 +151,8 @@ class MitsubaReader {
   MitsubaMeshes meshes_;
   Scene scene_;
   LeftOut left_out_;
-  std::set<std::string> groups_;
-  std::map<std::string, int> copies_;  // of a name
+  UniqueNames group_names_;
+  std::size_t copies_ = 0;  // shapes visited within instances
   std::map<std::tuple<std::size_t, std::string, std::array<double, 3>>, std::optional<MaterialIndex>> index_;
 };
 

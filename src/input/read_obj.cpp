@@ -26,10 +26,13 @@ namespace {
 constexpr double default_reflectance = 0.5;
 constexpr const char* default_name = "default";
 
-// The index of a material among those defined; their number when there is none of that name.
-std::size_t find_material(std::span<const MtlMaterial> defined, const std::string& name) {
-  const auto found = std::find_if(defined.begin(), defined.end(), [&](const MtlMaterial& m) { return m.name == name; });
-  return static_cast<std::size_t>(found - defined.begin());
+// Indices of materials by name; the first one of a name counts.
+using IndexByName = std::map<std::string, std::size_t>;
+
+IndexByName index_by_name(std::span<const MtlMaterial> defined) {
+  IndexByName index;
+  for (std::size_t m = 0; m < defined.size(); ++m) index.emplace(defined[m].name, m);
+  return index;
 }
 
 MtlMaterial grey_material(const std::string& name) {
@@ -45,21 +48,21 @@ MtlMaterial grey_material(const std::string& name) {
 // The materials of the names that usemtl statements use and no file defines, and the one for faces before any usemtl.
 std::vector<MtlMaterial> undefined_materials(const ObjScan& scan, std::span<const MtlMaterial> defined) {
   std::vector<MtlMaterial> undefined;
-  for (const ObjName& used : scan.materials) {
-    if (find_material(defined, used.name) == defined.size()) undefined.push_back(grey_material(used.name));
-  }
-  if (find_material(defined, default_name) == defined.size() &&
-      find_material(undefined, default_name) == undefined.size()) {
-    undefined.push_back(grey_material(default_name));
-  }
+  IndexByName known = index_by_name(defined);
+  const auto add = [&](const std::string& name) {
+    if (known.emplace(name, known.size()).second) undefined.push_back(grey_material(name));
+  };
+  for (const ObjName& used : scan.materials) add(used.name);
+  add(default_name);
   return undefined;
 }
 
 // The defined material of every face.
 std::vector<std::size_t> face_materials(const ObjScan& scan, std::span<const MtlMaterial> defined) {
+  const IndexByName index = index_by_name(defined);
   std::vector<std::size_t> by_name;
-  for (const ObjName& used : scan.materials) by_name.push_back(find_material(defined, used.name));
-  const std::size_t without = find_material(defined, default_name);
+  for (const ObjName& used : scan.materials) by_name.push_back(index.at(used.name));
+  const std::size_t without = index.at(default_name);
   std::vector<std::size_t> materials;
   for (const ObjFace& face : scan.faces) {
     materials.push_back(face.material == no_material ? without : by_name[face.material]);
@@ -100,7 +103,7 @@ std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::strin
   for (const tinyobj::shape_t& shape : shapes) faces += shape.mesh.num_face_vertices.size();
   if (!good || faces != scan.faces.size()) {
     throw InputError(file, "only " + std::to_string(faces) + " of " + std::to_string(scan.faces.size()) +
-                               " faces could be read; export the model anew. " + error);
+                               " faces could be read; export the model again. " + error);
   }
   return shapes;
 }
@@ -182,10 +185,11 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
   for (const ObjFace& face : scan.faces) {
     if (face.material != no_material) has_face[face.material] = 1;
   }
+  const IndexByName index = index_by_name(defined);
   std::vector<std::string> unknown;
   for (std::size_t m = 0; m < scan.materials.size(); ++m) {
     const ObjName& used = scan.materials[m];
-    if (has_face[m] && find_material(defined, used.name) == defined.size() && used.name != default_name) {
+    if (has_face[m] && index.count(used.name) == 0 && used.name != default_name) {
       unknown.push_back("'" + used.name + "' (" + at_line(file, used.line) + ")");
     }
   }

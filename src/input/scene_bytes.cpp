@@ -1,6 +1,8 @@
 #include "input/scene_bytes.h"
 
-#include "input/message.h"
+#include "patchlight/base/error.h"
+
+#include "files/message.h"
 
 #include <algorithm>
 #include <memory>
@@ -246,6 +248,16 @@ Scene scene_from_bytes(std::string_view bytes) {
   scene.up = in.point();
   scene.up_stated = in.plain<bool>();
   return scene;
+}
+
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits) {
+  const std::string bytes = bytes_isolated(
+      file, [&] { return scene_bytes(read()); }, limits);
+  try {
+    return scene_from_bytes(bytes);
+  } catch (const std::exception& error) {
+    throw InputError(file, std::string("the reader of this format was damaged: ") + error.what());
+  }
 }
 
 }  // namespace patchlight

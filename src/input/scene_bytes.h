@@ -2,6 +2,9 @@
 
 #include "patchlight/scene/scene.h"
 
+#include "files/isolated.h"
+
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -13,5 +16,8 @@ std::string scene_bytes(const Scene& scene);
 
 /// The scene that scene_bytes() turned into these bytes. \throws std::runtime_error when they are not such bytes.
 Scene scene_from_bytes(std::string_view bytes);
+
+/// The scene that `read` returns in a child process, under the limits of bytes_isolated(). \throws InputError.
+Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits = {});
 
 }  // namespace patchlight

@@ -13,7 +13,8 @@
 
 namespace patchlight {
 
-/// What write_vtk() has written of a solution, as far as pictures need it.
+/// The part of a solution in a .vtp file that pictures need, as write_vtk() writes it. Indices and values are not
+/// checked here: read_solution() does.
 struct StoredSolution {
   std::string scene_hash;
   std::vector<Point> vertices;
@@ -28,7 +29,8 @@ struct StoredSolution {
   std::uint64_t seed = 1;
 };
 
-/// Reads a .vtp file. \throws InputError when it is none, or not that of a solution.
+/// Reads a .vtp file, in a child process because VTK crashes on damaged files. Sizes agree: there is one polygon, one side
+/// and one row of each field per patch. \throws InputError when it is no such file.
 StoredSolution read_vtk(const std::filesystem::path& file);
 
 }  // namespace patchlight

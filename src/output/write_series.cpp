@@ -7,6 +7,7 @@
 #include "output/write_bytes.h"
 #include "render/tone_map.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <chrono>
@@ -100,7 +101,10 @@ void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field
   cells.AddArray(colours("rgb", colours_of(radiance)));
 }
 
-bool is_utf8(const std::string& text) {
+// XML holds UTF-8 without control characters, also where these are escaped.
+bool is_xml_text(const std::string& text) {
+  if (std::any_of(text.begin(), text.end(), [](char letter) { return static_cast<unsigned char>(letter) < 0x20; }))
+    return false;
   try {
     return !nlohmann::json(text).dump().empty();
   } catch (const nlohmann::json::type_error&) {
@@ -200,8 +204,10 @@ fs::path series_folder(const fs::path& pvd) { return pvd.parent_path() / (pvd.st
 
 void check_series_writable(const fs::path& pvd) {
   check_writable(pvd);
-  if (!is_utf8(pvd.stem().string())) {
-    throw OutputError(pvd.string(), "the name is not UTF-8, and a .pvd file can hold no other; expected another name");
+  if (!is_xml_text(pvd.stem().string())) {
+    throw OutputError(pvd.string(),
+                      "the name is not UTF-8 or has control characters, and the .pvd file names its members by it; "
+                      "expected another name");
   }
   const fs::path folder = series_folder(pvd);
   std::error_code error;

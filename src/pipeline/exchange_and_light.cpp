@@ -136,7 +136,7 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
                    "found rows of rays that go on in another way from polygon " + std::to_string(*other + 1) + " of '" +
                        run.scene.materials[run.scene.polygons[*other].material].name +
                        "' than light does now; expected the clear faces and mirrors of then, with the same index of "
-                       "refraction: only their colours may differ. Make the form factors anew");
+                       "refraction: only their colours may differ. Compute the form factors again");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ std::vector<std::string> notes_on_hidden_lamps(const Scene& scene, const Simulat
   for (const std::string& name : names)
     notes.push_back("material '" + name +
                     "' emits, but little light comes from it: faces of it lay under others when the form factors were "
-                    "made, as they were dark; make the form factors anew with the lamps of now");
+                    "made, as they were dark; compute them again with the present lamps");
   return notes;
 }
 

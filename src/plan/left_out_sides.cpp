@@ -6,7 +6,7 @@
 namespace patchlight {
 namespace {
 
-constexpr const char* advice = "; make the form factors anew with the lamps of now";
+constexpr const char* advice = "; compute them again with the present lamps";
 
 bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;

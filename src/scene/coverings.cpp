@@ -64,11 +64,10 @@ struct Lower {
   std::vector<Point> corners;
   Vector normal;
   double area = 0;
-  std::vector<Triangle> triangles;  // once they are needed
 };
 
 Lower lower_of(const Scene& scene, PolygonIndex polygon) {
-  Lower lower{corner_points(scene, polygon), {}, 0, {}};
+  Lower lower{corner_points(scene, polygon), {}, 0};
   const Vector area = area_vector(lower.corners);
   lower.area = area.norm();
   lower.normal = area / lower.area;
@@ -97,18 +96,28 @@ bool in_one_plane(const std::vector<Point>& smaller, const Lower& larger, double
          });
 }
 
-// The area that both have in common, or more than `enough` of it, square metres.
-double overlap(Lower& lower, const std::vector<Point>& upper, double enough) {
-  if (lower.triangles.empty()) lower.triangles = triangles_of(lower.corners);
-  const std::vector<Triangle> over = triangles_of(upper);
+// The area that triangles in a plane with this normal have in common, or more than `enough` of it, square metres.
+double overlap(const std::vector<Triangle>& some, const std::vector<Triangle>& others, const Vector& normal,
+               double enough) {
   double area = 0;
-  for (const Triangle& first : lower.triangles) {
-    for (const Triangle& second : over) {
-      area += overlap(first, second, lower.normal);
+  for (const Triangle& first : some) {
+    for (const Triangle& second : others) {
+      area += overlap(first, second, normal);
       if (area > enough) return area;
     }
   }
   return area;
+}
+
+// The triangles of polygons with many corners. Many panes in one wall ask for those of the wall.
+std::vector<std::vector<Triangle>> triangles_of_large(const Scene& scene) {
+  constexpr std::size_t many = 8;
+  std::vector<std::vector<Triangle>> triangles(scene.polygons.size());
+  parallel_for(triangles.size(), [&](std::size_t p) {
+    if (scene.polygons[p].corners.size() > many)
+      triangles[p] = triangles_of(corner_points(scene, static_cast<PolygonIndex>(p)));
+  });
+  return triangles;
 }
 
 bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
@@ -129,7 +138,11 @@ struct Search {
   const KeptSides& kept;
   FaceTree tree;
   double slack;  // metres
+  std::vector<std::vector<Triangle>> known_triangles = triangles_of_large(scene);
 
+  std::vector<Triangle> triangles(PolygonIndex polygon) const {
+    return known_triangles[polygon].empty() ? triangles_of(corner_points(scene, polygon)) : known_triangles[polygon];
+  }
   std::vector<Covered> of(PolygonIndex polygon) const;
   bool comes_first(PolygonIndex a, PolygonIndex b) const;
 };
@@ -148,7 +161,12 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
   std::vector<Covered> under;
   double pieces = 0;  // the area that smaller opaque ones take of a pane
   double larger = 0;  // and larger ones, over which it lies
-  Lower lower = lower_of(scene, polygon);
+  const Lower lower = lower_of(scene, polygon);
+  std::vector<Triangle> own;  // once they are needed
+  const auto overlap_with = [&](PolygonIndex upper, double enough) {
+    if (own.empty()) own = triangles(polygon);
+    return overlap(own, triangles(upper), lower.normal, enough);
+  };
   const bool is_pane = is_opening(scene, polygon);
   const double most_area = is_pane ? std::numeric_limits<double>::infinity() : same_area * lower.area;
   tree.for_each(query_over(lower, tree.face(polygon).box, most_area, slack), [&](PolygonIndex upper) {
@@ -156,13 +174,13 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
     const std::vector<Point> corners = corner_points(scene, upper);
     if (!comes_first(upper, polygon)) {
       if (is_pane && !is_opening(scene, upper) && in_one_plane(lower.corners, lower_of(scene, upper), slack))
-        larger += overlap(lower, corners, lower.area);
+        larger += overlap_with(upper, lower.area);
       return;
     }
     if (!in_one_plane(corners, lower, slack)) return;
     const bool may_be_wall = is_pane && !is_opening(scene, upper);
     const double least = least_overlap * std::min(lower.area, tree.face(upper).area);
-    const double area = overlap(lower, corners, may_be_wall ? lower.area : least);
+    const double area = overlap_with(upper, may_be_wall ? lower.area : least);
     if (area <= least) return;
     if (may_be_wall) pieces += area;
     const bool same_front = lower.normal.dot(area_vector(corners)) > 0;

@@ -12,11 +12,15 @@ namespace {
 
 constexpr double brightest = 1e25;
 
+// Squares of weaker light would be below the smallest double.
+constexpr double weakest = 1e-150;
+
 void require_strength(const Spectrum& strength, const std::string& where, const std::string& what) {
   for (const double value : strength) {
-    if (value >= 0 && value <= brightest) continue;
+    if (value == 0 || (value >= weakest && value <= brightest)) continue;
     std::ostringstream text;
-    text << what << " is " << value << "; expected a number from 0 to " << brightest << " in every band";
+    text << what << " is " << value << "; expected 0 or a number from " << weakest << " to " << brightest
+         << " in every band";
     throw InputError(where, text.str());
   }
 }

@@ -11,9 +11,6 @@
 namespace patchlight {
 namespace {
 
-// Row sums are known to about 1e-9: with ||K||_A above this nothing is known about the error.
-constexpr double largest_contraction = 1 - 1e-8;
-
 // Escape is what a row lacks to 1, beyond what closure leaves.
 constexpr double least_escape = 1e-6;
 
@@ -131,7 +128,7 @@ Field patch_errors(const PatchWeights& weights, const FieldView& residual) {
 }
 
 std::string trapped_light(const TransportOperator& transport, const RadiosityProblem& problem) {
-  if ((problem.scattering.norm_bound() < 1).all()) return {};
+  if ((problem.scattering.norm_bound() < largest_contraction).all()) return {};
   // 1. Patches that lose light: they absorb, or some leaves.
   const Field row_sum = transport.apply(Field::Ones(transport.size(), 1));
   const auto keeps = [&](Eigen::Index i) { return row_sum(i, 0) >= 1 - least_escape; };
@@ -139,7 +136,7 @@ std::string trapped_light(const TransportOperator& transport, const RadiosityPro
   Field loses = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
   for (Eigen::Index i = 0; i < loses.rows(); ++i) {
     for (Eigen::Index band = 0; band < loses.cols(); ++band) {
-      loses(i, band) = reflected(i, band) < 1 || !keeps(i) ? 1 : 0;
+      loses(i, band) = reflected(i, band) < largest_contraction || !keeps(i) ? 1 : 0;
     }
   }
 

@@ -1,5 +1,7 @@
 #include "solve/pockets.h"
 
+#include "solve/bounds.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -85,7 +87,8 @@ std::vector<PatchIndex> keeping_light(const RayTransport& transport, const Eigen
 // Which of some patches lose light: they absorb, some leaves, or it gets to others that do. As in trapped_light().
 Eigen::ArrayXd losing_light(const SparseRows& among, const Eigen::VectorXd& reflectance) {
   const Eigen::VectorXd row_sum = among * Eigen::VectorXd::Ones(among.rows());
-  Eigen::VectorXd loses = (reflectance.array() < 1 || row_sum.array() < 1 - least_loss).cast<double>().matrix();
+  Eigen::VectorXd loses =
+      (reflectance.array() < largest_contraction || row_sum.array() < 1 - least_loss).cast<double>().matrix();
   for (double before = -1; loses.sum() > before;) {
     before = loses.sum();
     loses = (loses.array() > 0 || (among * loses).array() > 0).cast<double>().matrix();

@@ -156,18 +156,18 @@ std::optional<Eigen::VectorXd> row_scales(const ExchangeAreas& S, const Eigen::V
   return std::nullopt;
 }
 
-// No patch sees more than its hemisphere: rows that exceed their area by more than three standard errors are cut down
-// to it, by the smaller of both patches' factors, which keeps the matrix symmetric. Without this, light could grow from
-// bounce to bounce. Rows that exceed it by less stay, as noise raises as many as it lowers: cutting these alone would
-// take light away. `variances` are those of the sums, m^4.
+// No patch sees more than its hemisphere. A row sum above the area by more than three standard errors is an error of
+// the sample, not noise: the row is scaled down to that limit. Entries take the smaller factor of their two rows, so
+// that the matrix stays symmetric. Smaller excesses stay, because noise lowers as many rows as it raises: if only those
+// above were cut, light would be lost. `variances` are those of the sums, m^4.
 ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, const Eigen::VectorXd& variances) {
   const Eigen::ArrayXd sums = row_sums(raw).array();
   const Eigen::ArrayXd most = area.array() + 3 * variances.array().sqrt();
-  const Eigen::VectorXd factor = (sums > most).select(area.array() / sums, 1.0).matrix();
+  const Eigen::VectorXd factor = (sums > most).select(most / sums, 1.0).matrix();
   ExchangeAreas S = changed(
       std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) { return entry * std::min(factor[i], factor[j]); });
   return {std::move(S), Eigen::VectorXd::Zero(area.size()),
-          "rows above 1 by three standard errors cut to 1: open scene, and the least change has negative entries"};
+          std::string(cut_row_sums) + ": open scene, and the least change has negative entries"};
 }
 
 // What it takes to close.

@@ -227,7 +227,7 @@ class FormFactorsTest(ToolTest):
         self.write("room.obj", ROOM.replace("v -0.5 -0.5 1\n", "v -0.5 -0.5 1.0000001\n"))
         done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--form-factors", "room.ff")
         self.assertEqual(done.returncode, INPUT)
-        for words in ("room.ff: found form factors of", "expected those of", "make them anew"):
+        for words in ("room.ff: found form factors of", "expected those of", "compute them again"):
             self.assertIn(words, done.stderr)
         self.assertFalse((self.folder / "a.vtp").exists())
 

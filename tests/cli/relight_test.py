@@ -207,9 +207,9 @@ class RelightTest(ToolTest):
         scene = self.folder / "room.ff/scene.json"
         text = scene.read_text()
         scene.unlink()
-        self.expect_refused(INPUT, "room.ff", *to, says=["no scene.json", "make them anew"])
+        self.expect_refused(INPUT, "room.ff", *to, says=["no scene.json", "compute them again"])
         scene.write_text(text[:-100])
-        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff/scene.json", "make the form factors anew"])
+        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff/scene.json", "compute the form factors again"])
         moved = json.loads(text)
         moved["vertices"][0] += 1e-9
         scene.write_text(json.dumps(moved))

@@ -15,7 +15,8 @@ OPTIONS = """--output --series --report --picture --false-color --camera --view 
 --sides --set --max-edge --patches --accuracy --time --interest --error-bars --on-demand --solver --tolerance
 --max-iterations --samples --seed --threads --memory --discard --quiet --verbose --help""".split()
 
-NOT_CONVERGED, INTERRUPTED = 3, 130
+NOT_CONVERGED = 3
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class SolveTest(ToolTest):
@@ -152,41 +153,55 @@ class SolveTest(ToolTest):
         self.assertRegex(done.stdout, r"imbalance \S+ of the flux, more than the noise of the rays explains: up to a few")
 
     def test_interrupt_leaves_no_file(self):
-        for sent in (signal.SIGINT, signal.SIGTERM):
+        for sent in SIGNALS:
             with self.subTest(sent.name):
                 before = self.names()
                 shown, code = self.interrupt_in_stage(b"form factors", sent)
-                self.assertEqual(code, INTERRUPTED, shown)
+                self.assertEqual(code, 128 + sent, shown)
                 self.assertIn(b"interrupted", shown)
                 self.assertEqual(self.names(), before)
 
     def test_interrupt_writes_what_is_there(self):
         """A solution on demand takes minutes; its last iterate is there at any time."""
         options = ["--on-demand", "--patches", "4000", "--report", "out.json"]
-        shown, code = self.interrupt_in_stage(rb"solve [1-9]", signal.SIGINT, options)
-        self.assertEqual(code, INTERRUPTED, shown)
-        self.assertIn(b"UNFINISHED", shown)
-        self.assertLessEqual({"out.vtp", "out.png", "out.json"}, self.names())
-        solution = json.loads(self.read("out.json"))["solution"]
-        self.assertEqual((solution["unfinished"], solution["converged"]), (True, False))
+        outputs = {"out.vtp", "out.png", "out.json"}
+        for sent in SIGNALS:
+            with self.subTest(sent.name):
+                shown, code = self.interrupt_in_stage(rb"solve [1-9]", sent, options)
+                self.assertEqual(code, 128 + sent, shown)
+                self.assertIn(b"UNFINISHED", shown)
+                self.assertLessEqual(outputs, self.names())
+                solution = json.loads(self.read("out.json"))["solution"]
+                self.assertEqual((solution["unfinished"], solution["converged"]), (True, False))
+                for name in outputs:
+                    (self.folder / name).unlink()
+
+    def test_the_solution_is_written_before_the_sensors_are_read(self):
+        (self.folder / "many.txt").write_text("".join(f"{0.6 + k * 1e-6} 0.6 0.5 0 0 1\n" for k in range(300_000)))
+        options = ["--patches", "500", "--points", "many.txt", "--points-output", "read.csv"]
+        shown, code = self.interrupt_in_stage(rb"gather [1-9]", signal.SIGKILL, options)
+        self.assertEqual(code, -signal.SIGKILL, shown)
+        self.assertIn("out.vtp", self.names())
+        self.assertNotIn("read.csv", self.names())
 
     def test_interrupt_tells_of_no_sensor_that_was_not_read(self):
         """The solution takes a moment, its 300,000 points take minutes."""
         (self.folder / "many.txt").write_text("".join(f"{0.6 + k * 1e-6} 0.6 0.5 0 0 1\n" for k in range(300_000)))
         options = ["--patches", "500", "--points", "many.txt", "--points-output", "read.csv", "--report", "out.json"]
         shown, code = self.interrupt_in_stage(rb"gather [1-9]", signal.SIGINT, options)
-        self.assertEqual(code, INTERRUPTED, shown)
+        self.assertEqual(code, 128 + signal.SIGINT, shown)
         self.assertLessEqual({"out.vtp", "out.json"}, self.names())
         self.assertNotIn("read.csv", self.names())
         self.assertNotIn("sensors", json.loads(self.read("out.json")))
         self.assertNotIn(b"inside walls", shown)
 
     def test_interrupt_discards_when_asked(self):
-        for sent, more in ((signal.SIGINT, ["--discard"]), (signal.SIGTERM, [])):
+        for sent in SIGNALS:
             with self.subTest(sent.name):
                 before = self.names()
-                shown, code = self.interrupt_in_stage(rb"solve [1-9]", sent, ["--on-demand", "--patches", "4000", *more])
-                self.assertEqual(code, INTERRUPTED, shown)
+                options = ["--on-demand", "--patches", "4000", "--discard"]
+                shown, code = self.interrupt_in_stage(rb"solve [1-9]", sent, options)
+                self.assertEqual(code, 128 + sent, shown)
                 self.assertEqual(self.names(), before)
 
     def interrupt_in_stage(self, stage, sent, options=("--patches", "12000", "--storage", "tiles", "--samples", "4096")):

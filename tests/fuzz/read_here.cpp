@@ -1,11 +1,11 @@
-// Stands in for read_isolated(): what a child process does is hidden from the fuzzer, so the reader runs in this one.
+// Takes the place of the isolated reader: a fuzzer sees the coverage of its own process alone.
 #include "patchlight/base/error.h"
 
-#include "input/isolated.h"
+#include "files/isolated.h"
 
 namespace patchlight {
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits&) {
+std::string bytes_isolated(const std::string& file, const std::function<std::string()>& read, const ChildLimits&) {
   try {
     return read();
   } catch (const InputError&) {

@@ -298,7 +298,7 @@ TEST(SceneFile, RefusesWhatIsDamaged) {
       ADD_FAILURE() << "expected an InputError for " << content.substr(0, 2000);
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("scene.json"), std::string::npos);
-      EXPECT_NE(std::string(error.what()).find("anew"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("again"), std::string::npos);
     }
   };
   const std::pair<const char*, nlohmann::json> changes[] = {{"/kind", "else"},

@@ -1,4 +1,4 @@
-#include "input/isolated.h"
+#include "input/scene_bytes.h"
 
 #include "patchlight/base/error.h"
 

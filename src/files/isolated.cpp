@@ -1,9 +1,9 @@
-#include "input/isolated.h"
+#include "files/isolated.h"
 
 #include "patchlight/base/error.h"
 
-#include "input/confined.h"
-#include "input/scene_bytes.h"
+#include "files/confined.h"
+#include "files/reason.h"
 
 #include <array>
 #include <cerrno>
@@ -27,7 +27,7 @@ namespace patchlight {
 namespace {
 
 // The first byte of what the child sends.
-constexpr char sends_scene = 'S';
+constexpr char sends_result = 'S';
 constexpr char sends_refusal = 'R';  // the text of an InputError
 constexpr char sends_failure = 'F';  // any other exception's
 
@@ -65,15 +65,13 @@ void prepare_child(const std::string& file, const ChildLimits& limits) {
   dup2(nowhere, STDERR_FILENO);
 }
 
-std::string message_from(const std::function<Scene()>& read) {
+std::string message_from(const std::function<std::string()>& read) {
   try {
-    return sends_scene + scene_bytes(read());
+    return sends_result + read();
   } catch (const InputError& error) {
     return sends_refusal + std::string(error.what());
-  } catch (const std::bad_alloc&) {
-    return sends_failure + std::string("the memory does not suffice");
   } catch (const std::exception& error) {
-    return sends_failure + std::string(error.what());
+    return sends_failure + reason_of(error);
   }
 }
 
@@ -119,22 +117,17 @@ void require_good_end(const std::string& message, int status, const std::string&
   if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it again");
 }
 
-Scene scene_from(const std::string& message, int status, const std::string& file) {
+// The result in a message, or the exception that it stands for.
+std::string result_in(const std::string& message, int status, const std::string& file) {
   require_good_end(message, status, file);
-  const std::string_view content = std::string_view(message).substr(1);
-  if (message[0] == sends_scene) {
-    try {
-      return scene_from_bytes(content);
-    } catch (const std::exception& error) {
-      throw InputError(file, std::string("the reader of this format was damaged: ") + error.what());
-    }
-  }
+  std::string content = message.substr(1);
+  if (message[0] == sends_result) return content;
   if (message[0] == sends_refusal) {
-    // The InputError is put together again from its two parts.
+    // The text of an InputError begins with its place, which the constructor adds.
     const std::string place = file + ": ";
-    throw InputError(file, std::string(content.starts_with(place) ? content.substr(place.size()) : content));
+    throw InputError(file, content.starts_with(place) ? content.substr(place.size()) : content);
   }
-  throw InputError(file, "cannot be read: " + std::string(content) + "; export it again");
+  throw InputError(file, "cannot be read: " + content + "; export it again");
 }
 
 // A file in memory with the text, to be read from its beginning.
@@ -177,14 +170,15 @@ std::vector<std::filesystem::path> readable_folders(const Program& program) {
 
 }  // namespace
 
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits) {
+std::string bytes_isolated(const std::string& file, const std::function<std::string()>& read,
+                           const ChildLimits& limits) {
   const Sent sent = sent_by_child(
       [&](int pipe) {
         prepare_child(file, limits);
         return write_all(pipe, message_from(read)) ? 0 : 1;
       },
       ~std::uint64_t{0});
-  return scene_from(sent.message, sent.status, file);
+  return result_in(sent.message, sent.status, file);
 }
 
 std::string output_isolated(const std::string& file, const Program& program, const std::string& input,

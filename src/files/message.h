@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
 
@@ -34,6 +35,12 @@ class MessageWriter {
   void texels(const std::vector<std::array<float, 3>>& texels) {
     plain(texels.size());
     bytes_.append(reinterpret_cast<const char*>(texels.data()), texels.size() * sizeof texels[0]);
+  }
+  void field(const Field& values) {
+    plain(values.rows());
+    plain(values.cols());
+    bytes_.append(reinterpret_cast<const char*>(values.data()),
+                  static_cast<std::size_t>(values.size()) * sizeof(double));
   }
   std::string bytes() && { return std::move(bytes_); }
 
@@ -77,6 +84,18 @@ class MessageReader {
     if (size > 0) std::memcpy(texels.data(), bytes_.data(), size);
     bytes_.remove_prefix(size);
     return texels;
+  }
+  Field field() {
+    const auto rows = plain<Eigen::Index>();
+    const auto columns = plain<Eigen::Index>();
+    const auto most = static_cast<Eigen::Index>(bytes_.size() / sizeof(double));
+    if (rows < 0 || columns < 0 || (columns > 0 && rows > most / columns))
+      throw std::runtime_error("a message ends early");
+    Field values(rows, columns);
+    const std::size_t size = static_cast<std::size_t>(values.size()) * sizeof(double);
+    if (size > 0) std::memcpy(values.data(), bytes_.data(), size);
+    bytes_.remove_prefix(size);
+    return values;
   }
   Point point() {
     Point values;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "patchlight/scene/scene.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,17 +8,18 @@
 
 namespace patchlight {
 
-/// What a child process may take. A house of 2 MB takes 0.1 s and 0.1 GB; after a damaged number assimp may read on
-/// without an end.
+/// Limits of a child process. A house of 2 MB takes 0.1 s and 0.1 GB; after a damaged number assimp may read on
+/// without end.
 struct ChildLimits {
   unsigned seconds = 60;                          ///< of processor time
   std::uint64_t bytes = std::uint64_t{1} << 30U;  ///< of memory, besides 300 for each byte of the file
 };
 
-/// What `read` returns, found in a child process: libraries that read rich formats can crash on damaged files, and then
-/// only the child ends. \throws InputError as `read` does, and naming `file` when the child crashed, threw anything
-/// else or exceeded a limit.
-Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits = {});
+/// The bytes that `read` returns in a child process. Libraries that read rich formats can crash on damaged files; then
+/// only the child ends, and nothing that they print reaches the terminal. \throws InputError as `read` does, and naming
+/// `file` when the child crashed, threw anything else or exceeded a limit.
+std::string bytes_isolated(const std::string& file, const std::function<std::string()>& read,
+                           const ChildLimits& limits = {});
 
 /// A program that runs in a child process, without any environment variables.
 struct Program {

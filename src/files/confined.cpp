@@ -1,4 +1,4 @@
-#include "input/confined.h"
+#include "files/confined.h"
 
 #include <array>
 #include <cerrno>
