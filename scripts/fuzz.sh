@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Builds the fuzzers, and lets each try to break a reader, or the mesher and the form factors, for some seconds.
 # usage: scripts/fuzz.sh SECONDS [TARGET...]    SECONDS for each target; targets: obj mtl ply stl off dae ifc hbjson rad xml
-#        gltf glb toml ies epw spd npy mesh
+#        gltf glb toml ies epw spd npy pts vtp json mesh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(obj mtl ply stl off dae ifc hbjson rad xml gltf glb toml ies epw spd npy mesh)
+[ ${#targets[@]} -gt 0 ] || targets=(obj mtl ply stl off dae ifc hbjson rad xml gltf glb toml ies epw spd npy pts vtp json mesh)
 
 clang=$(command -v clang++-14 || command -v clang++ || true)
 if [ -z "$clang" ]; then
@@ -30,7 +30,7 @@ for target in "${targets[@]}"; do
   log=build-fuzz/$target.log
   # Libraries free what they hold at the end of the process at best, so leaks are not looked for.
   if ! ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 "build-fuzz/tests/fuzz/fuzz_$target" \
-      -max_total_time="$seconds" -max_len=8192 -timeout=120 -rss_limit_mb=4096 \
+      -max_total_time="$seconds" -max_len=65536 -timeout=120 -rss_limit_mb=4096 \
       -artifact_prefix="build-fuzz/broken/$target-" "build-fuzz/found/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1; then
     tail -n 40 "$log"
     echo "error: $target breaks; the input is in build-fuzz/broken" >&2

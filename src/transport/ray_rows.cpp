@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -33,11 +34,13 @@ struct RawRows {
   std::vector<std::uint32_t> escaped;     // per patch: rays
   std::vector<std::uint32_t> sees_backs;  // per patch: 0 or 1
   std::vector<float> distance;
+  PolygonIndex polygons = 0;  // of the scene
 };
 
-RawRows room_for(const std::vector<std::uint32_t>& counts, bool is_specular) {
+RawRows room_for(const std::vector<std::uint32_t>& counts, bool is_specular, PolygonIndex polygons) {
   const std::size_t size = counts.size();
   RawRows raw;
+  raw.polygons = polygons;
   raw.room.assign(size + 1, 0);
   for (std::size_t i = 0; i < size; ++i) raw.room[i + 1] = raw.room[i] + counts[i];
   for (RawHalf& half : raw.halves) {
@@ -87,9 +90,13 @@ PatchSpan patches_of(std::size_t block, std::size_t patches) {
   return {block * size, std::min((block + 1) * size, patches)};
 }
 
+// A form factor of one ray, with room for rounding. False for numbers that are not finite.
+bool is_form_factor(float value) { return value >= 0 && value <= 1.001F; }
+
 // The stops of a block in one half, likewise.
 template <class Show>
-bool show_stops(RawHalf& rows, std::vector<SpecularStop>& stops, const PatchSpan& patches, const Show& show) {
+bool show_stops(RawHalf& rows, std::vector<SpecularStop>& stops, const PatchSpan& patches, PolygonIndex polygons,
+                const Show& show) {
   std::size_t count = 0;
   for (std::size_t i = patches.begin; i < patches.end; ++i) {
     show(rows.stop_count[i]);
@@ -100,7 +107,17 @@ bool show_stops(RawHalf& rows, std::vector<SpecularStop>& stops, const PatchSpan
   for (SpecularStop& stop : stops) {
     show(stop.patch), show(stop.form_factor), show(stop.polygon), show(stop.bits);
     const bool is_patch = stop.patch < rows.stop_count.size() || stop.patch >= SpecularStop::at_back;
-    if (!is_patch || static_cast<std::uint32_t>(stop.step()) >= ray_steps) return false;
+    const bool has_polygon = stop.step() == RayStep::ends || stop.polygon < polygons;
+    if (!is_patch || !has_polygon || static_cast<std::uint32_t>(stop.step()) >= ray_steps) return false;
+    if (!is_form_factor(stop.form_factor)) return false;
+  }
+  // Rays end in their own row.
+  auto row_end = stops.begin();
+  for (std::size_t i = patches.begin; i < patches.end; ++i) {
+    row_end += rows.stop_count[i];
+    if (rows.stop_count[i] == 0) continue;
+    const RayStep last = (row_end - 1)->step();
+    if (last != RayStep::ends && last != RayStep::kept) return false;
   }
   return true;
 }
@@ -112,7 +129,12 @@ bool show_block(RawRows& raw, std::size_t block, const Show& show) {
   const std::size_t patches = raw.escaped.size();
   const auto [begin, end] = patches_of(block, patches);
   RowEntries& first = raw.tasks[block * tasks_of_a_block];
-  for (std::size_t i = begin; i < end; ++i) show(raw.escaped[i]), show(raw.sees_backs[i]), show(raw.distance[i]);
+  for (std::size_t i = begin; i < end; ++i) {
+    show(raw.escaped[i]), show(raw.sees_backs[i]), show(raw.distance[i]);
+    const bool can_be = raw.escaped[i] <= 2 * (raw.room[i + 1] - raw.room[i]) && raw.sees_backs[i] <= 1 &&
+                        raw.distance[i] >= 0 && std::isfinite(raw.distance[i]);
+    if (!can_be) return false;
+  }
   show(first.shadow_rays);
   for (std::size_t half = 0; half < 2; ++half) {
     RawHalf& rows = raw.halves[half];
@@ -130,9 +152,10 @@ bool show_block(RawRows& raw, std::size_t block, const Show& show) {
     first.halves[half].resize(entries);
     for (RayEntry& entry : first.halves[half]) {
       show(entry.patch), show(entry.form_factor);
-      if (entry.patch >= patches) return false;
+      if (entry.patch >= patches || !is_form_factor(entry.form_factor)) return false;
     }
-    if (!rows.stop_count.empty() && !show_stops(rows, first.stops[half], {begin, end}, show)) return false;
+    if (!rows.stop_count.empty() && !show_stops(rows, first.stops[half], {begin, end}, raw.polygons, show))
+      return false;
   }
   return true;
 }
@@ -194,7 +217,7 @@ std::vector<std::uint8_t> taken_blocks(RawRows& raw, const RowBlocks* blocks) {
 
 // All rays.
 RawRows traced(const RowTracer& tracer, const RowBlocks* blocks, const Observer& observer) {
-  RawRows raw = room_for(tracer.counts(), tracer.is_specular());
+  RawRows raw = room_for(tracer.counts(), tracer.is_specular(), tracer.polygons());
   const std::vector<std::uint8_t> taken = taken_blocks(raw, blocks);
   std::vector<std::atomic<std::size_t>> done(taken.size());
   parallel_for(raw.tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {

@@ -42,6 +42,9 @@ class RowTracer {
   /// Whether rays can be specular on their way.
   bool is_specular() const { return !occluder_.specular_faces().empty(); }
 
+  /// How many polygons the scene has.
+  PolygonIndex polygons() const { return static_cast<PolygonIndex>(mesh_.first_patch.size() / 2); }
+
   /// Rays of each patch in one half.
   const std::vector<std::uint32_t>& counts() const { return counts_; }
 

@@ -15,4 +15,9 @@ std::string bytes_isolated(const std::string& file, const std::function<std::str
   }
 }
 
+// Programs are not run.
+std::string output_isolated(const std::string& file, const Program&, const std::string&, const ChildLimits&) {
+  throw InputError(file, "cannot be read");
+}
+
 }  // namespace patchlight

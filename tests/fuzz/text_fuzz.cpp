@@ -1,12 +1,17 @@
-// Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT (a scene file, a photometric file, a weather file, a
-// spectrum, an array of numpy) are understood, or refused by an InputError of one line.
+// Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT are read, or refused with an InputError of one line: a scene
+// file, a photometric file, a weather file, a spectrum, points, an array of numpy, a solution, and the two JSON files of
+// stored form factors.
 #include "patchlight/base/error.h"
 
+#include "archive/form_factor_files.h"
 #include "archive/npy.h"
+#include "archive/scene_file.h"
 #include "input/read_epw.h"
 #include "input/read_ies.h"
+#include "input/read_points.h"
 #include "input/read_spectrum.h"
 #include "input/scene_file.h"
+#include "output/read_vtk.h"
 #include "scene/photometric_web.h"
 
 #include <cstdint>
@@ -30,6 +35,16 @@ const std::filesystem::path fuzzed = folder / ("fuzzed." + std::string(format));
 
 void remove_folder() { std::filesystem::remove_all(folder); }
 
+// A file of stored form factors by its name.
+template <typename Read>
+void read_as(const char* name, const std::string& text, const Read& read) {
+  std::ofstream(folder / name, std::ios::binary) << text;
+  try {
+    read(folder);
+  } catch (const InputError&) {
+  }
+}
+
 void read(const std::string& text) {
   if (format == "ies") {
     parse_ies(text, fuzzed.string());
@@ -39,6 +54,13 @@ void read(const std::string& text) {
     parse_spectrum(text, fuzzed);
   } else if (format == "toml") {
     read_scene_file(fuzzed, folder);
+  } else if (format == "pts") {
+    parse_points(text, fuzzed, 1);
+  } else if (format == "vtp") {
+    read_vtk(fuzzed);
+  } else if (format == "json") {
+    read_as("info.json", text, read_form_factor_info);
+    read_as("scene.json", text, read_stored_scene);
   } else {
     NpyReader reader(fuzzed);
     if (reader.rows() > 0) reader.next_rows(reader.rows());

@@ -264,18 +264,23 @@ TEST(RayRows, GoOnFromTheBlocksThatWereKept) {
 }
 
 TEST(RayRows, AreTracedAgainWhereBlocksAreDamaged) {
-  // Cut, longer, with patches and counts that cannot be, and empty.
+  // Cut, longer, with patches and counts that cannot be, empty, and with a distance, a number of rays and a form factor
+  // that cannot be.
+  constexpr auto nan = std::bit_cast<std::int32_t>(std::numeric_limits<float>::quiet_NaN());
   RowsInBlocks run;
   const TracedRows whole = run.rows();
   const auto all = run.kept;
   const std::size_t size = all.at(0).size();
-  for (int damage = 0; damage < 5; ++damage) {
+  for (int damage = 0; damage < 8; ++damage) {
     std::vector<std::int32_t>& block = run.kept.at(0);
     if (damage == 0) block.resize(size / 2);
     if (damage == 1) block.push_back(1);
     if (damage == 2) std::fill(block.begin() + static_cast<std::ptrdiff_t>(size / 2), block.end(), -1);
     if (damage == 3) std::fill(block.begin(), block.end(), std::numeric_limits<std::int32_t>::max());
     if (damage == 4) block.clear();
+    if (damage == 5) block[2] = nan;
+    if (damage == 6) block[0] = 1'000'000;
+    if (damage == 7) block.back() = nan;
     expect_same(run.rows(), whole);
     EXPECT_EQ(run.kept, all);
   }
