@@ -13,6 +13,14 @@
 namespace patchlight {
 namespace {
 
+// No light is negative. Iterations leave patches slightly below 0 where hardly any light arrives: that is their error.
+Solution without_negative_light(Solution solution, const RadiosityProblem& problem) {
+  if ((solution.irradiance >= 0).all() && (solution.radiosity >= 0).all()) return solution;
+  solution.irradiance = solution.irradiance.max(0.0);
+  solution.radiosity = radiosity_from(problem, solution.irradiance);
+  return solution;
+}
+
 Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTransport& transport) {
   const TransportFacts& facts = simulation.transport;
   SolverOptions options = simulation.plan.solver;
@@ -26,7 +34,7 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   };
   SolvedWith best = solve_for_interest(run, simulation, options, once);
   simulation.plan.solver.relative_error = best.relative_error;
-  simulation.solution = std::move(best.solution);
+  simulation.solution = without_negative_light(std::move(best.solution), simulation.problem);
   simulation.ray_standard_error = std::move(found.standard_error);
   simulation.correlated_errors = std::move(found.correlated_errors);
   simulation.balance = energy_balance(simulation.problem, simulation.solution, facts.row_sum, facts.lost);
@@ -69,7 +77,7 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   const Solve once = [&](const SolverOptions& by) { return solve(*transport.rows, simulation.problem, by, observer); };
   SolvedWith found = solve_for_interest(run, simulation, options, once);
   simulation.plan.solver.relative_error = found.relative_error;
-  simulation.solution = std::move(found.solution);
+  simulation.solution = without_negative_light(std::move(found.solution), simulation.problem);
   simulation.balance = energy_balance(simulation.problem, simulation.solution,
                                       keeps ? facts.row_sum : expected_row_sum(facts.lost), facts.lost);
   return simulation;

@@ -36,6 +36,15 @@ RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
   return query;
 }
 
+// A number minus itself is 0 unless it is infinite or not a number. Embree's traversal is undefined for
+// such rays. They come from a defect: an assertion finds it, and in a release they count as blocked.
+bool is_finite(const RTCRay16& rays, unsigned k) {
+  const float sum = rays.org_x[k] + rays.org_y[k] + rays.org_z[k] + rays.dir_x[k] + rays.dir_y[k] + rays.dir_z[k];
+  const bool finite = sum - sum == 0;
+  assert(finite);
+  return finite;
+}
+
 bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
   return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
 }
@@ -106,7 +115,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     rays.dir_z[k] = direction.z();
     // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
     const bool covered = covered_places.any() && covers_end(covered_places, exact[k]);
-    valid[k] = k < segments.size() && !covered ? -1 : 0;
+    valid[k] = k < segments.size() && !covered && is_finite(rays, k) ? -1 : 0;
   }
   Context context{new_context(), exact, nullptr, covered_places.any() ? &covered_places : nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -133,8 +142,9 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   for (unsigned k = 0; k < ShadowPacket::size; ++k) {
     const bool covered =
         tracer_->faces->covered_places.any() && covers_end(tracer_->faces->covered_places, exact_ray(packet, k));
-    blocked |= static_cast<unsigned>(covered) << k;
-    valid[k] = covered ? 0 : -1;
+    const bool is_blocked = covered || !is_finite(rays, k);
+    blocked |= static_cast<unsigned>(is_blocked) << k;
+    valid[k] = is_blocked ? 0 : -1;
   }
   Context context{new_context(), nullptr, &packet, nullptr};
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -304,7 +314,8 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   std::vector<Found> found(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
-    if (ray.direction.isZero(0)) continue;
+    assert(ray.origin.allFinite() && ray.direction.allFinite());
+    if (ray.direction.isZero(0) || !ray.origin.allFinite() || !ray.direction.allFinite()) continue;
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
     const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
