@@ -33,7 +33,8 @@ namespace {
 constexpr const char* exit_codes =
     "Exit codes: 0 good, 1 usage, 2 input, 3 not converged or not as accurate as asked (results are\n"
     "written), 4 out of memory, 5 a validation or verification failed, 6 output cannot be written,\n"
-    "70 internal error, 128 + n stopped by signal n, as 130 by Ctrl-C (solve and relight write the results so far unless --discard is given).";
+    "70 internal error, 130 stopped by Ctrl-C, 128 + n by signal n (solve and relight write the results\n"
+    "so far unless --discard is given).";
 
 // ": did you mean --max-edge?" when an option is at most two letters away, nothing otherwise.
 std::string near_option(const CLI::App& command, const std::string& unknown) {
@@ -51,8 +52,9 @@ std::string other_option(const std::string& command, const std::string& unknown)
   return is_picture ? "; expected -o VIEW.png, which names the picture that patchlight render takes" : "";
 }
 
-// Refuses what no option or positional argument took; an unknown option is named before its value.
-void require_nothing_left(const CLI::App& command, const std::string& name, const std::vector<std::string>& left) {
+// Refuses words that no option or positional argument took; an unknown option is named before its value.
+void require_nothing_left(const CLI::App& command, const std::string& name, std::vector<std::string> left) {
+  std::erase(left, "--");  // ends the options
   if (left.empty()) return;
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
   const auto unknown = std::find_if(left.begin(), left.end(), is_option);

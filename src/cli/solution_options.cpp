@@ -186,7 +186,7 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
   command.option_defaults()->group("The run");
   command.add_flag(
       "--discard", options.discards,
-      "Ctrl-C writes nothing; default: what is there, once a\nmesh is solved or an iterate of the first is");
+      "a signal (Ctrl-C) ends the run without further files;\ndefault: the results so far are written");
   command.add_flag("-q,--quiet", options.quiet, "prints errors and warnings only; default: progress and a summary");
   command.add_flag("-v,--verbose", options.verbose, "adds decisions, counts and speed to the summary; default: off");
 }

@@ -312,7 +312,7 @@ std::string explain_unfinished(const Report& report) {
   } else {
     what = wants_errors ? "the solution of the first mesh, whose errors are not known yet" : "the solution";
   }
-  return "UNFINISHED, as it was stopped: what is written is " + what +
+  return "UNFINISHED, as the run was stopped: the files have " + what +
          ", without sensors and pictures that were not ready; --discard writes nothing of a run that is stopped";
 }
 

@@ -262,6 +262,43 @@ class HostileTest(ToolTest):
         done = subprocess.run(["python3", "-c", script, *words], cwd=folder, capture_output=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_light_below_the_smallest_numbers(self):
+        """Squares of numbers below 1e-150 are no normal numbers any more."""
+        for exitance in ("5e-324", "1e-320", "1e-200"):
+            self.refused(INPUT, ["exitance", "1e-150"], *solve("--set", f"lamp.exitance={exitance}", "-o", "a.ply"))
+        self.good(*solve("--set", "lamp.exitance=1e-150", "-o", "a.ply"))
+
+    def test_closed_rooms_that_absorb_nothing(self):
+        """A reflectance that differs from 1 by rounding is 1: there is no solution, and no negative light."""
+        words = solve("--set", "*.reflectance=0.99999999999999989", "-o", "a.vtp", "--report", "a.json")
+        done = subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)
+        self.assertTrue(json.loads((self.folder / "a.json").read_text())["solution"]["singular"])
+
+    def test_names_that_xml_cannot_hold(self):
+        self.refused(OUTPUT, ["control characters"], *solve("--series", "a\x1b.pvd"))
+
+    def test_two_dashes_end_the_options(self):
+        self.write("-room.obj", ROOM)
+        self.good("check", "--", "-room.obj")
+
+    def test_instances_of_nothing_and_variables_of_variables(self):
+        """Twelve kilobytes that hold 20^13 objects, and a text of ten gigabytes."""
+        groups = ['<shape type="shapegroup" id="g0"><shape type="obj"><string name="filename" value="none.obj"/></shape>'
+                  '</shape>']
+        groups += [f'<shape type="shapegroup" id="g{k}">' +
+                   f'<shape type="instance"><ref id="g{k - 1}"/></shape>' * 20 + "</shape>" for k in range(1, 14)]
+        self.write("deep.xml", '<scene version="3.0.0">' + "".join(groups) +
+                   '<shape type="instance"><ref id="g13"/></shape></scene>')
+        self.refused(INPUT, ["deep.xml", "1,000,000"], "check", "deep.xml")
+        self.write("long.xml", '<scene version="3.0.0"><default name="a" value="' + "1" * 4096 + '"/>'
+                   '<shape type="rectangle"><float name="radius" value="' + "$a" * 100_000 + '"/>'
+                   '<string name="id" value="' + "$a" * 100_000 + '"/></shape></scene>')
+        done = subprocess.run([TOOL, "check", "long.xml"], cwd=self.folder, capture_output=True, timeout=20, check=False)
+        self.assertIn(done.returncode, (0, INPUT), done.stderr)
+        self.write("value.xml", '<scene version="3.0.0"><default name="a" value="' + "1" * 5000 + '"/></scene>')
+        self.refused(INPUT, ["value.xml", "4,096"], "check", "value.xml")
+
     def signalled(self, *words, before=None, which=signal.SIGHUP):
         process = subprocess.Popen([TOOL, *words], cwd=self.folder, stderr=subprocess.PIPE, preexec_fn=before)
         time.sleep(0.6)
