@@ -22,14 +22,7 @@ constexpr PatchIndex many_patches = 50000;
 
 constexpr std::uint32_t purpose = 0x656e636c;
 
-// Where a walk of diffuse reflections has come to.
-struct Place {
-  Point point;
-  Vector normal;
-  PolygonIndex polygon = no_polygon;
-};
-
-std::vector<Ray> onward(const std::vector<Place>& places, std::uint32_t walks, std::uint32_t key) {
+std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t walks, std::uint32_t key) {
   const auto samples = scrambled_sobol(walks, key);
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -50,15 +43,15 @@ bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
   return 2 * static_cast<std::size_t>(count) > hits.size();
 }
 
-// True when fewer than half of the walks from a patch leave the scene, and the space before it is no gap.
-bool is_enclosed(const Scene& scene, const Occluder& faces, const PatchMesh& mesh, PatchIndex patch, double face_area,
+// True when fewer than half of the walks from the place with this key leave the scene, and the space before it is no
+// gap before a face of this area, m^2.
+bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& from, std::size_t key, double face_area,
                  std::uint32_t walks) {
-  const PolygonIndex polygon = mesh.polygon[patch];
-  std::vector<Place> places(walks, {mesh.centroid[patch], mesh.normal[patch], polygon});
+  std::vector<FacingPlace> places(walks, from);
   for (std::uint32_t k = 0; k < reflections; ++k) {
-    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, patch, k})));
+    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, key, k})));
     if (k == 0 && is_gap(hits, face_area)) return false;
-    std::vector<Place> next;
+    std::vector<FacingPlace> next;
     for (const std::optional<Hit>& hit : hits) {
       if (!hit) continue;
       const Vector front = front_normal(scene, hit->polygon);
@@ -80,8 +73,18 @@ Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, cons
   Eigen::VectorXd enclosed(mesh.size());
   parallel_for(mesh.size(), [&](std::size_t k) {
     const auto patch = static_cast<PatchIndex>(k);
-    enclosed[patch] = is_enclosed(scene, faces, mesh, patch, face_area[mesh.polygon[patch]], walks) ? 1 : 0;
+    const PolygonIndex polygon = mesh.polygon[patch];
+    const FacingPlace place{mesh.centroid[patch], mesh.normal[patch], polygon};
+    enclosed[patch] = is_enclosed(scene, faces, place, k, face_area[polygon], walks) ? 1 : 0;
   });
+  return enclosed;
+}
+
+std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& faces,
+                                          std::span<const FacingPlace> places) {
+  std::vector<std::uint8_t> enclosed(places.size(), 0);
+  parallel_for(places.size(),
+               [&](std::size_t k) { enclosed[k] = is_enclosed(scene, faces, places[k], k, 0, usual_walks) ? 1 : 0; });
   return enclosed;
 }
 

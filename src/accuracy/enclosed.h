@@ -6,6 +6,9 @@
 #include "visibility/occluder.h"
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
 
@@ -14,5 +17,16 @@ namespace patchlight {
 /// reflections, whatever the reflectance; clear faces count as closed. A gap is lower than about a hundredth of the
 /// width of its faces. `faces` is an occluder whose rays meet all polygons. Costs at most 64 rays per patch.
 Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh);
+
+/// A place and the unit direction that it faces, on a polygon or in the air.
+struct FacingPlace {
+  Point point;
+  Vector normal;
+  PolygonIndex polygon = no_polygon;
+};
+
+/// 1 for each place in a room, by the same rule as patches, but for gaps; else 0.
+std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& faces,
+                                          std::span<const FacingPlace> places);
 
 }  // namespace patchlight

@@ -150,7 +150,7 @@ std::string room_lines(const Scene& scene, bool all) {
   std::vector<std::pair<double, const NamedRoom*>> rooms;
   std::set<std::string> storeys;
   for (const NamedRoom& room : scene.rooms) {
-    rooms.emplace_back(area_of(floor_of(room.faces, scene.up)), &room);
+    rooms.emplace_back(area_of(floor_of_room(room.faces, scene.up)), &room);
     if (!room.storey.empty()) storeys.insert(room.storey);
   }
   std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -4,7 +4,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "input/new_scene_file.h"
+#include "cli/new_places.h"
 #include "output/whole_file.h"
 #include "output/write_bytes.h"
 #include "plan/survey.h"
@@ -21,7 +21,11 @@ ExitCode new_scene(const NewArguments& arguments) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.models, arguments.read);
   for (const Problem& problem : problems_with_size(scene)) print_message("note", problem.what);
-  const std::string text = new_scene_file(scene, arguments.models, arguments.read.metres_per_unit, arguments.output);
+  const NewLight light = new_light(scene);
+  const TriedPlaces tried = new_places(with_new_light(scene, light));
+  for (const std::string& note : tried.notes) print_message("note", note);
+  const std::string text =
+      new_scene_file(scene, light, tried.places, arguments.models, arguments.read.metres_per_unit, arguments.output);
   const WritingGuard guard;
   write_bytes(arguments.output, text);
   std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()

@@ -3,9 +3,10 @@
 #include "base/rounded.h"
 #include "base/shortest.h"
 #include "input/materials.h"
-#include "input/new_cameras.h"
+#include "input/toml_sensors.h"
 #include "input/toml_text.h"
 #include "input/toml_value.h"
+#include "scene/dark_solids.h"
 #include "scene/sealed_room.h"
 #include "scene/sensor_grid.h"
 #include "scene/window_areas.h"
@@ -45,12 +46,12 @@ bool is_under_something(const Floor& floor, double top) {
   return !floor.outlines.empty() && floor.outlines[0][0].dot(floor.up) + lowest_room <= top;
 }
 
-std::vector<NamedFloor> rooms_of(const Scene& scene) {
+std::vector<NamedFloor> floors_of_rooms(const Scene& scene) {
   const double top = top_of(scene);
   const std::vector<double> windows = window_areas(scene);
   std::vector<NamedFloor> places;
   for (std::size_t k = 0; k < scene.rooms.size(); ++k) {
-    Floor floor = floor_of(scene.rooms[k].faces, scene.up);
+    Floor floor = floor_of_room(scene.rooms[k].faces, scene.up);
     if (is_under_something(floor, top)) places.push_back({scene.rooms[k].name, std::move(floor), windows[k]});
   }
   return largest_first(std::move(places));
@@ -61,10 +62,11 @@ std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
   std::vector<std::vector<PolygonIndex>> of_group(scene.groups.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) of_group[scene.polygons[p].group].push_back(p);
   const double top = top_of(scene);
+  const std::vector<Solid> solids = dark_solids(scene);
   std::vector<NamedFloor> places;
   for (std::uint32_t group = 0; group < of_group.size(); ++group) {
     if (group_name(scene, group).empty()) continue;
-    Floor floor = floor_of(outlines_of(scene, of_group[group]), scene.up);
+    Floor floor = floor_of_polygons(scene, of_group[group], solids);
     if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor), 0});
   }
   return largest_first(std::move(places));
@@ -128,7 +130,7 @@ std::string material_tables(const Scene& scene) {
 
 // Over the middle of a floor, as high as is free at least.
 std::optional<Point> place_over(const Floor& floor) {
-  const SensorGroup grid = floor_grid(floor, lowest_room, std::sqrt(area_of(floor)) / 10, 0);
+  const SensorGroup grid = floor_grid(floor, lowest_room, {std::sqrt(area_of(floor)) / 10, 0});
   Point middle = Point::Zero();
   for (const Sensor& sensor : grid.sensors) middle += sensor.point / static_cast<double>(grid.sensors.size());
   const auto nearest = std::min_element(grid.sensors.begin(), grid.sensors.end(), [&](const auto& a, const auto& b) {
@@ -137,50 +139,40 @@ std::optional<Point> place_over(const Floor& floor) {
   return nearest == grid.sensors.end() ? std::nullopt : std::optional(nearest->point);
 }
 
-struct LampPlaces {
-  std::vector<Point> points;
-  std::vector<std::string> rooms_without;  // names, in the scene's order; empty where no room has a lamp of its own
-};
-
-// In each of the largest named rooms, else under the ceiling, where that has room below.
-LampPlaces places_of_lamps(const Scene& scene, const Solid& hull, const std::vector<NamedFloor>& places) {
-  LampPlaces lamps;
-  if (!scene.rooms.empty()) {
-    for (const NamedRoom& room : scene.rooms) lamps.rooms_without.push_back(room.name);
-    for (const NamedFloor& place : places) {
-      if (lamps.points.size() == most_named) break;
-      const std::optional<Point> lamp = place_over(place.floor);
-      if (!lamp) continue;
-      lamps.points.push_back(*lamp);
-      lamps.rooms_without.erase(std::find(lamps.rooms_without.begin(), lamps.rooms_without.end(), place.name));
-    }
+// In each of the largest named rooms.
+NewLight lamps_in_rooms(const Scene& scene) {
+  NewLight light{true, {}, {}};
+  for (const NamedRoom& room : scene.rooms) light.rooms_without.push_back(room.name);
+  for (const NamedFloor& place : floors_of_rooms(scene)) {
+    if (light.lamps.size() == most_named) break;
+    const std::optional<Point> lamp = place_over(place.floor);
+    if (!lamp) continue;
+    light.lamps.push_back(*lamp);
+    light.rooms_without.erase(std::find(light.rooms_without.begin(), light.rooms_without.end(), place.name));
   }
-  if (!lamps.points.empty()) return lamps;
-  const std::optional<Point> lamp = place_under_ceiling(scene, hull);
-  return {lamp ? std::vector<Point>{*lamp} : std::vector<Point>{}, {}};
+  return light;
 }
 
 // "# No lamp stands in: "store", "attic" and 3 more.", or nothing.
-std::string unlit_line(const std::vector<std::string>& rooms) {
+std::string names_line(const std::string& what, const std::vector<std::string>& rooms) {
   if (rooms.empty()) return {};
   std::string list;
   for (std::size_t k = 0; k < std::min(rooms.size(), most_named); ++k)
     list += (list.empty() ? "" : ", ") + toml_text(rooms[k]);
   if (rooms.size() > most_named) list += " and " + std::to_string(rooms.size() - most_named) + " more";
-  return "# No lamp stands in: " + list + ".\n";
+  return "# " + what + ": " + list + ".\n";
 }
 
 // Commented out where no place for a lamp is known.
-std::string luminaire_table(const Scene& scene, const Solid& hull, const std::vector<NamedFloor>& places) {
-  const LampPlaces lamps = places_of_lamps(scene, hull, places);
+std::string luminaire_table(const NewLight& light) {
   std::string positions;
-  for (const Point& lamp : lamps.points) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
+  for (const Point& lamp : light.lamps) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
   const bool is_known = !positions.empty();
   const std::string mark = is_known ? "" : "# ";
   return std::string("# Nothing in the model shines, and no daylight gets in: a lamp that shines all around") +
-         (is_known ? ".\n" : ",\n# for which no place was found.\n") + unlit_line(lamps.rooms_without) + mark +
-         "[[luminaire]]\n" + mark + "name = \"lamp\"\n" + mark +
-         "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
+         (is_known ? ".\n" : ",\n# for which no place was found.\n") +
+         names_line("No lamp stands in", light.rooms_without) + mark + "[[luminaire]]\n" + mark + "name = \"lamp\"\n" +
+         mark + "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
          (is_known ? positions : "[X, Y, Z]") + "]\n" + mark + "lumens = 3000\n\n";
 }
 
@@ -197,65 +189,80 @@ std::string sky_tables(const Scene& scene, bool is_only_light) {
          "# latitude = 52.5\n# longitude = 13.4\n\n";
 }
 
-// What nothing in the model gives: a luminaire in a room that no daylight gets into, else a sky.
-std::string light_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
-  if (has_lamp(scene)) return sky_tables(scene, false);
-  const std::optional<Solid> hull = sealed_hull(scene);
-  if (!hull || !is_room(scene, *hull)) return sky_tables(scene, true);
-  return luminaire_table(scene, *hull, places) + sky_tables(scene, false);
+std::string light_tables(const Scene& scene, const NewLight& light) {
+  if (light.is_sealed) return luminaire_table(light) + sky_tables(scene, false);
+  return sky_tables(scene, !has_lamp(scene));
 }
 
-constexpr double usual_spacing = 0.5;  // m
-
-// By the usual spacing.
-double cells_over(const Floor& floor) {
-  if (floor.outlines.empty()) return 0;
-  const auto [corner, x, y] = rectangle_over(floor, 0);
-  return cells_along(x.norm(), usual_spacing) * cells_along(y.norm(), usual_spacing);
+// Over every room, or over those that have a place for sensors.
+std::string rooms_text(const FloorGrid& grid) {
+  if (grid.rooms.size() == 1) return toml_text(grid.rooms[0]);
+  std::string list;
+  for (const std::string& room : grid.rooms) list += "  " + toml_text(room) + ",\n";
+  return "[\n" + list + "]";
 }
 
-// Half a metre; where the grids would have more than 20,000 cells so, as many metres as leave about that many.
-double spacing_for(const Scene& scene, const std::vector<NamedFloor>& places) {
-  constexpr double most_cells = 2e4;
-  double cells = scene.rooms.empty() && !places.empty() ? cells_over(places[0].floor) : 0;
-  for (const NamedRoom& room : scene.rooms) cells += cells_over(floor_of(room.faces, scene.up));
-  return cells <= most_cells ? usual_spacing : std::ceil(10 * usual_spacing * std::sqrt(cells / most_cells)) / 10;
-}
-
-std::string sensor_tables(const Scene& scene, const std::vector<NamedFloor>& places) {
+std::string sensor_tables(const Scene& scene, const NewPlaces& places) {
   if (!scene.sensors.empty()) return "# The model has sensors of its own.\n\n";
+  std::string text = names_line("No sensors stand in", places.rooms_without);
+  const std::string mark = places.grid ? "" : "# ";
+  const FloorGrid grid = places.grid.value_or(FloorGrid{"work plane", "FLOOR", {}, 0.8, {}, {}, {}, 0});
+  if (!places.grid) text += "# No floor has a closed room above it. A grid over a group of faces would be:\n";
+  text += mark + "[[sensors]]\n" + mark + "name = " + toml_text(grid.name) + '\n' + mark +
+          (grid.rooms.empty() ? "floor = " + toml_text(grid.group) : "room = " + rooms_text(grid)) + '\n' + mark +
+          "height = " + shortest(grid.height) + "      # metres above the floor\n" +
+          "# spacing = 0.5   # metres; EN 12464-1 by the size of the room unless stated\n" + mark +
+          (grid.rooms.empty() ? "from_walls = 0.5\n\n" : "# from_walls = 0.5\n\n");
+  return text;
+}
+
+std::string camera_tables(const std::vector<Camera>& cameras) {
   std::ostringstream text;
-  const std::string rest =
-      "height = 0.8      # metres above the floor\nspacing = " + shortest(spacing_for(scene, places)) +
-      "\nfrom_walls = 0.5\n\n";
-  if (!scene.rooms.empty()) {
-    text
-        << "# A grid over the floor of every room; results are told room by room.\n[[sensors]]\nname = \"work plane\"\n"
-        << "room = \"*\"        # or one of:";
-    for (std::size_t k = 0; k < std::min(places.size(), most_named); ++k)
-      text << (k > 0 ? ", " : " ") << toml_text(places[k].name);
-    text << (places.size() > most_named ? ", ..." : "") << '\n' << rest;
-  } else if (!places.empty()) {
-    text << "# A grid over the largest floor.\n[[sensors]]\nname = \"work plane\"\nfloor = "
-         << toml_text(places[0].name) << '\n'
-         << rest;
+  if (!cameras.empty()) text << "# Views for --view NAME, from inside the rooms with the largest windows or floors.\n";
+  for (const Camera& camera : cameras) {
+    text << "[[camera]]\nname = " << toml_text(camera.name) << "\neye = " << toml_text(camera.eye)
+         << "\ntarget = " << toml_text(camera.target) << "\nfield_of_view = " << shortest(camera.vertical_field_of_view)
+         << "  # degrees, upright\n\n";
   }
   return text.str();
 }
 
 }  // namespace
 
-std::string new_scene_file(const Scene& scene, const std::vector<std::filesystem::path>& models,
-                           std::optional<double> metres_per_unit, const std::filesystem::path& file) {
-  const std::vector<NamedFloor> places = scene.rooms.empty() ? floors_of_groups(scene) : rooms_of(scene);
+std::vector<NamedFloor> named_floors(const Scene& scene) {
+  return scene.rooms.empty() ? floors_of_groups(scene) : floors_of_rooms(scene);
+}
+
+NewLight new_light(const Scene& scene) {
+  if (has_lamp(scene)) return {};
+  const std::optional<Solid> hull = sealed_hull(scene);
+  if (!hull || !is_room(scene, *hull)) return {};
+  NewLight light = lamps_in_rooms(scene);
+  if (!light.lamps.empty()) return light;
+  const std::optional<Point> lamp = place_under_ceiling(scene, *hull);
+  return {true, lamp ? std::vector<Point>{*lamp} : std::vector<Point>{}, {}};
+}
+
+Scene with_new_light(Scene scene, const NewLight& light) {
+  if (has_lamp(scene)) return scene;
+  for (const Point& lamp : light.lamps) {
+    scene.luminaires.emplace_back();
+    scene.luminaires.back().position = lamp;
+  }
+  if (!light.is_sealed) scene.sky = Sky{};
+  return scene;
+}
+
+std::string new_scene_file(const Scene& scene, const NewLight& light, const NewPlaces& places,
+                           const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
+                           const std::filesystem::path& file) {
   std::ostringstream text;
   text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
        << " -o result.vtp --report result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
-  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, places)
-       << sensor_tables(scene, places);
-  text << camera_tables(scene, places);
+  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, light)
+       << sensor_tables(scene, places) << camera_tables(places.cameras);
   return text.str();
 }
 

@@ -218,7 +218,7 @@ Scene with_sensors(Scene scene, const SceneFile& file) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
       FloorSensors found = sensors_over(scene, *grid);
       for (SensorGroup& group : found.groups) scene.sensors.push_back(std::move(group));
-      if (!found.note.empty()) scene.notes.push_back(std::move(found.note));
+      for (std::string& note : found.notes) scene.notes.push_back(std::move(note));
     } else {
       scene.sensors.push_back(std::get<SensorGroup>(entry));
     }
@@ -266,10 +266,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   check(scene);
   scene = with_fewer_faces(std::move(scene), options, scene_files);
   scene = with_guess_of_up(set_upright(std::move(scene), options), upright_part(options, scene_files));
-  for (const SceneFile& file : scene_files) {
-    scene = with_sensors(with_lights(std::move(scene), file.lights), file);
-  }
+  for (const SceneFile& file : scene_files) scene = with_lights(std::move(scene), file.lights);
   scene = with_daylight(std::move(scene), options, !scene_files.empty());
+  for (const SceneFile& file : scene_files) scene = with_sensors(std::move(scene), file);
   scene = with_bands(std::move(scene), bands_for(options, scene_files));
   scene = maintained(std::move(scene), options, scene_files);
   check_limits(scene);

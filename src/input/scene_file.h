@@ -27,12 +27,12 @@ struct ModelEntry {
 /// A grid of sensors over a floor, or one over that of each of some rooms, which are known once the models are read.
 struct FloorGrid {
   std::string name;
-  std::string group;  ///< a name of polygon groups, or a pattern with * and ?; empty: of rooms
-  std::string room;   ///< a name of rooms, or a pattern
-  double height = 0;  ///< metres above the floor
-  double spacing = 0;
-  double from_walls = 0;  ///< metres: no sensor is nearer to the floor's rim
-  std::string file;       ///< that asks for it
+  std::string group;                 ///< a name of polygon groups, or a pattern with * and ?; empty: of rooms
+  std::vector<std::string> rooms;    ///< names of rooms, or patterns
+  double height = 0;                 ///< metres above the floor
+  std::optional<double> spacing;     ///< metres; that of standard_grid() unless stated
+  std::optional<double> from_walls;  ///< metres: no sensor is nearer to the floor's rim; of standard_grid()
+  std::string file;                  ///< that asks for it
   std::uint32_t line = 0;
 };
 

@@ -81,13 +81,8 @@ std::optional<Eigen::Affine3d> placement_of(const TomlValue& table, const TomlFr
   return placement;
 }
 
-// One pattern, or a list of them.
 std::vector<std::string> patterns(const TomlValue& value) {
-  const std::string expected = "a name of objects, groups or materials, a pattern with * and ?, or a list of such";
-  if (value.kind != TomlValue::Kind::list) return {text(value, expected)};
-  std::vector<std::string> all;
-  for (const TomlValue& item : value.items) all.push_back(text(item, expected));
-  return all;
+  return texts(value, "a name of objects, groups or materials, a pattern with * and ?, or a list of such");
 }
 
 ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {

@@ -4,11 +4,13 @@
 
 #include "base/near_match.h"
 #include "base/rounded.h"
+#include "input/left_out.h"
 #include "input/material_settings.h"
 #include "input/read_points.h"
 #include "input/text.h"
+#include "scene/dark_solids.h"
+#include "scene/extent.h"
 #include "scene/room_body.h"
-#include "scene/sensor_grid.h"
 
 #include <algorithm>
 #include <charconv>
@@ -84,21 +86,21 @@ std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, co
   const std::string kind = one_of(table, {"points", "file", "corner", "floor", "room"});
   if (kind == "floor" || kind == "room") {
     require_absent(table, {"edges"}, kind);
-    const TomlValue& floor = *find(table, kind);
-    const std::string named = text(floor, kind == "floor" ? "the name of polygon groups, or a pattern with * and ?"
-                                                          : "the name of rooms, or a pattern with * and ?");
-    const TomlValue* const from_walls = find(table, "from_walls");
-    const double usual_distance = kind == "room" ? 0.5 : 0;  // metres
-    const double height = not_negative(required(table, "height", "the height above the floor"));
-    const double spacing = positive(required(table, "spacing", "the length of a cell"));
+    const TomlValue& place = *find(table, kind);
     FloorGrid grid;
     grid.name = name;
-    (kind == "floor" ? grid.group : grid.room) = named;
-    grid.height = frame.metres_per_unit * height;
-    grid.spacing = frame.metres_per_unit * spacing;
-    grid.from_walls = from_walls ? frame.metres_per_unit * not_negative(*from_walls) : usual_distance;
+    if (kind == "floor") grid.group = text(place, "the name of polygon groups, or a pattern with * and ?");
+    if (kind == "room") grid.rooms = texts(place, "the name of rooms, a pattern with * and ?, or a list of such");
+    if (kind == "floor") grid.from_walls = 0;
+    const auto length = [&](const char* key, double (*checked)(const TomlValue&)) -> std::optional<double> {
+      const TomlValue* const value = find(table, key);
+      return value ? std::optional(frame.metres_per_unit * checked(*value)) : std::nullopt;
+    };
+    grid.height = frame.metres_per_unit * not_negative(required(table, "height", "the height above the floor"));
+    grid.spacing = length("spacing", positive);
+    if (const auto stated = length("from_walls", not_negative)) grid.from_walls = stated;
     grid.file = frame.file.string();
-    grid.line = line_of(floor.where);
+    grid.line = line_of(place.where);
     return grid;
   }
   require_absent(table, {"height", "from_walls"}, kind);
@@ -137,17 +139,53 @@ std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const Tom
 
 namespace {
 
-SensorGroup grid_over(const Floor& floor, const FloorGrid& grid, const std::string& where) {
-  const auto [corner, x, y] = rectangle_over(floor, grid.height);
-  require_sensible(where, {x, y}, grid.spacing);
-  SensorGroup group = floor_grid(floor, grid.height, grid.spacing, grid.from_walls);
-  group.name = grid.name;
-  group.file = grid.file;
-  group.lines = {grid.line};
-  return group;
+std::string where_of(const FloorGrid& grid) { return grid.file + ":" + std::to_string(grid.line); }
+
+GridSize size_of(const Floor& floor, const FloorGrid& grid) {
+  if (grid.spacing && grid.from_walls) return {*grid.spacing, *grid.from_walls};
+  const GridSize standard = standard_grid(floor);
+  return {grid.spacing.value_or(standard.spacing), grid.from_walls.value_or(standard.from_walls)};
 }
 
-std::vector<SensorGroup> over_floor(const Scene& scene, const FloorGrid& grid, const std::string& where) {
+bool is_in(const std::vector<Solid>& solids, const Point& point) {
+  return std::any_of(solids.begin(), solids.end(),
+                     [&](const Solid& solid) { return solid.box.contains(point) && holds(solid, point); });
+}
+
+template <class Predicate>
+SensorGroup without(const SensorGroup& group, const Predicate& is_left_out) {
+  SensorGroup rest = group;
+  rest.sensors.clear();
+  rest.cells.clear();
+  for (std::size_t k = 0; k < group.sensors.size(); ++k) {
+    if (is_left_out(group.sensors[k].point)) continue;
+    rest.sensors.push_back(group.sensors[k]);
+    rest.cells.push_back(group.cells[k]);
+  }
+  return rest;
+}
+
+// The area of a floor beyond a strip along its rim, by 100 x 100 cells over the rectangle around it, m^2.
+double area_beyond_strip(const Floor& floor, double from_walls) {
+  const auto [corner, x, y] = rectangle_over(floor, 0);
+  return area_of(floor_grid(floor, 0, {std::max(x.norm(), y.norm()) / 100, from_walls}));
+}
+
+// Of a floor with cells beyond a strip, of which some are left out.
+double share_of(const SensorGroup& rest, const Floor& floor, double from_walls) {
+  const double whole = area_beyond_strip(floor, from_walls);
+  return whole > 0 ? std::min(1.0, area_of(rest) / whole) : 1;
+}
+
+// With a note on a grid that covers a part of its floor.
+void note_share(LeftOut& notes, const FloorGrid& grid, const std::string& floor, double share) {
+  constexpr double nearly_all = 0.9;
+  if (share >= nearly_all) return;
+  notes.add("floors that the cells of '" + grid.name + "' cover in part, without places that a roof or a solid takes",
+            floor + " " + rounded(100 * share, 2) + " %");
+}
+
+std::vector<PolygonIndex> polygons_of_group(const Scene& scene, const FloorGrid& grid) {
   std::vector<PolygonIndex> polygons;
   std::set<std::string> names;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -155,72 +193,119 @@ std::vector<SensorGroup> over_floor(const Scene& scene, const FloorGrid& grid, c
     names.insert(name);
     if (name == grid.group || matches(name, grid.group)) polygons.push_back(p);
   }
-  if (polygons.empty()) {
-    const std::vector<std::string> allowed(names.begin(), names.end());
-    throw InputError(where, "sensors.floor: no face is of a group '" + grid.group + "'" +
-                                suggestion(grid.group, allowed) + " The groups are " + listed(allowed));
-  }
-  const Floor floor = floor_of(outlines_of(scene, polygons), scene.up);
-  if (floor.outlines.empty()) throw InputError(where, "sensors.floor: no face of '" + grid.group + "' is level");
-  SensorGroup group = grid_over(floor, grid, where);
-  if (group.sensors.empty())
-    throw InputError(where, "sensors.spacing: no cell has its middle over the floor" +
-                                (grid.from_walls > 0 ? ", " + rounded(grid.from_walls) + " m from its rim" : ""));
-  return {group};
+  if (!polygons.empty()) return polygons;
+  const std::vector<std::string> allowed(names.begin(), names.end());
+  throw InputError(where_of(grid), "sensors.floor: no face is of a group '" + grid.group + "'" +
+                                       suggestion(grid.group, allowed) + " The groups are " + listed(allowed));
 }
 
-// Without sensors above a sloping roof or in a nook of another room. A room that is not closed has no inside: all stay.
-SensorGroup within(SensorGroup group, const RoomBody& body) {
-  SensorGroup inside = group;
-  inside.sensors.clear();
-  inside.cells.clear();
-  for (std::size_t k = 0; k < group.sensors.size(); ++k) {
-    if (!body.holds(group.sensors[k].point)) continue;
-    inside.sensors.push_back(group.sensors[k]);
-    inside.cells.push_back(group.cells[k]);
-  }
-  return inside.sensors.empty() ? group : inside;
+FloorSensors over_floor(const Scene& scene, const FloorGrid& grid) {
+  const std::vector<Solid> solids = dark_solids(scene);
+  const Floor floor = floor_of_polygons(scene, polygons_of_group(scene, grid), solids);
+  if (floor.outlines.empty())
+    throw InputError(where_of(grid), "sensors.floor: no face of '" + grid.group + "' is level");
+  GridInAir over = grid_over(floor, grid, solids);
+  if (over.group.sensors.empty())
+    throw InputError(where_of(grid),
+                     "sensors.spacing: no cell has its middle in the air over the floor" +
+                         (grid.from_walls > 0 ? ", " + rounded(*grid.from_walls) + " m from its rim" : std::string()));
+  LeftOut notes;
+  note_share(notes, grid, grid.group, over.share);
+  return {{std::move(over.group)}, notes.notes()};
 }
 
-// The rooms that a pattern means, each with a grid of its own; those too narrow for one have none.
-FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid, const std::string& where) {
-  std::vector<SensorGroup> groups;
-  std::string narrow;
+bool is_meant(const NamedRoom& room, const FloorGrid& grid) {
+  return std::any_of(grid.rooms.begin(), grid.rooms.end(),
+                     [&](const std::string& pattern) { return room.name == pattern || matches(room.name, pattern); });
+}
+
+void require_known_rooms(const Scene& scene, const FloorGrid& grid) {
+  if (scene.rooms.empty())
+    throw InputError(where_of(grid),
+                     "sensors.room: the models name no rooms (IfcSpace); expected floor = \"GROUP\" instead");
   std::vector<std::string> names;
-  bool found = false;
+  for (const NamedRoom& room : scene.rooms) names.push_back(room.name);
+  for (const std::string& pattern : grid.rooms) {
+    const bool is_known = std::any_of(
+        names.begin(), names.end(), [&](const std::string& name) { return name == pattern || matches(name, pattern); });
+    if (!is_known)
+      throw InputError(where_of(grid), "sensors.room: no room is called '" + pattern + "'" +
+                                           suggestion(pattern, names) + " The rooms are " + listed(names));
+  }
+}
+
+GridInAir grid_over_room(const NamedRoom& room, const FloorGrid& grid, const std::vector<Solid>& solids,
+                         const Vector& up) {
+  const Floor floor = floor_of_room(room.faces, up);
+  if (floor.outlines.empty()) return {};
+  GridInAir over = grid_over(floor, grid, solids);
+  const double area = area_of(over.group);
+  over.group = in_room(std::move(over.group), room);
+  if (area > 0) over.share *= area_of(over.group) / area;
+  return over;
+}
+
+// The rooms that are meant, each with a grid of its own.
+FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
+  require_known_rooms(scene, grid);
+  const std::vector<Solid> solids = dark_solids(scene);
+  std::vector<SensorGroup> groups;
+  LeftOut notes;
   for (const NamedRoom& room : scene.rooms) {
-    names.push_back(room.name);
-    if (room.name != grid.room && !matches(room.name, grid.room)) continue;
-    found = true;
-    const Floor floor = floor_of(room.faces, scene.up);
-    SensorGroup group = floor.outlines.empty() ? SensorGroup() : grid_over(floor, grid, where);
-    if (group.sensors.empty()) {
-      narrow += (narrow.empty() ? "" : ", ") + room.name;
+    if (!is_meant(room, grid)) continue;
+    GridInAir over = grid_over_room(room, grid, solids, scene.up);
+    if (over.group.sensors.empty()) {
+      notes.add("rooms without sensors of '" + grid.name + "', as no place of their floors is level, free and " +
+                    (grid.from_walls ? rounded(*grid.from_walls) + " m from the walls" : "wide enough"),
+                room.name);
       continue;
     }
-    group = within(std::move(group), RoomBody(room.faces));
-    group.name = names.back() == grid.room ? grid.name : grid.name + " " + room.name;
-    groups.push_back(std::move(group));
+    note_share(notes, grid, room.name, over.share);
+    over.group.name = grid.rooms == std::vector{room.name} ? grid.name : grid.name + " " + room.name;
+    groups.push_back(std::move(over.group));
   }
-  if (names.empty())
-    throw InputError(where, "sensors.room: the models name no rooms (IfcSpace); expected floor = \"GROUP\" instead");
-  if (!found)
-    throw InputError(where, "sensors.room: no room is called '" + grid.room + "'" + suggestion(grid.room, names) +
-                                " The rooms are " + listed(names));
   if (groups.empty())
-    throw InputError(where, "sensors.spacing: no cell of these rooms has its middle " + rounded(grid.from_walls) +
-                                " m from the walls; expected a smaller from_walls or spacing");
-  if (narrow.empty()) return {std::move(groups), {}};
-  return {std::move(groups), "rooms without sensors of '" + grid.name + "', as no place over their floor is " +
-                                 rounded(grid.from_walls) + " m from the walls: " + narrow};
+    throw InputError(where_of(grid), "sensors.spacing: no cell of these rooms has its middle in the air" +
+                                         (grid.from_walls ? ", " + rounded(*grid.from_walls) + " m from the walls;"
+                                                          : std::string(";")) +
+                                         " expected a smaller from_walls or spacing");
+  return {std::move(groups), notes.notes()};
 }
 
 }  // namespace
 
+Floor floor_of_polygons(const Scene& scene, const std::vector<PolygonIndex>& polygons,
+                        const std::vector<Solid>& solids) {
+  const double extent = extent_of(scene);
+  std::vector<PolygonIndex> open;
+  for (const PolygonIndex p : polygons) {
+    const Side upper = front_normal(scene, p).dot(scene.up) > 0 ? Side::front : Side::back;
+    if (!is_in(solids, point_before(scene, p, upper, extent))) open.push_back(p);
+  }
+  return floor_of(outlines_of(scene, open), scene.up);
+}
+
+GridInAir grid_over(const Floor& floor, const FloorGrid& grid, const std::vector<Solid>& solids) {
+  const GridSize size = size_of(floor, grid);
+  const double cells = most_cells(floor, size);
+  if (!(cells <= most_sensors)) refuse_spacing(where_of(grid), std::min(cells, 1e18));
+  SensorGroup group =
+      without(floor_grid(floor, grid.height, size), [&](const Point& point) { return is_in(solids, point); });
+  group.name = grid.name;
+  group.file = grid.file;
+  group.lines = {grid.line};
+  const double share = share_of(group, floor, size.from_walls);
+  return {std::move(group), share};
+}
+
+SensorGroup in_room(SensorGroup group, const NamedRoom& room) {
+  const RoomBody body(room.faces);
+  SensorGroup inside = without(group, [&](const Point& point) { return !body.holds(point); });
+  return inside.sensors.empty() ? group : inside;
+}
+
 FloorSensors sensors_over(const Scene& scene, const FloorGrid& grid) {
-  const std::string where = grid.file + ":" + std::to_string(grid.line);
-  if (!grid.room.empty()) return over_rooms(scene, grid, where);
-  return {over_floor(scene, grid, where), {}};
+  return grid.rooms.empty() ? over_floor(scene, grid) : over_rooms(scene, grid);
 }
 
 }  // namespace patchlight

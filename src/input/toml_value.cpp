@@ -106,6 +106,13 @@ std::string text(const TomlValue& value, const std::string& expected) {
   return value.text;
 }
 
+std::vector<std::string> texts(const TomlValue& value, const std::string& expected) {
+  if (value.kind != TomlValue::Kind::list) return {text(value, expected)};
+  std::vector<std::string> all;
+  for (const TomlValue& item : value.items) all.push_back(text(item, expected));
+  return all;
+}
+
 std::filesystem::path path(const TomlValue& value, const std::filesystem::path& file) {
   return (file.parent_path() / text(value, "the name of a file")).lexically_normal();
 }

@@ -80,6 +80,9 @@ Spectrum spectrum(const TomlValue& value);
 /// The value as a text that is not empty.
 std::string text(const TomlValue& value, const std::string& expected = "a text");
 
+/// The value as one such text, or a list of them.
+std::vector<std::string> texts(const TomlValue& value, const std::string& expected);
+
 /// The value as a path; relative ones start from the folder of `file`.
 std::filesystem::path path(const TomlValue& value, const std::filesystem::path& file);
 

@@ -2,6 +2,7 @@
 
 #include "light/photometry.h"
 #include "scene/room_body.h"
+#include "scene/sensor_grid.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 #include "visibility/occluder.h"
@@ -119,11 +120,10 @@ struct LitPatch {
   double differs = 0;  // how far it is from that at points, root mean square; 0 without error bars
 };
 
-// EN 12464-1: cells of a grid over an area with d metres along it are p = 0.2 x 5^log10(d) metres wide at most. Here d
-// is the root of the area, of walls that of a quarter of it, as a room has four.
+// The cell of EN 12464-1 for a square of the area, of walls of a quarter of it, as a room has four.
 double cell_of_grid(const SurfaceLight& surface) {
-  const double area = surface.surface == RoomSurface::walls ? surface.area / 4 : surface.area;
-  return 0.2 * std::pow(5, std::log10(std::sqrt(area)));
+  const double side = std::sqrt(surface.surface == RoomSurface::walls ? surface.area / 4 : surface.area);
+  return standard_spacing(side, side);
 }
 
 // May the illuminance be much lower at some points than the patches tell? The size of a patch is the root of its area:

@@ -1,10 +1,14 @@
 #include "scene/sensor_grid.h"
 
+#include "scene/room_body.h"
+#include "scene/triangulate.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <map>
 
 namespace patchlight {
@@ -12,6 +16,9 @@ namespace {
 
 // Cosine of 0.08 degrees.
 constexpr double level_cosine = 1 - 1e-6;
+
+// Coordinates of some formats have single precision.
+constexpr double rounding = 1e-6;
 
 // An edge without direction, in steps of a millimetre, so that polygons that share it find each other.
 using EdgeKey = std::array<std::array<std::int64_t, 3>, 2>;
@@ -99,12 +106,67 @@ bool is_inside(const std::vector<Point>& outline, const Point& point, const Vect
   return inside;
 }
 
+double distance_from(const std::vector<Edge>& rim, const Point& point) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Edge& edge : rim) nearest = std::min(nearest, distance_from(edge, point));
+  return nearest;
+}
+
+// Is a point in the plane of the floor, which has these two directions, on it?
+bool is_over(const Floor& floor, const Point& point, const std::array<Vector, 2>& plane) {
+  return std::any_of(floor.outlines.begin(), floor.outlines.end(),
+                     [&](const std::vector<Point>& outline) { return is_inside(outline, point, plane[0], plane[1]); });
+}
+
+// The distance from the rim of the place of a floor that is farthest from it, of 51 x 51 places; or of the first that
+// is as far from it as is enough.
+double farthest_from_rim(const Floor& floor, const std::array<Vector, 3>& around, double enough) {
+  constexpr int places = 51;  // each way, with one in the middle
+  const std::vector<Edge> rim = rim_of(floor);
+  double farthest = 0;
+  for (int row = 0; row < places; ++row) {
+    for (int column = 0; column < places; ++column) {
+      const Point at = around[0] + (column + 0.5) / places * around[1] + (row + 0.5) / places * around[2];
+      if (is_over(floor, at, {around[1], around[2]})) farthest = std::max(farthest, distance_from(rim, at));
+      if (farthest >= enough) return farthest;
+    }
+  }
+  return farthest;
+}
+
+using Levels = std::map<double, Floor>;  // by their height, from below
+
+Levels levels_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
+  constexpr double one_height = 1e-3;  // metres
+  Levels levels;
+  for (const std::vector<Point>& face : faces) {
+    const Vector area = area_vector(face);
+    if (!(area.norm() > 0) || std::abs(area.normalized().dot(up)) < level_cosine) continue;
+    const double height = face[0].dot(up);
+    auto level = levels.lower_bound(height - one_height);
+    if (level == levels.end() || level->first > height + one_height)
+      level = levels.emplace(height, Floor{{}, up}).first;
+    level->second.outlines.push_back(face);
+  }
+  return levels;
+}
+
+// The middle of the largest triangle of a face, inside of it even when it is not convex.
+Point point_on(const std::vector<Point>& face) {
+  Point middle = face[0];
+  double largest = 0;
+  for (const auto& [a, b, c] : triangles_of(face)) {
+    const double area = (b - a).cross(c - a).norm();
+    if (!(area > largest)) continue;
+    largest = area;
+    middle = (a + b + c) / 3;
+  }
+  return middle;
+}
+
 }  // namespace
 
-double cells_along(double length, double spacing) {
-  constexpr double rounding = 1e-6;  // coordinates of some formats have single precision
-  return std::max(1.0, std::ceil(length / spacing - rounding));
-}
+double cells_along(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - rounding)); }
 
 SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edges, double spacing) {
   const double across = cells_along(edges[0].norm(), spacing);
@@ -123,19 +185,9 @@ SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edg
 }
 
 Floor floor_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
-  constexpr double one_height = 1e-3;    // metres
   constexpr double thickest_slab = 0.6;  // metres
   constexpr double same_area = 0.95;     // of the underside is over it
-  std::map<double, Floor> levels;        // by their height, from below
-  for (const std::vector<Point>& face : faces) {
-    const Vector area = area_vector(face);
-    if (!(area.norm() > 0) || std::abs(area.normalized().dot(up)) < level_cosine) continue;
-    const double height = face[0].dot(up);
-    auto level = levels.lower_bound(height - one_height);
-    if (level == levels.end() || level->first > height + one_height)
-      level = levels.emplace(height, Floor{{}, up}).first;
-    level->second.outlines.push_back(face);
-  }
+  const Levels levels = levels_of(faces, up);
   if (levels.empty()) return {{}, up};
   const auto lowest = levels.begin();
   for (auto above = std::next(lowest); above != levels.end(); ++above) {
@@ -143,6 +195,19 @@ Floor floor_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
     if (area_of(above->second) >= same_area * area_of(lowest->second)) return above->second;
   }
   return lowest->second;
+}
+
+Floor floor_of_room(const std::vector<std::vector<Point>>& faces, const Vector& up) {
+  const RoomBody body(faces);
+  std::vector<std::vector<Point>> under_air;
+  for (const std::vector<Point>& face : faces) {
+    if (body.holds(point_on(face) + body.step() * up)) under_air.push_back(face);
+  }
+  const Levels levels = levels_of(under_air, up);
+  const auto largest = std::max_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+    return area_of(a.second) < (1 - rounding) * area_of(b.second);
+  });
+  return largest == levels.end() ? floor_of(faces, up) : largest->second;
 }
 
 std::vector<std::vector<Point>> outlines_of(const Scene& scene, std::span<const PolygonIndex> polygons) {
@@ -168,27 +233,54 @@ std::array<Vector, 3> rectangle_over(const Floor& floor, double height) {
   return {low, box.sizes().x() * x, box.sizes().y() * y};
 }
 
-SensorGroup floor_grid(const Floor& floor, double height, double spacing, double from_walls) {
-  assert(!floor.outlines.empty());
-  const std::array<Vector, 3> around = rectangle_over(floor, height);
-  const SensorGroup all = rectangle_grid(around[0], {around[1], around[2]}, spacing);
-  const std::vector<Edge> rim = rim_of(floor);
-  const auto is_clear_of_walls = [&](const Point& at) {
-    const Point on_floor = at - height * floor.up;
-    return std::all_of(rim.begin(), rim.end(),
-                       [&](const Edge& edge) { return distance_from(edge, on_floor) >= from_walls; });
+double standard_spacing(double side, double other_side) {
+  const auto [shorter, longer] = std::minmax(side, other_side);
+  const double d = longer >= 2 * shorter ? shorter : longer;
+  return std::min(10.0, 0.2 * std::pow(5, std::log10(d)));  // EN 12464-1:2021, equation (2)
+}
+
+GridSize standard_grid(const Floor& floor) {
+  constexpr double strip = 0.5;
+  const std::array<Vector, 3> around = rectangle_over(floor, 0);
+  const double spacing = standard_spacing(around[1].norm(), around[2].norm());
+  // In the widest place r from the rim the strip takes r / 2 at most, and cells as wide as the rest of both sides fit.
+  const double widest = farthest_from_rim(floor, around, strip + std::max(strip, spacing / 2));
+  const double from_walls = std::min(strip, widest / 2);
+  return {std::min(spacing, 2 * (widest - from_walls)), from_walls};
+}
+
+double most_cells(const Floor& floor, const GridSize& size) {
+  const auto [corner, x, y] = rectangle_over(floor, 0);
+  const auto cells = [&](const Vector& side) {
+    return cells_along(std::max(0.0, side.norm() - 2 * size.from_walls), size.spacing);
   };
+  return cells(x) * cells(y);
+}
+
+SensorGroup floor_grid(const Floor& floor, double height, const GridSize& size) {
+  assert(!floor.outlines.empty());
+  const auto [corner, x, y] = rectangle_over(floor, height);
+  const Vector strip_x = size.from_walls * x.normalized(), strip_y = size.from_walls * y.normalized();
+  const Vector inner_x = x - 2 * strip_x, inner_y = y - 2 * strip_y;
+  if (!(inner_x.dot(x) > 0) || !(inner_y.dot(y) > 0)) return {};
+  const SensorGroup all = rectangle_grid(corner + strip_x + strip_y, {inner_x, inner_y}, size.spacing);
+  const std::vector<Edge> rim = rim_of(floor);
   SensorGroup group;
   for (std::size_t k = 0; k < all.sensors.size(); ++k) {
-    const Point& at = all.sensors[k].point;
-    const bool over_floor =
-        std::any_of(floor.outlines.begin(), floor.outlines.end(),
-                    [&](const std::vector<Point>& outline) { return is_inside(outline, at, around[1], around[2]); });
-    if (!over_floor || (from_walls > 0 && !is_clear_of_walls(at))) continue;
+    const Point on_floor = all.sensors[k].point - height * floor.up;
+    const bool is_free = is_over(floor, on_floor, {x, y}) &&
+                         (size.from_walls == 0 || distance_from(rim, on_floor) >= (1 - rounding) * size.from_walls);
+    if (!is_free) continue;
     group.sensors.push_back(all.sensors[k]);
     group.cells.push_back(all.cells[k]);
   }
   return group;
+}
+
+double area_of(const SensorGroup& grid) {
+  double area = 0;
+  for (const auto& cell : grid.cells) area += area_vector(cell).norm();
+  return area;
 }
 
 }  // namespace patchlight

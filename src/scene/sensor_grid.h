@@ -30,6 +30,10 @@ struct Floor {
 /// level.
 Floor floor_of(const std::vector<std::vector<Point>>& faces, const Vector& up);
 
+/// The floor of a body of air: its level faces with the air above them, at the height where these have most area. Of
+/// faces that enclose no air floor_of().
+Floor floor_of_room(const std::vector<std::vector<Point>>& faces, const Vector& up);
+
 /// The corner points of some polygons of a scene.
 std::vector<std::vector<Point>> outlines_of(const Scene& scene, std::span<const PolygonIndex> polygons);
 
@@ -40,8 +44,28 @@ double area_of(const Floor& floor);
 /// the two edges from it.
 std::array<Vector, 3> rectangle_over(const Floor& floor, double height);
 
-/// A grid over a floor, facing up: that of rectangle_over(), without the cells whose middle lies beside the floor or
-/// nearer to its rim than `from_walls`, metres.
-SensorGroup floor_grid(const Floor& floor, double height, double spacing, double from_walls);
+/// How a grid lies over a floor, metres.
+struct GridSize {
+  double spacing = 0;     ///< cells have at most this spacing
+  double from_walls = 0;  ///< a strip along the rim without cells
+};
+
+/// The largest cells that EN 12464-1 allows for an area with sides of these lengths, metres: p = 0.2 * 5^log10(d), at
+/// most 10 m, where d is the longer side, or the shorter one of an area at least twice as long as wide.
+double standard_spacing(double side, double other_side);
+
+/// The grid of EN 12464-1 over a floor: standard_spacing() of the rectangle around it, and a strip of 0.5 m. Narrow
+/// floors have smaller ones: the strip takes at most half of the widest place, and a row of cells fits into the rest.
+GridSize standard_grid(const Floor& floor);
+
+/// The number of cells of the grid over the rectangle around a floor.
+double most_cells(const Floor& floor, const GridSize& size);
+
+/// A grid over a floor, facing up: cells over rectangle_over() less the strip along its edges, without those whose
+/// middle lies beside the floor or in the strip along its rim.
+SensorGroup floor_grid(const Floor& floor, double height, const GridSize& size);
+
+/// Area of the cells of a grid, m^2.
+double area_of(const SensorGroup& grid);
 
 }  // namespace patchlight

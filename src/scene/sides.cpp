@@ -1,6 +1,7 @@
 #include "patchlight/scene/sides.h"
 
 #include "base/rounded.h"
+#include "scene/dark_solids.h"
 #include "scene/extent.h"
 #include "scene/half_spaces.h"
 #include "scene/lamp_places.h"
@@ -192,6 +193,41 @@ Lit lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
   return {lamps.inside || (from_outside && solid.has_opening), !lamps.inside || from_outside || gets_out};
 }
 
+// The solids of a scene by the light that gets to them.
+struct LitSolids {
+  std::vector<Solid> dark;
+  std::vector<Solid> around_all_lamps;
+  Count count;
+  std::string outside;  // a note on a luminaire that misses its room
+};
+
+LitSolids lit_solids(const Scene& scene, const Shells& shells, const std::vector<LampShape>& lamps, double extent) {
+  const bool daylight = scene.sun || scene.sky;
+  LitSolids lit;
+  bool holds_lamp = false;
+  for (Solid& solid : closed_solids(scene, shells)) {
+    const LampPlaces places = places_of(lamps, solid, extent);
+    const auto [inside, outside] = lit_sides(solid, places, daylight);
+    holds_lamp = holds_lamp || places.inside;
+    if (inside && !solid.fronts_face_inside && lit.count.outward++ == 0)
+      lit.count.first_outward_line = scene.polygons[solid.polygons[0]].line;
+    lit.count.sealed += daylight && inside && !solid.has_opening;
+    if (!inside)
+      lit.dark.push_back(std::move(solid));
+    else if (!outside)
+      lit.around_all_lamps.push_back(std::move(solid));
+  }
+  if (!holds_lamp) lit.outside = nearest_outside(scene, lit.dark);
+  // What other faces close may be dark inside; of those faces it is not known which part lies inside, so that the dark
+  // outside of one that holds all lamps is not looked for.
+  for (Solid& solid : standing_solids(scene, shells)) {
+    if (!lit_sides(solid, places_of(lamps, solid, extent), daylight).inside) lit.dark.push_back(std::move(solid));
+  }
+  lit.count.dark = static_cast<int>(lit.dark.size());
+  lit.count.outside = static_cast<int>(lit.around_all_lamps.size());
+  return lit;
+}
+
 KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) {
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 1);
@@ -200,40 +236,16 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
   const bool daylight = scene.sun || scene.sky;
   const Shells shells = shells_of(scene);
-  Count count;
-  std::vector<Solid> dark, around_all_lamps;
-  bool holds_lamp = false;
-  for (Solid& solid : closed_solids(scene, shells)) {
-    const LampPlaces places = places_of(lamps, solid, extent);
-    const Lit lit = lit_sides(solid, places, daylight);
-    holds_lamp = holds_lamp || places.inside;
-    if (lit.inside && !solid.fronts_face_inside && count.outward++ == 0) {
-      count.first_outward_line = scene.polygons[solid.polygons[0]].line;
-    }
-    count.sealed += daylight && lit.inside && !solid.has_opening;
-    count.dark += !lit.inside && !in_the_dark.unreached;
-    count.outside += !lit.outside && !in_the_dark.turned_away;
-    if (!lit.inside) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
-    if (!lit.inside)
-      dark.push_back(std::move(solid));
-    else if (!lit.outside)
-      around_all_lamps.push_back(std::move(solid));
-  }
-  const std::string outside = holds_lamp || in_the_dark.unreached ? std::string() : nearest_outside(scene, dark);
-  // What other faces close may be dark inside; of those faces it is not known which part lies inside, so that the dark
-  // outside of one that holds all lamps is not looked for.
-  for (Solid& solid : standing_solids(scene, shells)) {
-    if (lit_sides(solid, places_of(lamps, solid, extent), daylight).inside) continue;
-    count.dark += !in_the_dark.unreached;
-    kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
-    dark.push_back(std::move(solid));
-  }
-  kept.notes = notes_on(count);
-  if (!outside.empty()) kept.notes.push_back(outside);
+  LitSolids lit = lit_solids(scene, shells, lamps, extent);
+  for (const Solid& solid : lit.dark) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
+  if (in_the_dark.unreached) lit.count.dark = 0;
+  if (in_the_dark.turned_away) lit.count.outside = 0;
+  kept.notes = notes_on(lit.count);
+  if (!lit.outside.empty() && !in_the_dark.unreached) kept.notes.push_back(lit.outside);
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
-  const SideMask unreached = any_light ? sides_within(scene, shells, dark) : inner_sides(scene, shells, dark);
-  SideMask turned_away = sides_outside(scene, shells, around_all_lamps);
+  const SideMask unreached = any_light ? sides_within(scene, shells, lit.dark) : inner_sides(scene, shells, lit.dark);
+  SideMask turned_away = sides_outside(scene, shells, lit.around_all_lamps);
   if (any_light && !daylight) turned_away = either(std::move(turned_away), sides_before_nothing(scene, extent));
   DarkSides dark_sides = with_whole_sheets({unreached, std::move(turned_away)}, scene);
   return without(std::move(kept), std::move(dark_sides), in_the_dark);
@@ -251,6 +263,13 @@ const char* name_of(Sides sides) {
       return "both";
   }
   return "";
+}
+
+std::vector<Solid> dark_solids(const Scene& scene) {
+  const double extent = extent_of(scene);
+  const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
+  if (lamps.empty() && !scene.sun && !scene.sky) return {};
+  return lit_solids(scene, shells_of(scene), lamps, extent).dark;
 }
 
 KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark) {

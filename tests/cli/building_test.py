@@ -24,10 +24,36 @@ f 5 8 7 6
 """
 
 
+# A floor of 4 m x 3 m with walls of 3 m, and a roof with a slit of 0.4 m over them.
+HALL = """mtllib court.mtl
+v 0 0 0
+v 4 0 0
+v 4 3 0
+v 0 3 0
+v 0 0 3
+v 4 0 3
+v 4 3 3
+v 0 3 3
+v 4 2.6 3
+v 0 2.6 3
+g floor
+usemtl wall
+f 1 2 3 4
+g walls
+f 1 5 6 2
+f 2 6 7 3
+f 3 7 8 4
+f 4 8 5 1
+g roof
+f 5 10 9 6
+"""
+
+
 class BuildingTest(ToolTest):
     def setUp(self):
         super().setUp()
         self.write("court.obj", COURT)
+        self.write("hall.obj", HALL)
         self.write("court.mtl", NO_LAMP)
 
     def good(self, *arguments):
@@ -91,37 +117,47 @@ class BuildingTest(ToolTest):
     def test_what_is_left_out_does_not_take_part(self):
         self.assertIn("1 polygon of 12 m^2", self.good("check", "court.obj", "--sky", "overcast", "--only", "floor"))
 
+    def sensors_of(self, scene):
+        self.good("solve", scene, "--patches", 200, "-q", "-o", "x.vtp", "--points-output", "x.csv")
+        return (self.folder / "x.csv").read_text().splitlines()[1:]
+
     def test_a_new_scene_file_can_be_solved_and_is_not_overwritten(self):
-        self.good("new", "court.obj", "-o", "court.toml")
-        text = (self.folder / "court.toml").read_text()
-        self.assertIn('file = "court.obj"', text)
+        self.good("new", "hall.obj", "-o", "hall.toml")
+        text = (self.folder / "hall.toml").read_text()
+        self.assertIn('file = "hall.obj"', text)
         self.assertIn("[sky]\nkind", text)
         self.assertIn('floor = "floor"', text)
-        self.good("solve", "court.toml", "--patches", 200, "-q", "-o", "court.vtp")
-        self.refused(OUTPUT, ["is there already"], "new", "court.obj", "-o", "court.toml")
-        self.assertEqual((self.folder / "court.toml").read_text(), text)
-        self.refused(USAGE, ["patchlight new MODEL -o SCENE.toml"], "new", "court.obj")
+        # EN 12464-1: cells of 0.2 * 5^log10(4) = 0.53 m over 3 m x 2 m.
+        self.assertEqual(len(self.sensors_of("hall.toml")), 6 * 4)
+        self.refused(OUTPUT, ["is there already"], "new", "hall.obj", "-o", "hall.toml")
+        self.assertEqual((self.folder / "hall.toml").read_text(), text)
+        self.refused(USAGE, ["patchlight new MODEL -o SCENE.toml"], "new", "hall.obj")
 
-    def test_a_new_scene_file_has_a_grid_that_solve_takes_whatever_the_unit(self):
-        """A court in millimetres that is read as metres is 4,000 m long: half a metre would be 48 million sensors."""
-        court = (self.folder / "court.obj").read_text().splitlines()
+    def test_a_new_scene_file_has_no_sensors_in_the_open(self):
+        self.good("new", "court.obj", "-o", "court.toml")
+        self.assertNotIn("\n[[sensors]]", (self.folder / "court.toml").read_text())
+        self.good("check", "court.toml")
+        self.good("solve", "court.toml", "--patches", 200, "-q", "-o", "court.vtp")
+
+    def test_a_new_scene_file_can_be_solved_whatever_the_unit(self):
+        """A hall in millimetres that is read as metres is 4,000 m long: that is no room."""
+        hall = (self.folder / "hall.obj").read_text().splitlines()
         self.write("mm.obj", "\n".join("v " + " ".join(str(1000 * float(x)) for x in line.split()[1:4])
-                                       if line.startswith("v ") else line for line in court) + "\n")
+                                       if line.startswith("v ") else line for line in hall) + "\n")
         done = self.run_tool("new", "mm.obj", "-o", "mm.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("--unit mm", done.stderr)
-        self.assertNotIn("spacing = 0.5", (self.folder / "mm.toml").read_text())
         self.good("solve", "mm.toml", "--patches", 200, "-q", "-o", "mm.vtp")
         self.good("new", "mm.obj", "--unit", "mm", "-o", "right.toml")
-        self.assertIn("spacing = 0.5", (self.folder / "right.toml").read_text())
+        self.assertEqual(len(self.sensors_of("right.toml")), 6 * 4)
 
     def test_check_tells_of_a_great_many_sensors(self):
-        self.good("new", "court.obj", "-o", "court.toml")
-        text = (self.folder / "court.toml").read_text()
-        self.write("fine.toml", text.replace("spacing = 0.5", "spacing = 0.005"))
+        self.good("new", "hall.obj", "-o", "hall.toml")
+        text = (self.folder / "hall.toml").read_text()
+        self.write("fine.toml", text.replace("# spacing = 0.5 ", "spacing = 0.005 "))
         said = self.good("check", "fine.toml")
         self.assertRegex(said, r"\d{6} sensors are asked for.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
-        self.assertNotIn("sensors are asked for", self.good("check", "court.toml"))
+        self.assertNotIn("sensors are asked for", self.good("check", "hall.toml"))
         # Long before its end: without mesh and patches it is refused afterwards.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
         self.assertRegex(done.stderr, r"note: \d{6} sensors are asked for")

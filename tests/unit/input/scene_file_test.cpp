@@ -203,7 +203,7 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
       {"[[sensors]]\nfile = \"no.pts\"\n", {"no.pts: the file of points does not exist"}},
       {"[[sensors]]\nfloor = \"flor\"\nheight = 1\nspacing = 1\n", {"scene.toml:4: ", "did you mean 'floor'?"}},
       {"[[sensors]]\nfloor = \"floor\"\nheight = 1\nspacing = 1e-6\n", {"scene.toml:4: sensors.spacing", "1000000"}},
-      {"[[sensors]]\nfloor = \"floor\"\nheight = 1\n", {"scene.toml:3: sensors: found no key 'spacing'"}},
+      {"[[sensors]]\nfloor = \"floor\"\nspacing = 1\n", {"scene.toml:3: sensors: found no key 'height'"}},
       {"[[sensors]]\nfile = \"a\"\nspacing = 1\n", {"scene.toml:5: sensors.spacing", "'file'"}},
       {"[[sensors]]\ncorner = [0,0,0]\nedges = [[1,0,0],[2,0,0]]\nspacing = 1\n", {"scene.toml:5: sensors.edges"}},
       {"[[sensors]]\nname=\"a\"\npoints=[[0,0,0,0,0,1]]\n[[sensors]]\nname=\"a\"\npoints=[[0,0,0,0,0,1]]\n",
