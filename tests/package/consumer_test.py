@@ -27,13 +27,23 @@ def main(build, version, cmake, compiler):
         folder = pathlib.Path(name)
         installed = folder / "installed"
         run(cmake, "--install", build, "--prefix", installed)
+
+        def build_project(name, to, flags=""):
+            run(cmake, "-S", HERE / name, "-B", folder / to, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={installed}",
+                f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={flags}")
+            run(cmake, "--build", folder / to)
+
         for name in ("consumer", "consumer_of_core"):
-            run(cmake, "-S", HERE / name, "-B", folder / name, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={installed}",
-                f"-DCMAKE_CXX_COMPILER={compiler}")
-            run(cmake, "--build", folder / name)
+            build_project(name, name)
         run(folder / "consumer" / "consumer", MODEL, folder / "cube.ply")
         run(folder / "consumer" / "own_solver", MODEL)
         assert (folder / "cube.ply").read_bytes().startswith(b"ply\n")
+
+        # The values of the interface are freed by either side, whatever instructions each side is compiled for.
+        build_project("consumer", "native", "-O2 -march=native")
+        run(folder / "native" / "consumer", MODEL, folder / "native.ply")
+        run(folder / "native" / "own_solver", MODEL)
+        assert (folder / "native.ply").read_bytes() == (folder / "cube.ply").read_bytes()
 
         # Of what the whole library is linked with, the core has what meshes and rays need.
         core = folder / "consumer_of_core" / "consumer_of_core"

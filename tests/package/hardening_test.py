@@ -22,6 +22,7 @@ def main(tool):
         "stack not executable (-z noexecstack)": re.search(r"GNU_STACK(\s+0x\w+){5}\s+RW\s", segments),
         "guarded stack frames (-fstack-protector-strong)": "__stack_chk_fail" in symbols,
         "checked buffer functions (_FORTIFY_SOURCE)": re.search(r"\b__\w+_chk@", symbols.replace("__stack_chk", "")),
+        "checked indices (_GLIBCXX_ASSERTIONS)": "__glibcxx_assert_fail" in symbols,
     }
     for what, is_so in holds.items():
         print(f"{'yes' if is_so else 'NO '}  {what}")
