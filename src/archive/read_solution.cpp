@@ -19,7 +19,7 @@
 namespace patchlight {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
+[[noreturn]] void refuse_solution(const std::filesystem::path& file, const std::string& found) {
   throw InputError(file.string(), found + "; expected a solution as patchlight has written it: solve the scene again");
 }
 
@@ -37,19 +37,19 @@ void require_indices(const StoredSolution& stored, const Scene& scene, const std
   }
   for (const Middle& middle : stored.middles)
     sound = sound && is_known(middle.vertex) && is_known(middle.ends[0]) && is_known(middle.ends[1]);
-  if (!sound) refuse(file, "its patches do not fit the scene");
+  if (!sound) refuse_solution(file, "its patches do not fit the scene");
 }
 
 void require_values(const StoredSolution& stored, Eigen::Index bands, const std::filesystem::path& file) {
   for (const Field* field : {&stored.radiosity, &stored.exitance, &stored.reflectance})
-    if (field->cols() != bands) refuse(file, "its bands are not those of the scene");
+    if (field->cols() != bands) refuse_solution(file, "its bands are not those of the scene");
   const auto lie_between_0_and = [](const Field& field, double most) {
     return (field >= 0).all() && (field <= most).all();  // false for numbers that are not finite
   };
   constexpr double largest = std::numeric_limits<float>::max();
   if (!lie_between_0_and(stored.radiosity, largest) || !lie_between_0_and(stored.exitance, largest))
-    refuse(file, "its radiosities are not finite, or negative");
-  if (!lie_between_0_and(stored.reflectance, 1)) refuse(file, "its reflectances do not lie between 0 and 1");
+    refuse_solution(file, "its radiosities are not finite, or negative");
+  if (!lie_between_0_and(stored.reflectance, 1)) refuse_solution(file, "its reflectances do not lie between 0 and 1");
 }
 
 // Patches lie within the box of their polygon, and together they are no larger than it.
@@ -65,11 +65,11 @@ void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesy
       bool sound = mesh.area[patch] > 0;
       for (const std::uint32_t vertex : mesh.corners[patch])
         sound = sound && box.exteriorDistance(mesh.vertices[vertex]) <= length;
-      if (!sound) refuse(file, "a patch does not lie in its polygon, or has no area");
+      if (!sound) refuse_solution(file, "a patch does not lie in its polygon, or has no area");
       area += mesh.area[patch];
     }
     if (area > area_vector(corners).norm() * (1 + 100 * rounding))
-      refuse(file, "the patches of a polygon are larger than it");
+      refuse_solution(file, "the patches of a polygon are larger than it");
   }
 }
 

@@ -282,7 +282,7 @@ TriedPlaces new_places(const Scene& lit) {
     });
     tried.places.cameras = cameras_in(trial, std::move(inside));
   }
-  tried.notes = notes.notes();
+  tried.notes = notes.on({}).notes;
   return tried;
 }
 

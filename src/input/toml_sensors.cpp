@@ -211,7 +211,7 @@ FloorSensors over_floor(const Scene& scene, const FloorGrid& grid) {
                          (grid.from_walls > 0 ? ", " + rounded(*grid.from_walls) + " m from its rim" : std::string()));
   LeftOut notes;
   note_share(notes, grid, grid.group, over.share);
-  return {{std::move(over.group)}, notes.notes()};
+  return {{std::move(over.group)}, notes.on({}).notes};
 }
 
 bool is_meant(const NamedRoom& room, const FloorGrid& grid) {
@@ -269,7 +269,7 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
                                          (grid.from_walls ? ", " + rounded(*grid.from_walls) + " m from the walls;"
                                                           : std::string(";")) +
                                          " expected a smaller from_walls or spacing");
-  return {std::move(groups), notes.notes()};
+  return {std::move(groups), notes.on({}).notes};
 }
 
 }  // namespace
