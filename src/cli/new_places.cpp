@@ -57,7 +57,11 @@ class Trial {
   explicit Trial(const Scene& scene)
       : scene_(over_ground(scene)),
         faces_(scene_, Occluder::Blockers::all),
-        sides_(kept_sides(scene_, Sides::automatic)) {}
+        sides_(kept_sides(scene_, Sides::automatic)) {
+    for (PolygonIndex p = 0; p < scene_.polygons.size(); ++p) {
+      if (is_opening(scene_, p)) openings_.push_back(p);
+    }
+  }
 
   const Scene& scene() const { return scene_; }
 
@@ -88,10 +92,25 @@ class Trial {
     return faces_.occluded(way)[0] == 0;
   }
 
+  // How much glass is near and in sight, m^2 / m^2.
+  double glass_near(const Point& point) const {
+    std::vector<Segment> ways;
+    for (const PolygonIndex p : openings_)
+      ways.push_back({point, area_centroid(corner_points(scene_, p)), no_polygon, p});
+    const std::vector<std::uint8_t> hidden = faces_.occluded(ways);
+    double sum = 0;
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      const double area = area_vector(corner_points(scene_, openings_[k])).norm();
+      if (!hidden[k]) sum += area / ((ways[k].to - point).squaredNorm() + area);
+    }
+    return sum;
+  }
+
  private:
   Scene scene_;
   Occluder faces_;
   KeptSides sides_;
+  std::vector<PolygonIndex> openings_;
 };
 
 // A grid that was tried: so many places are good, and so many of these have the floor itself below them.
@@ -193,18 +212,6 @@ NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> flo
   return places;
 }
 
-// Of how much glass is near, m^2 / m^2.
-double glass_near(const Scene& scene, const Point& point) {
-  double sum = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (!is_opening(scene, p)) continue;
-    const std::vector<Point> corners = corner_points(scene, p);
-    const double area = area_vector(corners).norm();
-    sum += area / ((area_centroid(corners) - point).squaredNorm() + area);
-  }
-  return sum;
-}
-
 // Places for an eye in a room, away from walls.
 std::vector<Point> eyes_in(const Trial& trial, const NamedFloor& place) {
   const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
@@ -228,7 +235,7 @@ std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
   };
   const std::vector<Point> eyes = eyes_in(trial, place);
   std::vector<double> glass;
-  for (const Point& eye : eyes) glass.push_back(glass_near(trial.scene(), eye));
+  for (const Point& eye : eyes) glass.push_back(trial.glass_near(eye));
   std::vector<Way> ways;
   for (std::size_t from = 0; from < eyes.size(); ++from) {
     for (std::size_t to = 0; to < eyes.size(); ++to) {

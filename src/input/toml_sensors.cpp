@@ -80,29 +80,34 @@ void require_absent(const TomlValue& table, const std::vector<std::string>& keys
   }
 }
 
+// Over floors of groups, or of rooms.
+FloorGrid floor_grid_of(const TomlValue& table, const TomlFrame& frame, const std::string& name,
+                        const std::string& kind) {
+  require_absent(table, {"edges"}, kind);
+  const auto length = [&](const char* key, double (*checked)(const TomlValue&)) -> std::optional<double> {
+    const TomlValue* const value = find(table, key);
+    return value ? std::optional(frame.metres_per_unit * checked(*value)) : std::nullopt;
+  };
+  const TomlValue& place = *find(table, kind);
+  FloorGrid grid;
+  grid.name = name;
+  if (kind == "floor") grid.group = text(place, "the name of polygon groups, or a pattern with * and ?");
+  if (kind == "room") grid.rooms = texts(place, "the name of rooms, a pattern with * and ?, or a list of such");
+  required(table, "height", "the height above the floor");
+  grid.height = *length("height", not_negative);
+  grid.spacing = length("spacing", positive);
+  grid.from_walls = length("from_walls", not_negative);
+  if (kind == "floor" && !grid.from_walls) grid.from_walls = 0;
+  grid.file = frame.file.string();
+  grid.line = line_of(place.where);
+  return grid;
+}
+
 std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, const TomlFrame& frame,
                                                       const std::string& name) {
   allow_keys(table, {"name", "points", "file", "corner", "edges", "floor", "room", "height", "spacing", "from_walls"});
   const std::string kind = one_of(table, {"points", "file", "corner", "floor", "room"});
-  if (kind == "floor" || kind == "room") {
-    require_absent(table, {"edges"}, kind);
-    const TomlValue& place = *find(table, kind);
-    FloorGrid grid;
-    grid.name = name;
-    if (kind == "floor") grid.group = text(place, "the name of polygon groups, or a pattern with * and ?");
-    if (kind == "room") grid.rooms = texts(place, "the name of rooms, a pattern with * and ?, or a list of such");
-    if (kind == "floor") grid.from_walls = 0;
-    const auto length = [&](const char* key, double (*checked)(const TomlValue&)) -> std::optional<double> {
-      const TomlValue* const value = find(table, key);
-      return value ? std::optional(frame.metres_per_unit * checked(*value)) : std::nullopt;
-    };
-    grid.height = frame.metres_per_unit * not_negative(required(table, "height", "the height above the floor"));
-    grid.spacing = length("spacing", positive);
-    if (const auto stated = length("from_walls", not_negative)) grid.from_walls = stated;
-    grid.file = frame.file.string();
-    grid.line = line_of(place.where);
-    return grid;
-  }
+  if (kind == "floor" || kind == "room") return floor_grid_of(table, frame, name, kind);
   require_absent(table, {"height", "from_walls"}, kind);
   if (kind != "corner") require_absent(table, {"edges", "spacing"}, kind);
   SensorGroup group;
