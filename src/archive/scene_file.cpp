@@ -188,6 +188,29 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
                    "them anew: patchlight form-factors MODEL -o FOLDER");
 }
 
+// Faces of problems are not stored.
+Json problems_part(const Scene& scene) {
+  Json part = Json::array();
+  for (const Problem& problem : scene.problems)
+    part.push_back({{"kind", name_of(problem.kind)},
+                    {"count", problem.count},
+                    {"what", json_of(problem.what)},
+                    {"area_m2", problem.area}});
+  return part;
+}
+
+std::vector<Problem> problems_of(const Json& json) {
+  std::vector<Problem> problems;
+  for (const Json& part : json) {
+    const std::string name = text_of(part.at("kind"));
+    const std::optional<ProblemKind> kind = problem_kind(name);
+    require(kind.has_value(), "the kind of problem '" + name + "' is not known");
+    problems.push_back(
+        {*kind, part.at("count").get<std::size_t>(), text_of(part.at("what")), {}, part.at("area_m2").get<double>()});
+  }
+  return problems;
+}
+
 StoredScene stored_scene_of(const Json& json) {
   require(json.at("kind") == kind, "its kind is " + json.at("kind").dump());
   Scene scene;
@@ -198,6 +221,7 @@ StoredScene stored_scene_of(const Json& json) {
   scene.up = vector_of(json.at("up"));
   scene.up_stated = json.at("up_stated").get<bool>();
   scene.notes = texts_of(json.at("notes"));
+  if (json.contains("problems")) scene.problems = problems_of(json.at("problems"));
   scene.materials = materials_of(json.at("materials"));
   if (json.contains("bands")) scene.bands = bands_from(json.at("bands"));
   scene.lamp_hints = lamp_hints_of(json.at("lamp_hints"));
@@ -229,6 +253,7 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   if (std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.texture; }))
     notes.emplace_back("pictures are not stored: their means count");
   json["notes"] = json_of(notes);
+  json["problems"] = problems_part(scene);
   json["materials"] = materials_part(scene);
   if (!scene.bands.empty()) json["bands"] = json_of(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);

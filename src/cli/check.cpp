@@ -207,11 +207,7 @@ std::string problem_lines(const Scene& scene, const SceneReport& report, bool al
     lines.push_back(std::string(name_of(severity_of(problem.kind))) + ": " + name_of(problem.kind) + ": " +
                     shown_name(with_option_names(problem.what)));
   }
-  for (const std::string& note : scene.notes) {
-    const bool is_problem = std::any_of(report.problems.begin(), report.problems.end(),
-                                        [&](const Problem& problem) { return problem.what == note; });
-    if (!is_problem) lines.push_back("note: " + shown_name(with_option_names(note)));
-  }
+  for (const std::string& note : scene.notes) lines.push_back("note: " + shown_name(with_option_names(note)));
   std::string text = "problems: " + counted(count[0], "error") + ", " + counted(count[1], "warning") + ", " +
                      counted(count[2], "remark") + '\n';
   const std::size_t shown = all ? lines.size() : std::min(lines.size(), most_notes);

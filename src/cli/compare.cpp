@@ -109,7 +109,7 @@ ExitCode compare(const CompareArguments& arguments) {
   write_comparison(arguments.output, scene, comparison, provenance, observer);
   if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();
-  print_notes(scene, notes(scene, simulation), arguments.quiet);
+  print_notes(notes(scene, simulation), arguments.quiet);
   if (!arguments.quiet) {
     std::cout << table(comparison) << facts(scene, comparison) << files_line({arguments.output, arguments.page})
               << std::flush;

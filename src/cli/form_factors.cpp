@@ -74,8 +74,8 @@ struct Written {
 // Of either kind of form factors.
 template <class Found>
 std::vector<std::string> notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
-  std::vector<std::string> all;
-  for (const auto* notes : {&scene.notes, &found.plan.sides.notes, &found.plan.notes, &found.notes})
+  std::vector<std::string> all = remarks_of(scene);
+  for (const auto* notes : {&found.plan.sides.notes, &found.plan.notes, &found.notes})
     all.insert(all.end(), notes->begin(), notes->end());
   if (found.request.mesh.sides != arguments.request.mesh.sides)
     all.emplace_back("without a lamp --sides auto cannot tell where light gets to: the front sides are used");
@@ -134,7 +134,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   const Written written = arguments.request.assembly.storage == Storage::rays ? write_rays(arguments, scene, observer)
                                                                               : write_pairs(arguments, scene, observer);
   line.hide();
-  print_notes(scene, written.notes, arguments.quiet);
+  print_notes(written.notes, arguments.quiet);
   if (arguments.quiet) return good;
   std::cout << written.summary << "wrote " << shown_name(arguments.output.string()) << std::endl;
   return good;

@@ -94,7 +94,7 @@ ExitCode plan(const PlanArguments& arguments) {
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
-  for (const auto* notes : {&scene.notes, &plan.sides.notes, &plan.notes}) print_notes(scene, *notes, false);
+  for (const auto& notes : {remarks_of(scene), plan.sides.notes, plan.notes}) print_notes(notes, false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"

@@ -5,9 +5,7 @@
 namespace patchlight::cli {
 
 void print_scene_warnings(const Scene& scene) {
-  for (const Problem& problem : scene.problems) {
-    if (problem.kind == ProblemKind::guessed_up) print_message("warning", scene.file + ": " + problem.what);
-  }
+  for (const std::string& warning : warnings_of(scene)) print_message("warning", scene.file + ": " + warning);
 }
 
 }  // namespace patchlight::cli

@@ -356,7 +356,7 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!results.report.solution.unfinished) checkpoint.remove();
 
   if (const std::string note = checkpoint.note(); !note.empty() && !quiet) print_message("note", note);
-  print_notes(results.scene, notes(results.scene, results.simulation), quiet);
+  print_notes(notes(results.scene, results.simulation), quiet);
   for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
   if (results.views.picture) {
     if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);

@@ -82,7 +82,7 @@ ExitCode study(const StudyArguments& arguments) {
   const Provenance provenance{.command_line = arguments.command_line, .scene_hash = scene_hash(scene)};
   write_study(arguments.output, scene, study, provenance);
   if (!arguments.page.empty()) write_page(arguments.page, {.scene = scene, .provenance = provenance, .study = &study});
-  print_notes(scene, study.notes, arguments.quiet);
+  print_notes(study.notes, arguments.quiet);
   if (!arguments.quiet) {
     std::cout << table(study) << facts(scene, study) << conclusion(study) << "\n"
               << files_line({arguments.output, arguments.page}) << std::flush;

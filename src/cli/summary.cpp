@@ -225,20 +225,16 @@ std::string effects_line(const std::vector<Decision>& decisions) {
 }  // namespace
 
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
-  std::vector<std::string> all = scene.notes;
+  std::vector<std::string> all = remarks_of(scene);
   const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
   all.insert(all.end(), of_sides.begin(), of_sides.end());
   all.insert(all.end(), simulation.notes.begin(), simulation.notes.end());
   return all;
 }
 
-void print_notes(const Scene& scene, const std::vector<std::string>& notes, bool quiet) {
-  for (const std::string& note : notes) {
-    const bool is_loss = std::any_of(scene.problems.begin(), scene.problems.end(), [&](const Problem& problem) {
-      return problem.kind == ProblemKind::left_out && problem.what == note;
-    });
-    if (is_loss || !quiet) print_message(is_loss ? "warning" : "note", note);
-  }
+void print_notes(const std::vector<std::string>& notes, bool quiet) {
+  if (quiet) return;
+  for (const std::string& note : notes) print_message("note", note);
 }
 
 // An axis that was guessed: the model's floors may be walls.

@@ -8,12 +8,11 @@
 
 namespace patchlight::cli {
 
-/// What the user should know about the scene and the plan.
+/// Remarks on the scene, its sides and the run, without the warnings of print_scene_warnings().
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation);
 
-/// Prints the notes unless the run is quiet. Notes on parts of the model that the scene lacks are warnings; a quiet run
-/// prints these too.
-void print_notes(const Scene& scene, const std::vector<std::string>& notes, bool quiet);
+/// Prints the notes unless the run is quiet.
+void print_notes(const std::vector<std::string>& notes, bool quiet);
 
 /// A few lines: patches, convergence, errors, or where they are not known `how_to_know_errors`, where the light goes,
 /// seconds, and a line for each group of sensors. The long form adds decisions, counts, speed and the meshes on the way

@@ -248,7 +248,7 @@ void tell(const VerifyArguments& arguments, const Scene& scene, const Simulation
           const Verification& verification, double seconds) {
   const std::string said =
       verdict(verification, bars(arguments.bar, simulation), close_lamps(scene, simulation, verification.verdict));
-  print_notes(scene, notes(scene, simulation), arguments.quiet);
+  print_notes(notes(scene, simulation), arguments.quiet);
   if (!arguments.quiet) {
     std::cout << answer(scene, simulation, verification, said, seconds) << std::flush;
   } else if (verification.verdict != Verdict::agrees) {

@@ -4,6 +4,7 @@
 
 #include "input/assimp_materials.h"
 #include "input/assimp_pictures.h"
+#include "input/left_out.h"
 #include "input/texture_maps.h"
 
 #include <assimp/Importer.hpp>
@@ -46,13 +47,19 @@ class AssimpCollector {
     for (unsigned int k = 0; k < node.mNumChildren; ++k) add_node(*node.mChildren[k], to_scene, group);
   }
 
+  void add_lights_and_cameras() {
+    for (unsigned int k = 0; k < model_.mNumLights; ++k)
+      left_out_.lose("lights without a surface, which are not read from COLLADA, left out",
+                     model_.mLights[k]->mName.C_Str());
+    for (unsigned int k = 0; k < model_.mNumCameras; ++k)
+      left_out_.lose_without_area("cameras, which are not read from COLLADA, left out",
+                                  model_.mCameras[k]->mName.C_Str());
+  }
+
   Scene scene() && {
-    if (other_primitives_ > 0) {
-      scene_.notes.push_back("points and lines, ignored: " + std::to_string(other_primitives_));
-    }
     scene_.texture_maps = mapped_.maps();
     for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
-    return std::move(scene_);
+    return left_out_.on(std::move(scene_));
   }
 
  private:
@@ -70,7 +77,7 @@ class AssimpCollector {
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices < 3) {
-        ++other_primitives_;
+        left_out_.lose_without_area("points and lines, left out", group);
         continue;
       }
       Polygon polygon;
@@ -106,7 +113,7 @@ class AssimpCollector {
   const AssimpPictures& pictures_;
   MappedFaces mapped_;
   std::map<std::string, std::uint32_t> groups_;
-  std::size_t other_primitives_ = 0;
+  LeftOut left_out_;
 };
 
 }  // namespace
@@ -127,6 +134,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, double met
   to_scene.topLeftCorner<3, 3>() *= metres_per_unit;
   AssimpCollector collector(std::move(scene), *model, pictures);
   collector.add_node(*model->mRootNode, to_scene, "");
+  collector.add_lights_and_cameras();
   scene = std::move(collector).scene();
   scene.metres_per_unit = metres_per_unit;
   return scene;

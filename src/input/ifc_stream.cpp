@@ -78,13 +78,13 @@ class IfcScene {
     if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
     if (line.contains("space")) add_space(line);
     if (line.contains("without_faces"))
-      left_out_.add("elements whose shapes give no faces are left out", line.at("without_faces").get<std::string>());
+      left_out_.lose("elements whose shapes give no faces are left out", line.at("without_faces").get<std::string>());
     if (line.contains("end")) is_complete_ = true;
   }
 
   Scene scene() && {
     if (!is_complete_) throw std::runtime_error("its end is missing");
-    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
+    scene_ = left_out_.on(std::move(scene_));
     return with_used_materials(std::move(scene_));
   }
 

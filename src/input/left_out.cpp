@@ -1,50 +1,91 @@
 #include "input/left_out.h"
 
+#include "input/at_line.h"
 #include "input/text.h"
+#include "scene/problem_face.h"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 namespace patchlight {
 namespace {
 
 constexpr std::size_t most_names = 5;
 
-}  // namespace
+// What is said of all things of one kind that were left out for one reason.
+struct Remark {
+  std::optional<ProblemKind> kind;  // nothing for a note
+  std::string sentence;
+  std::vector<std::string> names;  // the first ones
+  bool has_more_names = false;
+  std::size_t count = 0;
+  std::vector<ProblemFace> faces;
+};
 
-LeftOut::Sentences LeftOut::with(Sentences sentences, const std::string& sentence, const std::string& name) {
-  auto found = std::find_if(sentences.begin(), sentences.end(), [&](const auto& one) { return one.first == sentence; });
-  if (found == sentences.end()) found = sentences.insert(found, {sentence, {}});
-  Names& names = found->second;
-  ++names.count;
-  const bool is_known = std::find(names.first.begin(), names.first.end(), name) != names.first.end();
-  if (names.first.size() < most_names && !is_known) names.first.push_back(name);
-  return sentences;
+// "sentence: 7 (a, b, c, ...; first at room.obj:12)".
+std::string text_of(const Remark& remark, const std::string& file) {
+  std::string where = listed(remark.names) + (remark.has_more_names ? ", ..." : "");
+  if (!remark.faces.empty() && remark.faces[0].line > 0)
+    where += (where.empty() ? "first at " : "; first at ") + at_line(file, remark.faces[0].line);
+  return remark.sentence + ": " + std::to_string(remark.count) + (where.empty() ? "" : " (" + where + ")");
 }
 
-std::string LeftOut::listed_names(const std::string& sentence, const Names& names) {
-  const char* const more = names.count > names.first.size() ? ", ..." : "";
-  return sentence + ": " + std::to_string(names.count) + " (" + listed(names.first) + more + ")";
+}  // namespace
+
+void LeftOut::count(Entry entry) {
+  const auto [found, is_new] = index_.emplace(std::pair(entry.sentence, entry.name), entries_.size());
+  if (is_new) return entries_.push_back(std::move(entry));
+  entries_[found->second].count += entry.count;
+  std::vector<ProblemFace>& faces = entries_[found->second].faces;
+  faces.insert(faces.end(), entry.faces.begin(), entry.faces.end());
 }
 
 void LeftOut::add(const std::string& sentence, const std::string& name) {
-  remarks_ = with(std::move(remarks_), sentence, name);
+  count({Part::remark, sentence, name, 1, {}});
 }
 
 void LeftOut::lose(const std::string& sentence, const std::string& name) {
-  losses_ = with(std::move(losses_), sentence, name);
+  count({Part::object, sentence, name, 1, {}});
 }
 
-std::vector<std::string> LeftOut::notes() const {
-  std::vector<std::string> all;
-  for (const auto& [sentence, names] : remarks_) all.push_back(listed_names(sentence, names));
-  return all;
+void LeftOut::lose_face(const std::string& sentence, const std::string& object, ProblemFace face) {
+  count({Part::face, sentence, object, 1, {std::move(face)}});
 }
 
-std::vector<Problem> LeftOut::problems() const {
-  std::vector<Problem> all;
-  for (const auto& [sentence, names] : losses_)
-    all.push_back({ProblemKind::left_out, names.count, listed_names(sentence, names), {}});
-  return all;
+void LeftOut::lose_without_area(const std::string& sentence, const std::string& name, std::size_t number) {
+  if (number > 0) count({Part::without_area, sentence, name, number, {}});
+}
+
+Scene LeftOut::on(Scene scene) const {
+  const std::set<std::string> objects = objects_with_faces(scene);
+  const auto kind_of = [&](const Entry& entry) -> std::optional<ProblemKind> {
+    if (entry.part == Part::remark) return std::nullopt;
+    if (entry.part == Part::object) return ProblemKind::left_out;
+    if (entry.part == Part::without_area || entry.name.empty()) return ProblemKind::little_left_out;
+    return objects.count(entry.name) > 0 ? ProblemKind::little_left_out : ProblemKind::left_out;
+  };
+  std::vector<Remark> remarks;
+  for (const Entry& entry : entries_) {
+    const auto kind = kind_of(entry);
+    auto found = std::find_if(remarks.begin(), remarks.end(), [&](const Remark& remark) {
+      return remark.kind == kind && remark.sentence == entry.sentence;
+    });
+    if (found == remarks.end()) found = remarks.insert(found, {.kind = kind, .sentence = entry.sentence});
+    found->count += entry.count;
+    found->faces.insert(found->faces.end(), entry.faces.begin(), entry.faces.end());
+    if (entry.name.empty()) continue;
+    found->has_more_names = found->names.size() == most_names;
+    if (!found->has_more_names) found->names.push_back(entry.name);
+  }
+  for (const Remark& remark : remarks) {
+    const std::string text = text_of(remark, scene.file);
+    if (remark.kind)
+      scene.problems.push_back({*remark.kind, remark.count, text, remark.faces, area_of(remark.faces)});
+    else
+      scene.notes.push_back(text);
+  }
+  return scene;
 }
 
 }  // namespace patchlight

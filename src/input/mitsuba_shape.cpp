@@ -5,6 +5,7 @@
 #include "input/read_obj.h"
 #include "input/read_ply.h"
 #include "input/text.h"
+#include "scene/problem_face.h"
 
 #include <algorithm>
 #include <array>
@@ -48,6 +49,9 @@ std::optional<FacetedShape> mesh_of(const MitsubaFile& file, const pugi::xml_nod
   Scene scene = kind == "obj" ? read_obj(path, 1, meshes.confine) : read_ply(path, 1);
   meshes.files.push_back(path);
   meshes.digests.push_back(scene.sha256);
+  for (const Problem& problem : scene.problems) {
+    if (is_loss(problem.kind)) meshes.losses.push_back(problem);
+  }
   found->second = faces_of(std::move(scene));
   return found->second;
 }

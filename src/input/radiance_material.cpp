@@ -48,8 +48,8 @@ RadianceMaterial glossy(const std::string& kind, const std::string& name, const 
 
 RadianceMaterial light_of(const std::string& kind, const std::string& name, const std::vector<double>& numbers) {
   if (kind == "spotlight")
-    return {black(name),
-            "its beam is not carried, it emits nothing: a [[luminaire]] of kind \"spot\" can stand for it"};
+    return {black(name), "its beam is not carried, it emits nothing: a [[luminaire]] of kind \"spot\" can stand for it",
+            true};
   if (kind == "glow" && numbers[3] < 0) return {black(name), "it gives no light, as its radius is negative"};
   return {emitter(name, colour_in(numbers)), kind == "illum" ? "it emits evenly, as a light does" : ""};
 }

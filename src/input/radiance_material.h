@@ -29,7 +29,8 @@ Material emitter(std::string name, const Spectrum& radiance);
 /// A material of a Radiance scene file.
 struct RadianceMaterial {
   Material material;
-  std::string simplified;  ///< what is not carried, for a note: "gloss becomes matt"; empty if all is
+  std::string simplified;    ///< what is not carried, for a note: "gloss becomes matt"; empty if all is
+  bool loses_light = false;  ///< a light source that emits nothing
 };
 
 /// The material that a kind of Radiance's with its real arguments stands for; nothing for kinds that have no

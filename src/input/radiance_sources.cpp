@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "input/left_out.h"
 
 #include <cmath>
 #include <numbers>
@@ -45,6 +46,7 @@ FarSource far_source(const RadiancePrimitive& primitive, const Eigen::Matrix3d& 
 }
 
 Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
+  LeftOut left_out;
   for (const FarSource& source : sources) {
     const std::string name = "source " + source.name;
     if (source.degrees <= most_degrees_of_a_sun && !source.has_pattern && !scene.sun) {
@@ -54,14 +56,15 @@ Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
       scene.sky =
           with_half(scene.sky.value_or(Sky{.zenith_radiance = rgb(0, 0, 0), .ground_radiance = rgb(0, 0, 0)}), source);
     } else if (source.degrees > most_degrees_of_a_sun) {
-      scene.notes.push_back(name + " of " + rounded(source.degrees) +
-                            " degrees is left out, as its light varies or it is no half sphere: --sky, as in --sky "
-                            "overcast:10000lx, gives the scene a sky and ground");
+      left_out.lose(
+          "sources of light that varies, or that are no half sphere, are left out: --sky gives a sky, e.g. --sky "
+          "overcast:10000lx",
+          name + " of " + rounded(source.degrees) + " degrees");
     } else {
-      scene.notes.push_back(name + " is left out: the sun is a light without pattern, and there is one");
+      left_out.lose("sources are left out beside a sun, or with a pattern", name);
     }
   }
-  return scene;
+  return left_out.on(std::move(scene));
 }
 
 }  // namespace patchlight

@@ -98,8 +98,8 @@ RadiancePrimitive RadianceText::next() {
   return found;
 }
 
-std::vector<std::string> command_words(std::string_view command) {
-  std::vector<std::string> all;
+std::vector<std::vector<std::string>> piped_commands(std::string_view command) {
+  std::vector<std::vector<std::string>> all(1);
   std::size_t at = 0;
   while (at < command.size()) {
     const char c = command[at];
@@ -107,21 +107,27 @@ std::vector<std::string> command_words(std::string_view command) {
       ++at;
       continue;
     }
+    if (c == '|') {
+      all.emplace_back();
+      ++at;
+      continue;
+    }
     if (c == '"' || c == '\'') {
       const std::size_t end = command.find(c, at + 1);
       if (end == std::string_view::npos) return {};
-      all.emplace_back(command.substr(at + 1, end - at - 1));
+      all.back().emplace_back(command.substr(at + 1, end - at - 1));
       at = end + 1;
       continue;
     }
     const std::size_t begin = at;
-    while (at < command.size() && !is_blank(command[at])) ++at;
+    while (at < command.size() && !is_blank(command[at]) && command[at] != '|') ++at;
     const std::string_view word = command.substr(begin, at - begin);
-    if (word.find_first_of("|;&<>`$*?()[]{}~\"'\\") != std::string_view::npos) return {};
+    if (word.find_first_of(";&<>`$*?()[]{}~\"'\\") != std::string_view::npos) return {};
     if (word.front() == '#') break;
-    all.emplace_back(word);
+    all.back().emplace_back(word);
   }
-  return all;
+  const bool is_cut = std::any_of(all.begin(), all.end(), [](const auto& words) { return words.empty(); });
+  return is_cut ? std::vector<std::vector<std::string>>() : all;
 }
 
 }  // namespace patchlight

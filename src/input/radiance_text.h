@@ -46,8 +46,8 @@ class RadianceText {
   std::uint32_t word_line_ = 1;  // of the last word
 };
 
-/// The words of a line that starts a program, quotes taken off. Nothing, an empty list, where a shell would do more
-/// with it than to start one program: pipes, lists of programs, variables, patterns.
-std::vector<std::string> command_words(std::string_view command);
+/// The programs of a line, each with its words, quotes taken off; a pipe leads from one to the next. An empty list
+/// where a shell would do more with it: lists of programs, variables, patterns.
+std::vector<std::vector<std::string>> piped_commands(std::string_view command);
 
 }  // namespace patchlight

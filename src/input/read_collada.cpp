@@ -3,8 +3,10 @@
 #include "input/assimp_scene.h"
 #include "input/decoded_pictures.h"
 #include "input/isolated.h"
+#include "input/left_out.h"
 #include "input/text.h"
 
+#include <pugixml.hpp>
 #include <utility>
 
 namespace patchlight {
@@ -20,6 +22,26 @@ Vector up_axis(const std::string& text) {
   return text[value] == 'X' ? Vector::UnitX() : text[value] == 'Z' ? Vector::UnitZ() : Vector::UnitY();
 }
 
+// assimp skips geometries that are not meshes, and holes of polygons.
+Scene with_lost_geometry(Scene scene, const std::string& text) {
+  LeftOut left_out;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());
+  for (const pugi::xml_node& geometry : document.child("COLLADA").child("library_geometries").children("geometry")) {
+    const std::string name = geometry.attribute(geometry.attribute("name") ? "name" : "id").value();
+    const pugi::xml_node mesh = geometry.child("mesh");
+    if (geometry.child("spline"))
+      left_out.lose_without_area("splines, left out", name);
+    else if (!mesh)
+      left_out.lose("geometries that are not meshes, left out", name);
+    for (const pugi::xml_node& polygons : mesh.children("polygons")) {
+      for ([[maybe_unused]] const pugi::xml_node& face : polygons.children("ph"))
+        left_out.lose_face("polygons with holes, left out", name);
+    }
+  }
+  return left_out.on(std::move(scene));
+}
+
 }  // namespace
 
 Scene read_collada(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
@@ -27,6 +49,7 @@ Scene read_collada(const std::filesystem::path& file, double metres_per_unit, co
   Scene scene = read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), metres_per_unit); });
   // These are decoded in a process of their own: one on which that crashes leaves the model as it is.
   scene = with_decoded_pictures(std::move(scene), bytes, confine);
+  scene = with_lost_geometry(std::move(scene), bytes);
   scene.up = up_axis(bytes);
   scene.up_stated = true;
   return scene;

@@ -51,8 +51,7 @@ class GbxmlReader {
     for (std::string& note :
          note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
       scene_.notes.push_back(std::move(note));
-    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
-    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
+    scene_ = left_out_.on(std::move(scene_));
     return std::move(scene_);
   }
 

@@ -73,11 +73,10 @@ class GltfCollector {
       if (count > 0) scene_.notes.push_back(what + std::to_string(count));
     };
     note("parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
-    note("parts that are points or lines, ignored: ", other_primitives_);
     note("parts with vertex colours, which are ignored: ", colored_);
     scene_.texture_maps = mapped_.maps();
     for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
-    return std::move(scene_);
+    return left_out_.on(std::move(scene_));
   }
 
  private:
@@ -94,10 +93,11 @@ class GltfCollector {
   void add_primitive(const tinygltf::Primitive& primitive, const Eigen::Matrix4d& to_scene) {
     const auto positions = primitive.attributes.find("POSITION");
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-    if (positions == primitive.attributes.end() || mode < TINYGLTF_MODE_TRIANGLES) {
-      ++other_primitives_;
-      return;
-    }
+    const std::string& object = scene_.groups.back();
+    if (mode < TINYGLTF_MODE_TRIANGLES)
+      return left_out_.lose_without_area("parts of points or lines, left out", object);
+    if (positions == primitive.attributes.end())
+      return left_out_.lose_face("parts without positions of their vertices, left out", object);
     const std::vector<double> values = accessor_values(model_, positions->second, 3, scene_.file);
     const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
     const auto count = static_cast<std::uint32_t>(values.size() / 3);
@@ -176,7 +176,7 @@ class GltfCollector {
   MappedFaces mapped_;
   std::vector<std::uint8_t> is_added_;  // per node
   std::size_t without_material_ = 0;
-  std::size_t other_primitives_ = 0;
+  LeftOut left_out_;
   std::size_t colored_ = 0;
 };
 
@@ -208,11 +208,11 @@ std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
   return notes;
 }
 
-std::vector<Problem> lost_lights(const tinygltf::Model& model) {
+Scene with_lost_lights(Scene scene, const tinygltf::Model& model) {
   LeftOut lost;
   for (const tinygltf::Light& light : model.lights)
     lost.lose("lights without a surface, which are not read from glTF, left out", light.type + " light " + light.name);
-  return lost.problems();
+  return lost.on(std::move(scene));
 }
 
 Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
@@ -224,7 +224,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.inputs = gltf.files.names;
   scene.materials = gltf_materials(gltf);
   scene.notes = notes_on_model(gltf.model);
-  scene.problems = lost_lights(gltf.model);
+  scene = with_lost_lights(std::move(scene), gltf.model);
 
   // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();

@@ -71,8 +71,7 @@ class HoneybeeScene {
     for (std::string& note :
          note_on("modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown()))
       scene_.notes.push_back(std::move(note));
-    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
-    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
+    scene_ = left_out_.on(std::move(scene_));
   }
   Scene scene() && { return std::move(scene_); }
 
@@ -162,7 +161,10 @@ class HoneybeeScene {
                                ". Export the model again");
         polygon.corners.push_back(first + static_cast<std::uint32_t>(place));
       }
-      if (polygon.corners.size() >= 3) scene_.polygons.push_back(polygon);
+      if (polygon.corners.size() >= 3)
+        scene_.polygons.push_back(polygon);
+      else
+        left_out_.lose_face(too_few_corners, scene_.groups.back());
     }
     if (mesh.at("faces").empty()) left_out_.lose("meshes without faces, left out", scene_.groups.back());
   }

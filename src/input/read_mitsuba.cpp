@@ -49,8 +49,8 @@ class MitsubaReader {
     digests.insert(digests.end(), meshes_.digests.begin(), meshes_.digests.end());
     scene_.inputs.insert(scene_.inputs.end(), meshes_.files.begin(), meshes_.files.end());
     scene_.sha256 = sha256(digests);
-    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
-    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
+    scene_ = left_out_.on(std::move(scene_));
+    scene_.problems.insert(scene_.problems.end(), meshes_.losses.begin(), meshes_.losses.end());
     return with_used_materials(std::move(scene_));
   }
 

@@ -160,9 +160,6 @@ std::vector<std::string> notes_on(const ObjScan& scan, const ObjPalette& palette
   const auto note = [&](const std::string& what, std::size_t count) {
     if (count > 0) notes.push_back(what + ": " + std::to_string(count));
   };
-  note("lines (l), ignored", scan.polylines);
-  note("points (p), ignored", scan.points);
-  note("free-form surfaces (surf), ignored", scan.free_form_surfaces);
   note("colours of vertices, ignored", scan.colored_vertices);
   for (std::string& sentence : notes_on_ignored(palette.materials)) notes.push_back(std::move(sentence));
   return notes;
@@ -206,14 +203,6 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
   without.what = "faces without a material, as there is no usemtl above them: " + std::to_string(without.count) +
                  "; they get the material 'default', reflectance 0.5 unless a material file defines it";
   if (without.count > 0) problems.push_back(std::move(without));
-
-  Problem narrow{ProblemKind::zero_area, scan.short_faces.size(), {}, {}};
-  for (const std::uint32_t line : scan.short_faces) narrow.faces.push_back({{}, 0, line, 0});
-  if (narrow.count > 0) {
-    narrow.what = std::to_string(narrow.count) + (narrow.count == 1 ? " face" : " faces") +
-                  " with fewer than three corners (first at " + at_line(file, scan.short_faces[0]) + "); left out";
-    problems.push_back(std::move(narrow));
-  }
   return problems;
 }
 
@@ -279,6 +268,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   for (Problem& problem : problems_with_names(file.string(), scan, libraries.materials)) {
     scene.problems.push_back(std::move(problem));
   }
+  scene = scan.left_out.on(std::move(scene));
 
   // 4. The checksum of everything read.
   bytes.insert(bytes.end(), libraries.texts.begin(), libraries.texts.end());

@@ -4,6 +4,7 @@
 
 #include "files/sha256.h"
 #include "input/at_line.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/text.h"
 
@@ -51,10 +52,6 @@ Point off_vertex(const Statement& statement, const std::string& file) {
 
 Polygon face(const Statement& statement, std::size_t vertices, const std::string& file) {
   const std::uint32_t corners = whole_number(statement, 0, ~std::uint32_t{0}, file);
-  if (corners < 3) {
-    throw InputError(at_line(file, statement.line),
-                     "this face has " + std::to_string(corners) + " corners; expected at least three. Remove the face");
-  }
   if (corners >= statement.words.size()) {
     throw InputError(at_line(file, statement.line),
                      "this face has fewer than the " + std::to_string(corners) + " corners it promises");
@@ -112,9 +109,15 @@ Scene read_off(const std::filesystem::path& file, double metres_per_unit) {
   for (std::size_t k = 0; k < header.vertices; ++k) {
     scene.vertices.emplace_back(metres_per_unit * off_vertex(statements[header.first + k], file.string()));
   }
+  LeftOut left_out;
   for (std::size_t k = 0; k < header.faces; ++k) {
-    scene.polygons.push_back(face(statements[header.first + header.vertices + k], header.vertices, file.string()));
+    Polygon polygon = face(statements[header.first + header.vertices + k], header.vertices, file.string());
+    if (polygon.corners.size() < 3)
+      left_out.lose_face(too_few_corners, scene.groups[0], {.line = polygon.line});
+    else
+      scene.polygons.push_back(std::move(polygon));
   }
+  scene = left_out.on(std::move(scene));
   scene.sha256 = sha256({&text, 1});
   return scene;
 }

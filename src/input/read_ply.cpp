@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/ply_body.h"
 #include "input/text.h"
@@ -44,10 +45,6 @@ Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
 Polygon polygon_of(const std::vector<double>& corners, const PlyBody& body) {
   Polygon polygon;
   polygon.line = body.line();
-  if (corners.size() < 3) {
-    throw InputError(body.place(), "a face has " + std::to_string(corners.size()) +
-                                       " corners; expected at least three. Remove the face");
-  }
   for (const double corner : corners) {
     if (!(corner >= 0 && corner < no_polygon)) {
       throw InputError(body.place(), "a face has a corner that names no vertex; export the model anew");
@@ -58,16 +55,21 @@ Polygon polygon_of(const std::vector<double>& corners, const PlyBody& body) {
 }
 
 Scene with_faces(Scene scene, const PlyElement& element, PlyBody& body) {
+  LeftOut left_out;
   const std::optional<std::size_t> corners = find(element, {"vertex_indices", "vertex_index"});
   if (!corners) throw InputError(scene.file, "its faces lack the property vertex_indices");
   for (std::uint64_t f = 0; f < element.count; ++f) {
     for (std::size_t k = 0; k < element.properties.size(); ++k) {
       const std::vector<double> values = body.next(element.properties[k]);
-      if (k == *corners) scene.polygons.push_back(polygon_of(values, body));
+      if (k != *corners) continue;
+      if (values.size() < 3)
+        left_out.lose_face(too_few_corners, scene.groups[0], {.line = body.line()});
+      else
+        scene.polygons.push_back(polygon_of(values, body));
     }
   }
   if (find(element, {"red", "diffuse_red"})) scene.notes.emplace_back("the colours of the faces are ignored");
-  return scene;
+  return left_out.on(std::move(scene));
 }
 
 Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
@@ -75,9 +77,15 @@ Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
   for (std::uint64_t k = 0; k < element.count; ++k) {
     for (const PlyProperty& property : element.properties) body.next(property);
   }
-  if (element.count > 0)
-    scene.notes.push_back("elements '" + element.name + "', ignored: " + std::to_string(element.count));
-  return scene;
+  // Lists are of vertices, e.g. strips of triangles.
+  const bool has_faces = std::any_of(element.properties.begin(), element.properties.end(),
+                                     [](const PlyProperty& property) { return property.is_list; });
+  LeftOut left_out;
+  if (has_faces && element.count > 0)
+    left_out.lose("elements that hold lists and are not faces, left out", element.name);
+  else
+    left_out.lose_without_area("elements that are neither vertices nor faces, left out", element.name, element.count);
+  return left_out.on(std::move(scene));
 }
 
 }  // namespace

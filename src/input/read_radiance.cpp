@@ -6,6 +6,7 @@
 #include "input/at_line.h"
 #include "input/left_out.h"
 #include "input/materials.h"
+#include "input/radiance_genbox.h"
 #include "input/radiance_material.h"
 #include "input/radiance_sources.h"
 #include "input/radiance_surfaces.h"
@@ -55,8 +56,7 @@ class RadianceReader {
     read(file, top_, file.string());
     scene_.sha256 = sha256(digests_);
     scene_ = with_far_sources(std::move(scene_), sources_);
-    for (std::string& note : left_out_.notes()) scene_.notes.push_back(std::move(note));
-    for (Problem& problem : left_out_.problems()) scene_.problems.push_back(std::move(problem));
+    scene_ = left_out_.on(std::move(scene_));
     return {with_used_materials(std::move(scene_)), std::move(modifiers_)};
   }
 
@@ -107,7 +107,7 @@ class RadianceReader {
       } else if (primitive.kind == "source") {
         add_source(primitive, frame, here);
       } else if (is_radiance_surface(primitive.kind)) {
-        add_surface(primitive, frame, here);
+        add_surface(primitive, frame, here, primitive.line);
       } else {
         modifiers_.define(primitive, here);
       }
@@ -126,28 +126,47 @@ class RadianceReader {
     return lines;
   }
 
-  // A line that starts a program: xform is done here, no other is run.
+  // A line that starts programs: genbox and xform are done here, no other is run.
   void run(const RadiancePrimitive& command, const fs::path& file, const Frame& frame) {
     const std::string where = at_line(file, command.line);
-    std::vector<std::string> words = command_words(command.words[0]);
-    if (words.empty() || words[0] != "xform") {
-      const bool is_sky = !words.empty() && (words[0] == "gensky" || words[0] == "gendaylit");
-      if (is_sky)
-        return left_out_.lose(
-            "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
-            where + " !" + words[0]);
-      constexpr std::size_t most = 60;
-      left_out_.lose(
-          "programs other than !xform are not run, what they would print is left out; run them and put it in "
-          "their place",
-          where + " !" + std::string(trimmed(command.words[0])).substr(0, most));
+    const std::vector<std::vector<std::string>> stages = piped_commands(command.words[0]);
+    const auto is_known = [&](const std::vector<std::string>& words) {
+      return words[0] == "xform" || (words[0] == "genbox" && &words == &stages[0]);
+    };
+    if (stages.empty() || !std::all_of(stages.begin(), stages.end(), is_known)) return lose_program(command, where);
+    add_piped(stages, file, frame, command.line);
+  }
+
+  void lose_program(const RadiancePrimitive& command, const std::string& where) {
+    const std::string text(trimmed(command.words[0]));
+    if (text.starts_with("gensky") || text.starts_with("gendaylit"))
+      return left_out_.lose(
+          "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
+          where + " !" + text.substr(0, text.find(' ')));
+    constexpr std::size_t most = 60;
+    left_out_.lose(
+        "programs other than !genbox and !xform are not run, what they would print is left out; run them and put it in "
+        "their place",
+        where + " !" + text.substr(0, most));
+  }
+
+  // The last program moves what all before it print.
+  void add_piped(std::span<const std::vector<std::string>> stages, const fs::path& file, const Frame& frame,
+                 std::uint32_t line) {
+    const std::string where = at_line(file, line);
+    const std::span words = std::span(stages.back()).subspan(1);
+    if (stages.back()[0] == "genbox") {
+      for (const RadiancePrimitive& surface : radiance_genbox(words, where)) add_surface(surface, frame, where, line);
       return;
     }
-    words.erase(words.begin());
     const RadianceXform xform = xform_of(words, file, where);
-    if (xform.files.empty()) throw InputError(where, "xform without a file; expected the name of one");
+    const bool is_first = stages.size() == 1;
+    if (is_first && xform.files.empty()) throw InputError(where, "xform without a file; expected the name of one");
+    if (!is_first && !xform.files.empty())
+      throw InputError(where, "xform names " + xform.files[0] + " and reads a pipe; expected one of them");
     for (const Eigen::Affine3d& copy : xform.copies) {
-      const Frame below = inside(frame, xform, copy, command.line);
+      const Frame below = inside(frame, xform, copy, line);
+      if (!is_first) add_piped(stages.first(stages.size() - 1), file, below, line);
       for (const std::string& name : xform.files) read(found_file(name, file, where), below, where);
     }
   }
@@ -199,14 +218,17 @@ class RadianceReader {
       left_out_.add("materials of a kind that cannot be carried are taken for matt of reflectance 0.5",
                     modifier.name + " (" + modifier.kind + ")");
     }
-    if (!material->simplified.empty())
-      left_out_.add("materials of the kind " + modifier.kind + ": " + material->simplified, modifier.name);
+    if (!material->simplified.empty()) {
+      const std::string sentence = "materials of the kind " + modifier.kind + ": " + material->simplified;
+      material->loses_light ? left_out_.lose(sentence, modifier.name) : left_out_.add(sentence, modifier.name);
+    }
     known->second = static_cast<MaterialIndex>(scene_.materials.size());
     scene_.materials.push_back(std::move(material->material));
     return known->second;
   }
 
-  void add_surface(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where) {
+  void add_surface(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where,
+                   std::uint32_t line) {
     const FacetedShape shape = radiance_surface(primitive, where);
     const std::optional<std::size_t> modifier = modifier_of(primitive, frame, where);
     const std::optional<MaterialIndex> material = modifier ? material_of(*modifier) : std::nullopt;
@@ -229,7 +251,7 @@ class RadianceReader {
       scene_.polygons.push_back({.corners = std::move(corners),
                                  .material = *material,
                                  .group = group(frame.prefix + primitive.name),
-                                 .line = frame.line == 0 ? primitive.line : frame.line});
+                                 .line = frame.line == 0 ? line : frame.line});
     }
   }
 

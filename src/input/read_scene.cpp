@@ -21,6 +21,7 @@
 #include "scene/joined_faces.h"
 #include "scene/less_detail.h"
 #include "scene/limits.h"
+#include "scene/problem_face.h"
 #include "scene/repair.h"
 #include "scene/spectral_bands.h"
 
@@ -87,7 +88,7 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
 [[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
   std::string reasons;
   for (const Problem& problem : scene.problems) {
-    const bool is_reason = problem.kind == ProblemKind::zero_area || problem.kind == ProblemKind::left_out ||
+    const bool is_reason = problem.kind == ProblemKind::zero_area || is_loss(problem.kind) ||
                            problem.kind == ProblemKind::self_intersecting;
     if (!is_reason) continue;
     reasons += (reasons.empty() ? "" : "; ") + problem.what;
@@ -273,11 +274,6 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   scene = with_bands(std::move(scene), bands_for(options, scene_files));
   scene = maintained(std::move(scene), options, scene_files);
   check_limits(scene);
-  std::vector<std::string> notes;
-  for (const Problem& problem : scene.problems) {
-    if (problem.kind != ProblemKind::guessed_up) notes.push_back(problem.what);
-  }
-  scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
 }
 

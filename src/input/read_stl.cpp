@@ -4,6 +4,7 @@
 
 #include "base/lower_case.h"
 #include "files/sha256.h"
+#include "input/left_out.h"
 #include "input/materials.h"
 #include "input/text.h"
 
@@ -72,6 +73,7 @@ Scene with_ascii(Scene scene, const std::string& text) {
   std::size_t first = 0;    // vertex of the loop at hand
   std::uint32_t begin = 0;  // its line
   bool is_whole = true;
+  LeftOut left_out;
   for (const TextLine& line : logical_lines(text)) {
     const std::vector<std::string_view> statement = words(line.text);
     if (statement.empty()) continue;
@@ -89,17 +91,17 @@ Scene with_ascii(Scene scene, const std::string& text) {
       scene.vertices.emplace_back(scene.metres_per_unit * stl_vertex(statement, where));
     } else if (word == "endloop") {
       const auto corners = static_cast<std::uint32_t>(scene.vertices.size() - first);
-      if (corners < 3) {
-        throw InputError(where, "this facet has " + std::to_string(corners) + " corners; expected three");
-      }
       const auto group = static_cast<std::uint32_t>(scene.groups.size() - 1);
-      scene.polygons.push_back(polygon_of(static_cast<std::uint32_t>(first), corners, group, begin));
+      if (corners < 3)
+        left_out.lose_face(too_few_corners, scene.groups.back(), {.line = begin});
+      else
+        scene.polygons.push_back(polygon_of(static_cast<std::uint32_t>(first), corners, group, begin));
       first = scene.vertices.size();
       is_whole = true;
     }
   }
   if (!is_whole) throw InputError(scene.file + ":" + std::to_string(begin), "the file ends within this facet");
-  return scene;
+  return left_out.on(std::move(scene));
 }
 
 }  // namespace

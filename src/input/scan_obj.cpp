@@ -124,6 +124,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
   ObjScan scan;
   std::map<std::string, std::uint32_t, std::less<>> known;  // usemtl names
   std::uint32_t material = no_material;
+  std::string object;  // or group
   HighestVertex highest;
   for (const TextLine& line : logical_lines(text)) {
     const std::vector<std::string_view> statement = words_before_comment(line.text);
@@ -139,7 +140,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
         if (corner > highest.number) highest = {corner, line.number};
       }
       if (corners.size() < 3) {
-        scan.short_faces.push_back(line.number);
+        scan.left_out.lose_face(too_few_corners, object, {.line = line.number});
         continue;
       }
       const std::size_t first_place = scan.places.size();
@@ -149,6 +150,7 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
     } else if (keyword == "vt") {
       scan.picture_points.push_back(picture_point(statement));
     } else if (keyword == "g" || keyword == "o") {
+      object = after_first_word(line.text);
       scan.geometry += line.text + "\n";
     } else if (keyword == "usemtl") {
       const auto name = std::string(after_first_word(line.text));
@@ -159,10 +161,10 @@ ObjScan scan_obj(std::string_view text, const std::string& file) {
       material = entry->second;
     } else if (keyword == "mtllib") {
       scan.libraries.push_back({std::string(after_first_word(line.text)), line.number});
-    } else {
-      scan.polylines += keyword == "l";
-      scan.points += keyword == "p";
-      scan.free_form_surfaces += keyword == "surf";
+    } else if (keyword == "l" || keyword == "p") {
+      scan.left_out.lose_without_area(keyword == "l" ? "lines (l), left out" : "points (p), left out", object);
+    } else if (keyword == "surf") {
+      scan.left_out.lose("free-form surfaces (surf), left out", object);
     }
   }
   check_vertices_exist(highest, scan.vertices.size(), file);

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/geometry.h"
 
+#include "input/left_out.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -40,11 +42,8 @@ struct ObjScan {
   std::vector<ObjName> libraries;               ///< what follows each mtllib
   std::string geometry;  ///< the v, f, g and o statements alone, one per line; faces with vertices only, and
                          ///< with the first three alone where ObjFace::corners has them all
-  std::vector<std::uint32_t> short_faces;  ///< lines of faces with fewer than 3 corners, which are left out
-  std::size_t polylines = 0;               ///< l statements
-  std::size_t points = 0;                  ///< p statements
-  std::size_t colored_vertices = 0;        ///< v statements with a colour after the coordinates
-  std::size_t free_form_surfaces = 0;      ///< surf statements
+  LeftOut left_out;      ///< faces with fewer than 3 corners, lines, points and free-form surfaces
+  std::size_t colored_vertices = 0;  ///< v statements with a colour after the coordinates
 };
 
 /// Checks the statements of an OBJ file that tinyobjloader takes on trust, and records where they stand.

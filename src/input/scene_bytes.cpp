@@ -198,6 +198,7 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(static_cast<std::uint8_t>(problem.kind));
     out.plain(problem.count);
     out.text(problem.what);
+    out.plain(problem.area);
   }
   out.plain(scene.rooms.size());
   for (const NamedRoom& room : scene.rooms) write_room(out, room);
@@ -237,6 +238,7 @@ Scene scene_from_bytes(std::string_view bytes) {
     problem.kind = static_cast<ProblemKind>(in.plain<std::uint8_t>());
     problem.count = in.plain<std::size_t>();
     problem.what = in.text();
+    problem.area = in.plain<double>();
   }
   scene.rooms.resize(in.count());
   for (NamedRoom& room : scene.rooms) room = read_room(in);

@@ -31,7 +31,8 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
                       {"sensor_cpu_seconds", cost.sensor_seconds}};
   json["sides_notes"] = plan.sides.notes;
   json["notes"] = plan.notes;
-  json["scene_notes"] = scene.notes;
+  json["scene_warnings"] = warnings_of(scene);
+  json["scene_notes"] = remarks_of(scene);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

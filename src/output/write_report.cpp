@@ -37,6 +37,7 @@ Json scene_part(const SceneFacts& scene) {
   part["materials"] = scene.materials;
   part["metres_per_unit"] = scene.metres_per_unit;
   part["up"] = json_array(scene.up);
+  part["warnings"] = scene.warnings;
   part["notes"] = scene.notes;
   if (are_of_wavelengths(scene.bands)) part["bands"] = bands_part(scene.bands);
   return part;

@@ -85,6 +85,7 @@ py::list problems_of(const Scene& scene) {
     py::dict entry;
     entry["kind"] = name_of(problem.kind);
     entry["severity"] = name_of(severity_of(problem.kind));
+    entry["makes_results_wrong"] = makes_results_wrong(problem.kind);
     entry["count"] = problem.count;
     entry["what"] = problem.what;
     list.append(entry);

@@ -30,7 +30,8 @@ SceneFacts scene_facts(const Scene& scene) {
           .up = scene.up,
           .up_stated = scene.up_stated,
           .size = bounds(scene).diagonal(),
-          .notes = scene.notes,
+          .warnings = warnings_of(scene),
+          .notes = remarks_of(scene),
           .bands = bands_of(scene)};
 }
 

@@ -36,6 +36,8 @@ const char* name_of(ProblemKind kind) {
       return "duplicate_faces";
     case ProblemKind::overlapping_faces:
       return "overlapping_faces";
+    case ProblemKind::little_left_out:
+      return "little_left_out";
     case ProblemKind::two_sided_faces:
       return "two_sided_faces";
     case ProblemKind::non_manifold_edges:
@@ -49,6 +51,17 @@ const char* name_of(ProblemKind kind) {
   }
   return "";
 }
+
+std::optional<ProblemKind> problem_kind(std::string_view name) {
+  for (auto k = static_cast<std::uint8_t>(ProblemKind::no_lamp);
+       k <= static_cast<std::uint8_t>(ProblemKind::welded_vertices); ++k) {
+    const auto kind = static_cast<ProblemKind>(k);
+    if (name == name_of(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+bool makes_results_wrong(ProblemKind kind) { return kind == ProblemKind::left_out || kind == ProblemKind::guessed_up; }
 
 Severity severity_of(ProblemKind kind) {
   // A model without a lamp is complete: a sky or a luminaire can light it.

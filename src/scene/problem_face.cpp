@@ -10,6 +10,26 @@ ProblemFace problem_face(const Scene& scene, const Polygon& polygon) {
   return face;
 }
 
+double area_of(const std::vector<ProblemFace>& faces) {
+  double area = 0;
+  for (const ProblemFace& face : faces) area += area_vector(face.corners).norm();
+  return area;
+}
+
+bool is_loss(ProblemKind kind) { return kind == ProblemKind::left_out || kind == ProblemKind::little_left_out; }
+
+std::set<std::string> objects_with_faces(const Scene& scene) {
+  std::vector<std::uint8_t> has_polygon(scene.groups.size(), 0);
+  for (const Polygon& polygon : scene.polygons) {
+    if (polygon.group < scene.groups.size()) has_polygon[polygon.group] = 1;
+  }
+  std::set<std::string> names;
+  for (std::size_t group = 0; group < scene.groups.size(); ++group) {
+    if (has_polygon[group] != 0 && !scene.groups[group].empty()) names.insert(scene.groups[group]);
+  }
+  return names;
+}
+
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -10,6 +10,7 @@
 #include "scene/weld.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -23,7 +24,8 @@ using Faces = std::vector<ProblemFace>;
 Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string& does) {
   if (faces.empty()) return scene;
   const std::string what = listed(scene, faces) + " " + does;
-  scene.problems.push_back({kind, faces.size(), what, std::move(faces)});
+  const double area = area_of(faces);
+  scene.problems.push_back({kind, faces.size(), what, std::move(faces), area});
   return scene;
 }
 
@@ -135,10 +137,12 @@ Scene clean_corners(Scene scene) {
                       "with corners that repeat the one before, or are the tips of spikes without width; left out");
 }
 
-// " wall" or "s roof, wall, ...": the first five names.
-std::string first_names(const std::set<std::string>& names) {
+// ", of wall" or ", of roof, wall, ...": the first five names.
+std::string of_objects(std::set<std::string> names) {
   constexpr std::size_t most = 5;
-  std::string text = names.size() == 1 ? " " : "s ";
+  names.erase("");
+  if (names.empty()) return "";
+  std::string text = ", of ";
   std::size_t count = 0;
   for (const std::string& name : names) {
     if (count < most) text += (count > 0 ? ", " : "") + name;
@@ -147,16 +151,31 @@ std::string first_names(const std::set<std::string>& names) {
   return count > most ? text + ", ..." : text;
 }
 
+// The objects of which no face is left.
+Scene report_lost_objects(Scene scene, const std::set<std::string>& before) {
+  const std::set<std::string> after = objects_with_faces(scene);
+  std::set<std::string> lost;
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::inserter(lost, lost.end()));
+  if (lost.empty()) return scene;
+  const std::string what = counted(lost.size(), "object") + " without any sound face, left out" + of_objects(lost);
+  scene.problems.push_back({ProblemKind::left_out, lost.size(), what, {}});
+  return scene;
+}
+
 // Leaves out polygons without area and cuts those that are not simple and planar.
 Scene make_simple(Scene scene) {
   const double width = weld_distance(scene);
   Faces narrow, crossing, lost, bent;
-  std::set<std::string> lost_objects;
+  std::set<std::string> narrow_objects, lost_objects;
+  const std::set<std::string> objects = objects_with_faces(scene);
   std::vector<Polygon> polygons;
   polygons.reserve(scene.polygons.size());
   for (const Polygon& polygon : scene.polygons) {
     Pieces pieces = pieces_of(scene, polygon, width);
-    if (pieces.kind == ProblemKind::zero_area) narrow.push_back(problem_face(scene, polygon));
+    if (pieces.kind == ProblemKind::zero_area) {
+      narrow.push_back(problem_face(scene, polygon));
+      narrow_objects.insert(group_name(scene, polygon.group));
+    }
     if (pieces.kind == ProblemKind::non_planar) bent.push_back(problem_face(scene, polygon));
     if (pieces.kind == ProblemKind::self_intersecting) {
       (pieces.polygons.empty() ? lost : crossing).push_back(problem_face(scene, polygon));
@@ -166,14 +185,29 @@ Scene make_simple(Scene scene) {
     for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
   }
   scene.polygons = std::move(polygons);
-  scene = with_problem(std::move(scene), ProblemKind::zero_area, std::move(narrow), "without area; left out");
+  scene = with_problem(std::move(scene), ProblemKind::zero_area, std::move(narrow),
+                       "without area; left out" + of_objects(narrow_objects));
   scene = with_problem(std::move(scene), ProblemKind::non_planar, std::move(bent),
                        "with corners that do not lie in one plane; cut into triangles");
   scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
                        "with an outline that crosses itself; cut at the crossings, all parts facing one way");
-  return with_problem(
-      std::move(scene), ProblemKind::left_out, std::move(lost),
-      "with an outline that crosses itself, without a clear area; left out, of the object" + first_names(lost_objects));
+  scene =
+      with_problem(std::move(scene), ProblemKind::little_left_out, std::move(lost),
+                   "with an outline that crosses itself, without a clear area; left out" + of_objects(lost_objects));
+  return report_lost_objects(std::move(scene), objects);
+}
+
+// More than 1 % of the area of the model makes results wrong.
+Scene weigh_losses(Scene scene) {
+  constexpr double most = 0.01;
+  double area = 0, lost = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += area_vector(corner_points(scene, p)).norm();
+  for (const Problem& problem : scene.problems) lost += is_loss(problem.kind) ? problem.area : 0;
+  if (lost <= most * (area + lost)) return scene;
+  for (Problem& problem : scene.problems) {
+    if (problem.kind == ProblemKind::little_left_out && problem.area > 0) problem.kind = ProblemKind::left_out;
+  }
+  return scene;
 }
 
 std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {
@@ -257,7 +291,7 @@ Scene repair(Scene scene) {
   scene = report_far_faces(std::move(scene));
   scene = weld_vertices(std::move(scene));
   scene = clean_corners(std::move(scene));
-  scene = make_simple(std::move(scene));
+  scene = weigh_losses(make_simple(std::move(scene)));
   scene = merge_coincident(std::move(scene));
   scene = with_openings_cut(std::move(scene));
   scene = with_solid_panes_as_one(std::move(scene));

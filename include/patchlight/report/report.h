@@ -21,10 +21,11 @@ struct SceneFacts {
   std::size_t materials = 0;
   double metres_per_unit = 1;
   Vector up = Vector::UnitZ();
-  bool up_stated = true;         ///< else it was guessed: upright_axis()
-  Vector size = Vector::Zero();  ///< of the bounds, m
-  std::vector<std::string> notes;
-  Bands bands = {};  ///< what spectra are of
+  bool up_stated = true;              ///< else it was guessed: upright_axis()
+  Vector size = Vector::Zero();       ///< of the bounds, m
+  std::vector<std::string> warnings;  ///< problems that can make all results wrong
+  std::vector<std::string> notes;     ///< other problems and remarks
+  Bands bands = {};                   ///< what spectra are of
 };
 
 /// What the patches of one material add up to; spectra have a value per band.

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace patchlight {
@@ -18,7 +20,7 @@ enum class ProblemKind : std::uint8_t {
   unknown_material,       ///< a usemtl that no material file defines
   self_intersecting,      ///< a face whose outline crosses itself
   // The answer may differ from what is meant.
-  left_out,             ///< the scene lacks objects, faces or light sources of a file
+  left_out,             ///< the scene lacks whole objects, light sources or more than 1 % of the area of a file
   implausible_size,     ///< the unit is probably another, or sizes and numbers do not go together
   guessed_up,           ///< the upright axis is a guess, and light or sensors depend on it
   full_reflectance,     ///< a reflectance of 1: nothing is absorbed
@@ -29,6 +31,7 @@ enum class ProblemKind : std::uint8_t {
   duplicate_faces,      ///< a face that is there already, with the same front
   overlapping_faces,    ///< faces that lie in part under another in the same plane
   // Harmless.
+  little_left_out,     ///< the scene lacks some faces of a file, or things without area
   two_sided_faces,     ///< two faces at one place, back to back
   non_manifold_edges,  ///< edges of more than two faces
   zero_area,           ///< faces without area
@@ -53,10 +56,17 @@ struct Problem {
   std::size_t count = 0;           ///< of faces, edges, vertices, files, materials or luminaires
   std::string what;                ///< one sentence: what was found, how many, and what is done about it
   std::vector<ProblemFace> faces;  ///< those concerned, in the model's order; may be empty
+  double area = 0;                 ///< m^2 of the faces, as far as their corners are known
 };
 
 /// "self_intersecting" and so on.
 const char* name_of(ProblemKind kind);
+
+/// The kind of that name; nothing where there is none.
+std::optional<ProblemKind> problem_kind(std::string_view name);
+
+/// True for problems that can make all results wrong. Commands warn of them, with --quiet too.
+bool makes_results_wrong(ProblemKind kind);
 
 /// How grave problems of a kind are.
 Severity severity_of(ProblemKind kind);

@@ -126,7 +126,7 @@ struct Scene {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;
   std::optional<Sky> sky;
-  std::vector<std::string> notes;                 ///< what the file holds that is not simulated, and other remarks
+  std::vector<std::string> notes;                 ///< remarks that are no problems, e.g. what is not simulated
   std::vector<UnsimulatedMaterials> unsimulated;  ///< counted per file that the scene comes from
   std::vector<Problem> problems;                  ///< what is wrong with the model, worst first
   std::vector<LampHint> lamp_hints;               ///< materials that do not emit, but may be meant to
@@ -142,6 +142,12 @@ Eigen::Index number_of_bands(const Scene& scene);
 
 /// What they stand for: as the scene says, else usual_bands().
 Bands bands_of(const Scene& scene);
+
+/// The sentences of the problems that can make all results wrong.
+std::vector<std::string> warnings_of(const Scene& scene);
+
+/// The sentences of all other problems, then the notes.
+std::vector<std::string> remarks_of(const Scene& scene);
 
 /// The corner points of a polygon.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);

@@ -40,9 +40,7 @@ async function writeTables(show) {
   const {report} = data;
   if (data.comparison) section("comparison", "Solvers side by side", ...comparisonParts(data.comparison));
   if (data.study) section("study", "What accuracy costs", ...studyParts(data.study));
-  // Problems stand among the notes of their scene as well.
-  const isProblem = (note) => data.problems.some((problem) => problem.what === note);
-  const notes = (report ? [...report.input.notes, ...report.plan.notes] : data.scene_notes).filter((note) => !isProblem(note));
+  const notes = [...data.scene_notes, ...(report ? report.plan.notes : [])];
   const warnings = report && report.sensors ? report.sensors.warnings : [];
   section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
   if (report) {

@@ -29,7 +29,7 @@ def read(*models, **options):
     refuse_unused("read()", options, OF_WRITING)
     scene = _core.read(arguments_of(models, options))
     for problem in scene.problems:
-        if problem["kind"] == "guessed_up":
+        if problem["makes_results_wrong"]:
             warnings.warn(problem["what"], stacklevel=2)
     return _scene.remember(scene, models, options)
 

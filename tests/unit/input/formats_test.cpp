@@ -184,7 +184,7 @@ TEST_F(Formats, PlyPassesOverWhatIsNotGeometry) {
             "end_header\r\n2 7 8\r\n9 0 0 0 255\r\n9 0 0 1 255\r\n9 0 1 1 255\r\n9 0 1 0 255\r\n1 4 0 1 2 3\r\n"));
   EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 1));
   EXPECT_EQ(scene.polygons[0].line, 21U);
-  EXPECT_TRUE(any_contains(scene.notes, "'light', ignored: 1"));
+  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 1U) << "light";
   EXPECT_TRUE(any_contains(scene.notes, "colours of the vertices"));
 }
 

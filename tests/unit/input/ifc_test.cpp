@@ -210,7 +210,7 @@ TEST_F(Ifc, ElementsWithoutFacesAreNamed) {
   file.element("IFCSLAB", "slab", file.box(wall_at(0), IfcWay::upward));
   file.element("IFCWALL", "no such body", "#9999");
   const Scene scene = read_scene(write("missing.ifc", file.text()));
-  EXPECT_TRUE(any_contains(scene.notes, "elements whose shapes give no faces are left out: 1 (IfcWall_no such body_"));
+  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 1U);
 }
 
 // Text that is no IFC file, parts of one and bytes of another value: a scene or one sentence that names the file.

@@ -30,6 +30,13 @@ inline bool any_contains(const std::vector<std::string>& texts, const std::strin
                      [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
+/// How many things the problems of a kind count together.
+inline std::size_t number_of(const Scene& scene, ProblemKind kind) {
+  std::size_t number = 0;
+  for (const Problem& problem : scene.problems) number += problem.kind == kind ? problem.count : 0;
+  return number;
+}
+
 /// A PNG of two pixels, black and red, green, blue = 255, 0, 128 in sRGB.
 inline std::string two_pixels() {
   const std::string hexadecimal =

@@ -1,0 +1,39 @@
+"""Every command that computes light warns of what its model lacks, with --quiet too."""
+import unittest
+
+from support import ToolTest
+
+# The object "gone" has no face with an area; the wall loses a face of two corners.
+GONE = "o gone\nf 1 2 2\n"
+SHORT = "f 1 2\n"
+
+
+class LossesTest(ToolTest):
+    def warnings(self, *arguments):
+        done = self.run_tool(*arguments, "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, "")
+        return [line for line in done.stderr.splitlines() if line.startswith("patchlight: warning: ")]
+
+    def test_all_commands_warn_of_a_lost_object(self):
+        model = (self.folder / "room.obj").read_text()
+        self.write("short.obj", model + SHORT)
+        self.write("gone.obj", model + GONE)
+        few = ["--patches", 40]
+        for name, expected in (("short.obj", 0), ("gone.obj", 1)):
+            commands = {
+                "solve": [*few, "-o", "out.vtp"],
+                "render": ["--solution", "out.vtp", "-o", "out.png", "--size", "16x16"],
+                "compare": [*few, "-o", "compared"],
+                "study": [*few, "-o", "studied"],
+                "verify": [*few, "--paths", 100],
+                "form-factors": [*few, "-o", "factors"],
+            }
+            for command, words in commands.items():
+                self.assertEqual(len(self.warnings(command, name, *words)), expected, f"{command} {name}")
+        # Stored form factors keep what their model lacks.
+        self.assertEqual(len(self.warnings("relight", "factors", "-o", "again.vtp")), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
