@@ -265,8 +265,7 @@ TEST_F(ReadScene, RefusesUnusableFilesNamingThem) {
            {folder_, "folder"},
            {write("empty.obj", ""), "empty"},
            {write("comment.obj", "# nothing\n"), "no faces"},
-           {write("lines.obj", square + "l 1 2\nl 2 3\n"),
-            "no faces; expected at least one polygon; lines (l), ignored: 2"},
+           {write("lines.obj", square + "l 1 2\nl 2 3\n"), "lines (l), left out: 2"},
            {write("m.md", "solid"), "'.md' is not known; expected one of .obj, .ply"},
            {write("plain", "solid"), "expected one of .obj"},
            {"/dev/null", "extension"}}) {
