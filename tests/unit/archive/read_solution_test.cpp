@@ -14,7 +14,8 @@
 #include <limits>
 #include <random>
 #include <string>
-#include <vtkDoubleArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
@@ -43,6 +44,18 @@ class ReadSolution : public testing::Test {
   void expect_refused(const std::function<void(Simulation&)>& change) {
     write(change);
     EXPECT_THROW(read_solution(file, scene), InputError);
+  }
+
+  // The file with a change in VTK's terms.
+  void edit(const std::function<void(vtkPolyData&)>& change) const {
+    const vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(file.c_str());
+    reader->Update();
+    change(*reader->GetOutput());
+    const vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetInputData(reader->GetOutput());
+    writer->SetFileName(file.c_str());
+    writer->Write();
   }
 
   std::string bytes() const {
@@ -82,27 +95,30 @@ TEST_F(ReadSolution, RefusesPatchesThatAreNotOfTheScene) {
   for (const double value : {nan, infinity, -1e9, 1e300})
     expect_refused([=](Simulation& of) { of.mesh.vertices[2].y() = value; });
   expect_refused([](Simulation& of) { of.mesh.vertices.assign(5, Point::Zero()); });
-  expect_refused([](Simulation& of) { of.mesh.polygon = {0, 1, 3}; });
-  expect_refused([](Simulation& of) { of.mesh.polygon = {0, 2, 1}; });
   expect_refused([](Simulation& of) { of.mesh.corners[0] = {3, 2, 1, 0}; });        // turned
   expect_refused([](Simulation& of) { of.mesh.corners[1] = of.mesh.corners[2]; });  // of another polygon
+}
+
+TEST_F(ReadSolution, RefusesNumbersOfPolygonsThatAreNotThere) {
+  for (const double number : {3.0, -1.0, 1e9}) {
+    write();
+    edit([=](vtkPolyData& of) { of.GetCellData()->GetArray("polygon")->SetComponent(2, 0, number); });
+    EXPECT_THROW(read_solution(file, scene), InputError) << number;
+  }
+  write();
+  edit([](vtkPolyData& of) { of.GetCellData()->GetArray("polygon")->SetComponent(1, 0, 2); });
+  EXPECT_THROW(read_solution(file, scene), InputError) << "polygon 1 has no patch";
 }
 
 TEST_F(ReadSolution, RefusesFactsWithoutValues) {
   for (const char* fact : {"scene_hash", "seed", "effects"}) {
     write();
-    const vtkNew<vtkXMLPolyDataReader> reader;
-    reader->SetFileName(file.c_str());
-    reader->Update();
-    vtkPolyData& polygons = *reader->GetOutput();
-    const vtkNew<vtkStringArray> none;
-    none->SetName(fact);
-    polygons.GetFieldData()->RemoveArray(fact);
-    polygons.GetFieldData()->AddArray(none);
-    const vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->SetInputData(&polygons);
-    writer->SetFileName(file.c_str());
-    writer->Write();
+    edit([=](vtkPolyData& of) {
+      const vtkNew<vtkStringArray> none;
+      none->SetName(fact);
+      of.GetFieldData()->RemoveArray(fact);
+      of.GetFieldData()->AddArray(none);
+    });
     EXPECT_THROW(read_solution(file, scene), InputError) << fact;
   }
 }
