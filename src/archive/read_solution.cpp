@@ -52,14 +52,21 @@ void require_values(const StoredSolution& stored, Eigen::Index bands, const std:
   if (!lie_between_0_and(stored.reflectance, 1)) refuse_solution(file, "its reflectances do not lie between 0 and 1");
 }
 
-// Patches lie within the box of their polygon, and together they are no larger than it.
+// Patches lie within the box of their polygon, and together they are no larger than it. Polygons are plane up to 1e-4
+// of their perimeter.
 void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesystem::path& file) {
   constexpr double rounding = 1e-6;
-  const double length = rounding * extent_of(scene);
+  constexpr double planarity = 1e-4;
+  const double extent = extent_of(scene);
   for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
     const std::vector<Point> corners = corner_points(scene, static_cast<PolygonIndex>(slot / 2));
     Box box;
-    for (const Point& corner : corners) box.extend(corner);
+    double perimeter = 0;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      box.extend(corners[k]);
+      perimeter += (corners[(k + 1) % corners.size()] - corners[k]).norm();
+    }
+    const double length = rounding * extent + planarity * perimeter;
     double area = 0;
     for (PatchIndex patch = mesh.first_patch[slot]; patch < mesh.first_patch[slot + 1]; ++patch) {
       bool sound = mesh.area[patch] > 0;
@@ -68,7 +75,7 @@ void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesy
       if (!sound) refuse_solution(file, "a patch does not lie in its polygon, or has no area");
       area += mesh.area[patch];
     }
-    if (area > area_vector(corners).norm() * (1 + 100 * rounding))
+    if (area > area_vector(corners).norm() * (1 + planarity) + rounding * extent * perimeter)
       refuse_solution(file, "the patches of a polygon are larger than it");
   }
 }

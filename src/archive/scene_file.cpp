@@ -205,33 +205,10 @@ std::vector<Problem> problems_of(const Json& json) {
   std::vector<Problem> problems;
   for (const Json& part : json) {
     const std::string name = text_of(part.at("kind"));
-    const std::optional<ProblemKind> kind = problem_kind(name);
-    require(kind.has_value(), "the kind of problem '" + name + "' is not known");
+    const std::optional<ProblemKind> known = problem_kind(name);
+    require(known.has_value(), "the kind of problem '" + name + "' is not known");
     problems.push_back(
-        {*kind, part.at("count").get<std::size_t>(), text_of(part.at("what")), {}, part.at("area_m2").get<double>()});
-  }
-  return problems;
-}
-
-// Faces of problems are not stored.
-Json problems_part(const Scene& scene) {
-  Json part = Json::array();
-  for (const Problem& problem : scene.problems)
-    part.push_back({{"kind", name_of(problem.kind)},
-                    {"count", problem.count},
-                    {"what", json_of(problem.what)},
-                    {"area_m2", problem.area}});
-  return part;
-}
-
-std::vector<Problem> problems_of(const Json& json) {
-  std::vector<Problem> problems;
-  for (const Json& part : json) {
-    const std::string name = text_of(part.at("kind"));
-    const std::optional<ProblemKind> kind = problem_kind(name);
-    require(kind.has_value(), "the kind of problem '" + name + "' is not known");
-    problems.push_back(
-        {*kind, part.at("count").get<std::size_t>(), text_of(part.at("what")), {}, part.at("area_m2").get<double>()});
+        {*known, part.at("count").get<std::size_t>(), text_of(part.at("what")), {}, part.at("area_m2").get<double>()});
   }
   return problems;
 }

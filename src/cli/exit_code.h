@@ -14,7 +14,7 @@ enum ExitCode : int {
                           ///< so wide that no difference could show
   output_error = 6,       ///< a result cannot be written
   internal_error = 70,    ///< a defect of patchlight
-  signal_base = 128       ///< 128 + n: stopped by signal n, as 130 by Ctrl-C and 143 by SIGTERM; no file is half-written
+  signal_base = 128       ///< 128 + n: stopped by signal n, e.g. 130 by Ctrl-C; no file is half-written
 };
 
 }  // namespace patchlight::cli

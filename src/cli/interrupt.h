@@ -19,8 +19,8 @@ ExitCode interrupted_run();
 /// second one ends it.
 void keep_what_is_there();
 
-/// After such a first signal: forgets it, so that what is there can be written; the next one ends the run. False when
-/// the run was asked to end.
+/// Forgets such a first signal, so that the results so far can be written; the next one ends the run. False when the
+/// run was asked to end.
 bool may_write_what_is_there();
 
 /// Results are being written while this lives: the file at hand is finished or removed before the run stops.

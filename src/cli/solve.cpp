@@ -149,47 +149,43 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   return input;
 }
 
-// Irradiance at sensors, and the picture; the simulation's costs get theirs.
+// Irradiance at sensors, pictures and the lightmap, in this order, up to a signal; the simulation's costs get theirs.
 Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments& arguments, const Observer& observer) {
   Views views;
   StageClock looking;
-  if (!scene.sensors.empty()) {
-    views.points_outputs = points_outputs(arguments, scene);
-    views.sensors = read_sensors(scene, simulation, observer);
-    looking.finish(Stage::gather);
-  }
-  if (!arguments.picture.file.empty()) {
-    views.picture = make_picture(arguments.picture, scene, simulation, observer);
-    if (views.picture->unfinished) simulation.unfinished = true;
-    looking.finish(Stage::render);
-  } else if (!arguments.page.empty()) {
-    views.page_picture = make_picture(arguments.picture, scene, simulation, observer);
-    looking.finish(Stage::render);
-  }
-  if (!arguments.lightmap.folder.empty()) {
-    try {
-      views.lightmap = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
-    } catch (const InputError& error) {
-      views.lightmap_error = error;  // the solution is not lost for it
-    } catch (const Cancelled&) {
-      simulation.unfinished = true;
+  try {
+    if (!scene.sensors.empty()) {
+      views.points_outputs = points_outputs(arguments, scene);
+      views.sensors = read_sensors(scene, simulation, observer);
+      looking.finish(Stage::gather);
     }
-    looking.finish(Stage::render);
+    if (!arguments.picture.file.empty()) {
+      views.picture = make_picture(arguments.picture, scene, simulation, observer);
+      if (views.picture->unfinished) simulation.unfinished = true;
+      looking.finish(Stage::render);
+    } else if (!arguments.page.empty()) {
+      views.page_picture = make_picture(arguments.picture, scene, simulation, observer);
+      looking.finish(Stage::render);
+    }
+    if (!arguments.lightmap.folder.empty()) {
+      views.lightmap = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
+      looking.finish(Stage::render);
+    }
+  } catch (const Cancelled&) {
+    simulation.unfinished = true;
+  } catch (const InputError& error) {
+    if (arguments.lightmap.folder.empty()) throw;
+    views.lightmap_error = error;  // the other views are not lost for it
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
   return views;
 }
 
-// Without the views that are not finished when the run is stopped.
+// The views that are finished when the run is stopped.
 Views views_until_stopped(const Scene& scene, Simulation& simulation, const SolveArguments& arguments,
                           const Observer& observer) {
   if (!arguments.discards) keep_what_is_there();
-  Views views;
-  try {
-    views = views_of(scene, simulation, arguments, observer);
-  } catch (const Cancelled&) {
-    simulation.unfinished = true;
-  }
+  Views views = views_of(scene, simulation, arguments, observer);
   if (!may_write_what_is_there()) throw Cancelled();
   return views;
 }
@@ -298,16 +294,15 @@ class Outputs {
   std::vector<std::filesystem::path> written_;
 };
 
-// Writes the solution, before views of it begin that may take long.
+// Writes the solution before views of it begin, which may take long. The first signal does not stop it.
 std::vector<std::filesystem::path> write_solution(const SolveArguments& arguments, const Results& results,
                                                   const std::optional<SolvedSurface>& surface) {
-  Outputs outputs;
+  WholeFiles files;
   const WritingGuard guard;
-  for (const std::filesystem::path& file : arguments.results) {
-    outputs.add(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
-  }
-  outputs.publish();
-  return outputs.written();
+  for (const std::filesystem::path& file : arguments.results)
+    files.write(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
+  files.publish();
+  return {arguments.results.begin(), arguments.results.end()};
 }
 
 // Writes the views, the report and, last, the series.
@@ -356,6 +351,39 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
   return part ? " with " + with_option_names(*part) : "; --error-bars tells them, in about twice the time";
 }
 
+// Prints notes, warnings and the summary.
+void print_results(const SolveArguments& arguments, const Results& results,
+                   const std::vector<std::filesystem::path>& written, const std::string& note_on_checkpoint) {
+  const bool quiet = arguments.verbosity == Verbosity::quiet;
+  if (!note_on_checkpoint.empty() && !quiet) print_message("note", note_on_checkpoint);
+  print_notes(notes(results.scene, results.simulation), quiet);
+  for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
+  if (results.views.picture) {
+    if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
+  }
+  if (!quiet) {
+    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
+                         how_to_know_errors(arguments, results.report.solution.unfinished));
+    if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
+    std::cout << files_line(written) << std::flush;
+  }
+}
+
+// Warns of results that are worse than those asked for.
+ExitCode exit_code_of(const Report& report) {
+  if (report.solution.unfinished) {
+    print_message("warning", explain_unfinished(report));
+    return interrupted_run();
+  }
+  if (!report.solution.converged) {
+    print_message("warning", explain_not_converged(report));
+    return not_converged;
+  }
+  if (is_accurate(report)) return good;
+  print_message("warning", explain_not_accurate(report));
+  return not_converged;
+}
+
 }  // namespace
 
 ExitCode solve(const SolveArguments& arguments) {
@@ -369,6 +397,7 @@ ExitCode solve(const SolveArguments& arguments) {
   std::optional<ProgressLine> line(progress_shown(quiet));
   const Observer observer = observer_on(*line);
   Results results = solved(arguments, checkpoint, *line, observer);
+  if (!arguments.discards) keep_what_is_there();
   std::optional<SolvedSurface> surface;
   if (!arguments.results.empty() || !arguments.page.empty())
     surface.emplace(surface_of(results.scene, results.simulation, arguments.ambient_distance));
@@ -380,31 +409,9 @@ ExitCode solve(const SolveArguments& arguments) {
   line.reset();
   for (std::filesystem::path& file : write_views(arguments, results, surface)) written.push_back(std::move(file));
   if (!results.report.solution.unfinished) checkpoint.remove();
-
-  if (const std::string note = checkpoint.note(); !note.empty() && !quiet) print_message("note", note);
-  print_notes(notes(results.scene, results.simulation), quiet);
-  for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
-  if (results.views.picture) {
-    if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
-  }
-  if (!quiet) {
-    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
-                         how_to_know_errors(arguments, results.report.solution.unfinished));
-    if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
-    std::cout << files_line(written) << std::flush;
-  }
+  print_results(arguments, results, written, checkpoint.note());
   if (results.views.lightmap_error) throw InputError(*results.views.lightmap_error);
-  if (results.report.solution.unfinished) {
-    print_message("warning", explain_unfinished(results.report));
-    return interrupted_run();
-  }
-  if (!results.report.solution.converged) {
-    print_message("warning", explain_not_converged(results.report));
-    return not_converged;
-  }
-  if (is_accurate(results.report)) return good;
-  print_message("warning", explain_not_accurate(results.report));
-  return not_converged;
+  return exit_code_of(results.report);
 }
 
 }  // namespace patchlight::cli

@@ -74,7 +74,7 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   if (!request.mesh.contact_lines && info.contact_lines)
     throw InputError(
         arguments.form_factors.string(),
-        "found patches that end where faces touch, with --no-contact-lines; leave that out, or make the form "
+        "found patches that end where faces touch, with --no-contact-lines; leave that out, or compute the form "
         "factors again with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
   request.mesh.contact_lines = info.contact_lines;
   request.mesh.contact_line_count = info.contact_line_count;

@@ -309,7 +309,7 @@ std::string explain_unfinished(const Report& report) {
     what = wants_errors ? "the solution of the first mesh, whose errors are not known yet" : "the solution";
   }
   return "UNFINISHED, as the run was stopped: the files have " + what +
-         ", without sensors and pictures that were not ready; --discard writes nothing of a run that is stopped";
+         ", without sensors and pictures that were not ready";
 }
 
 std::string explain_not_converged(const Report& report) {

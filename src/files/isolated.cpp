@@ -13,7 +13,6 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <string_view>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -118,11 +117,12 @@ void require_good_end(const std::string& message, int status, const std::string&
 }
 
 // The result in a message, or the exception that it stands for.
-std::string result_in(const std::string& message, int status, const std::string& file) {
+std::string result_in(std::string message, int status, const std::string& file) {
   require_good_end(message, status, file);
-  std::string content = message.substr(1);
-  if (message[0] == sends_result) return content;
-  if (message[0] == sends_refusal) {
+  const char kind = message[0];
+  std::string content = std::move(message.erase(0, 1));
+  if (kind == sends_result) return content;
+  if (kind == sends_refusal) {
     // The text of an InputError begins with its place, which the constructor adds.
     const std::string place = file + ": ";
     throw InputError(file, content.starts_with(place) ? content.substr(place.size()) : content);
@@ -139,13 +139,13 @@ int file_with(const std::string& text) {
   return file;
 }
 
-// What a child sent through a pipe, and how it ended.
+// The message of a child, and how it ended.
 struct Sent {
   std::string message;
   int status = 0;
 };
 
-// What a child sends that calls `run` with its end of a pipe and then ends.
+// The message of a child that calls `run` with its end of a pipe.
 Sent sent_by_child(const std::function<int(int)>& run, std::uint64_t most_bytes) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
@@ -172,13 +172,13 @@ std::vector<std::filesystem::path> readable_folders(const Program& program) {
 
 std::string bytes_isolated(const std::string& file, const std::function<std::string()>& read,
                            const ChildLimits& limits) {
-  const Sent sent = sent_by_child(
+  Sent sent = sent_by_child(
       [&](int pipe) {
         prepare_child(file, limits);
         return write_all(pipe, message_from(read)) ? 0 : 1;
       },
       ~std::uint64_t{0});
-  return result_in(sent.message, sent.status, file);
+  return result_in(std::move(sent.message), sent.status, file);
 }
 
 std::string output_isolated(const std::string& file, const Program& program, const std::string& input,

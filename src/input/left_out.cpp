@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t most_names = 5;
 
-// What is said of all things of one kind that were left out for one reason.
+// A note or problem on all things of one kind that were left out for one reason.
 struct Remark {
   std::optional<ProblemKind> kind;  // nothing for a note
   std::string sentence;
-  std::vector<std::string> names;  // the first ones
+  std::vector<std::string> names = {};  // the first ones
   bool has_more_names = false;
   std::size_t count = 0;
-  std::vector<ProblemFace> faces;
+  std::vector<ProblemFace> faces = {};
 };
 
 // "sentence: 7 (a, b, c, ...; first at room.obj:12)".

@@ -74,12 +74,14 @@ std::optional<Spectrum> MitsubaFile::picture(const pugi::xml_node& texture) cons
 
 void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,
                       std::uint32_t line) {
+  constexpr std::size_t most_files = 1000;  // each shape looks for its own
   require_within(confine, file, where);
   std::error_code error;
   open_.push_back(std::filesystem::weakly_canonical(file, error));
-  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 ||
-      files_.size() == reading_limits::files)
-    throw InputError(where, "includes " + file.string() + ", which includes this file again, or over 200,000 files");
+  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 || files_.size() == most_files ||
+      open_.size() > reading_limits::nesting)
+    throw InputError(where, "includes " + file.string() +
+                                ", which includes this file again, or more than 1,000 files, or is more than 64 deep");
   files_.push_back(std::make_unique<XmlFile>(read_xml_file(file, where)));
   lines_.push_back(line);
   const XmlFile& xml = *files_.back();

@@ -71,7 +71,8 @@ class MaterialReader {
       simplify("surfaces without a BSDF have the reflectance 0.5");
       read_.material.reflectance = rgb(0.5, 0.5, 0.5);
     } else if (is_one_of(wrappers, kind)) {
-      if (depth == reading_limits::nesting) throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
+      if (static_cast<std::size_t>(depth) == reading_limits::nesting)
+        throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
       if (kind != "twosided") simplify(kind + " is left out, what it is put around counts");
       add(file_.nested(bsdf, "bsdf"), depth + 1);
     } else if (is_one_of(glass_kinds, kind)) {

@@ -36,7 +36,7 @@ Scene with_lost_geometry(Scene scene, const std::string& text) {
       left_out.lose("geometries that are not meshes, left out", name);
     for (const pugi::xml_node& polygons : mesh.children("polygons")) {
       for ([[maybe_unused]] const pugi::xml_node& face : polygons.children("ph"))
-        left_out.lose_face("polygons with holes, left out", name);
+        left_out.lose("polygons with holes, left out; of the geometries", name);
     }
   }
   return left_out.on(std::move(scene));

@@ -84,11 +84,10 @@ class HoneybeeScene {
   }
 
   MaterialIndex index_of(Material material) {
-    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
-                                    [&](const Material& one) { return one.name == material.name; });
-    const auto index = static_cast<MaterialIndex>(found - scene_.materials.begin());
-    if (found == scene_.materials.end()) scene_.materials.push_back(std::move(material));
-    return index;
+    const auto [found, is_new] =
+        material_index_.emplace(material.name, static_cast<MaterialIndex>(scene_.materials.size()));
+    if (is_new) scene_.materials.push_back(std::move(material));
+    return found->second;
   }
 
   // Names the objects in lists that this reader does not know.
@@ -281,6 +280,7 @@ class HoneybeeScene {
   double metres_;
   Scene scene_;
   LeftOut left_out_;
+  std::map<std::string, MaterialIndex> material_index_;
   std::set<std::string> done_;  // openings between rooms
 };
 

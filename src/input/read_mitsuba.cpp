@@ -86,7 +86,7 @@ class MitsubaReader {
 
   void add_instance(const pugi::xml_node& instance, const Eigen::Matrix4d& above, int depth) {
     const pugi::xml_node group = file_.nested(instance, "shape");
-    if (depth == reading_limits::nesting)
+    if (static_cast<std::size_t>(depth) == reading_limits::nesting)
       throw InputError(file_.place(instance), "instances stand in each other more than 64 deep; expected fewer levels");
     for (const pugi::xml_node& shape : group.children("shape")) {
       if (++copies_ > reading_limits::copies)

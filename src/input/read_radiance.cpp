@@ -12,6 +12,7 @@
 #include "input/radiance_surfaces.h"
 #include "input/radiance_text.h"
 #include "input/radiance_xform.h"
+#include "input/reading_limits.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -61,11 +62,7 @@ class RadianceReader {
   }
 
  private:
-  static constexpr std::size_t deepest = 64;
-  static constexpr std::size_t most_files = 200'000;
-  static constexpr std::size_t most_polygons = 10'000'000;
-
-  // What several files below !xform name is read once.
+  // A file that several others name is read once.
   const std::string& text_of(const fs::path& file, const std::string& where) {
     const auto [found, is_new] = texts_.try_emplace(file.lexically_normal().string());
     if (is_new) {
@@ -93,8 +90,8 @@ class RadianceReader {
     const fs::path place = fs::weakly_canonical(file, error);
     if (std::find(open_.begin(), open_.end(), place) != open_.end())
       throw InputError(where, "names " + file.string() + ", which names this file again; a file cannot hold itself");
-    if (open_.size() == deepest) throw InputError(where, "files name each other more than 64 deep");
-    if (++files_ > most_files) throw InputError(where, "more than 200,000 files are named, counting copies");
+    if (open_.size() == reading_limits::nesting) throw InputError(where, "files name each other more than 64 deep");
+    if (++files_ > reading_limits::files) throw InputError(where, "more than 200,000 files are named, counting copies");
     open_.push_back(place);
     RadianceText text(text_of(file, where), file.string());
     while (text.has_more()) {
@@ -141,16 +138,16 @@ class RadianceReader {
     const std::string text(trimmed(command.words[0]));
     if (text.starts_with("gensky") || text.starts_with("gendaylit"))
       return left_out_.lose(
-          "programs that write skies are not run: --sky and --sun, as in --sky overcast:10000lx, give one",
+          "programs that write skies are not run; --sky and --sun give one, e.g. --sky overcast:10000lx",
           where + " !" + text.substr(0, text.find(' ')));
     constexpr std::size_t most = 60;
     left_out_.lose(
-        "programs other than !genbox and !xform are not run, what they would print is left out; run them and put it in "
-        "their place",
+        "programs other than !genbox and !xform are not run, and their surfaces are left out; replace the lines with "
+        "their output",
         where + " !" + text.substr(0, most));
   }
 
-  // The last program moves what all before it print.
+  // The last program moves the surfaces of those before it.
   void add_piped(std::span<const std::vector<std::string>> stages, const fs::path& file, const Frame& frame,
                  std::uint32_t line) {
     const std::string where = at_line(file, line);
@@ -165,6 +162,8 @@ class RadianceReader {
     if (!is_first && !xform.files.empty())
       throw InputError(where, "xform names " + xform.files[0] + " and reads a pipe; expected one of them");
     for (const Eigen::Affine3d& copy : xform.copies) {
+      if (++copies_ > reading_limits::copies)
+        throw InputError(where, "more than 1,000,000 copies are made; expected smaller arrays");
       const Frame below = inside(frame, xform, copy, line);
       if (!is_first) add_piped(stages.first(stages.size() - 1), file, below, line);
       for (const std::string& name : xform.files) read(found_file(name, file, where), below, where);
@@ -220,7 +219,10 @@ class RadianceReader {
     }
     if (!material->simplified.empty()) {
       const std::string sentence = "materials of the kind " + modifier.kind + ": " + material->simplified;
-      material->loses_light ? left_out_.lose(sentence, modifier.name) : left_out_.add(sentence, modifier.name);
+      if (material->loses_light)
+        left_out_.lose(sentence, modifier.name);
+      else
+        left_out_.add(sentence, modifier.name);
     }
     known->second = static_cast<MaterialIndex>(scene_.materials.size());
     scene_.materials.push_back(std::move(material->material));
@@ -234,7 +236,7 @@ class RadianceReader {
     const std::optional<MaterialIndex> material = modifier ? material_of(*modifier) : std::nullopt;
     if (!modifier) left_out_.add("surfaces without a material (void), left out", frame.prefix + primitive.name);
     if (!material) return;
-    if (scene_.polygons.size() + shape.faces.size() > most_polygons)
+    if (scene_.polygons.size() + shape.faces.size() > reading_limits::polygons)
       throw InputError(where, "there are more than 10,000,000 faces, counting copies; expected smaller arrays");
     if (is_round(primitive.kind)) {
       left_out_.add("round surfaces have " + std::to_string(round_sides) +
@@ -284,6 +286,7 @@ class RadianceReader {
   std::vector<FarSource> sources_;
   LeftOut left_out_;
   std::size_t files_ = 0;
+  std::size_t copies_ = 0;  // of !xform
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace reading_limits {
 inline constexpr std::size_t polygons = 10'000'000;    ///< copies included; a million take about a gigabyte to solve
 inline constexpr std::size_t copies = 1'000'000;       ///< objects visited within instances, with or without faces
 inline constexpr std::size_t files = 200'000;          ///< files read, copies included
-inline constexpr int nesting = 64;                     ///< objects within objects, files within files
+inline constexpr std::size_t nesting = 64;             ///< objects within objects, files within files
 inline constexpr std::size_t variable_length = 4096;   ///< characters of a variable, as of the longest file name
 inline constexpr std::size_t text_length = 1'000'000;  ///< characters of a text with its variables
 

@@ -244,6 +244,8 @@ GridInAir grid_over_room(const NamedRoom& room, const FloorGrid& grid, const std
   const Floor floor = floor_of_room(room.faces, up);
   if (floor.outlines.empty()) return {};
   GridInAir over = grid_over(floor, grid, solids);
+  // A closed room without light is a dark solid itself. Its sensors read 0.
+  if (over.group.sensors.empty()) over = grid_over(floor, grid, {});
   const double area = area_of(over.group);
   over.group = in_room(std::move(over.group), room);
   if (area > 0) over.share *= area_of(over.group) / area;

@@ -29,8 +29,8 @@ struct StoredSolution {
   std::uint64_t seed = 1;
 };
 
-/// Reads a .vtp file, in a child process because VTK crashes on damaged files. Sizes agree: there is one polygon, one side
-/// and one row of each field per patch. \throws InputError when it is no such file.
+/// Reads a .vtp file, in a child process because VTK crashes on damaged files. Sizes agree: there is one polygon, one
+/// side and one row of each field per patch. \throws InputError when it is no such file.
 StoredSolution read_vtk(const std::filesystem::path& file);
 
 }  // namespace patchlight

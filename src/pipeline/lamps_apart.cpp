@@ -94,8 +94,8 @@ std::vector<LampSide> new_lamps(const Run& run, const PatchMesh& mesh, const Rad
   }
   if (pieces > most_new_pieces)
     throw InputError("given.ray_rows", "found rows of rays that were traced when " + std::to_string(lamps.size()) +
-                                           " of the lamps were dark: too many to compute them again. Compute the form factors "
-                                           "again, with these lamps lit");
+                                           " of the lamps were dark: too many to trace them alone. Compute the form "
+                                           "factors again, with these lamps lit");
   return lamps;
 }
 

@@ -127,7 +127,7 @@ py::bytes page_of_run(const SolvedScene& self) {
 std::vector<std::string> notes_of(const SolvedScene& self) { return cli::notes(*self.scene, self.simulation); }
 
 // Why results are worse than what was asked for.
-std::vector<std::string> warnings_of(const SolvedScene& self) {
+std::vector<std::string> shortcomings_of(const SolvedScene& self) {
   const Report report = report_of(*self.scene, self.request, self.simulation);
   if (report.solution.unfinished) return {cli::explain_unfinished(report)};
   if (!report.solution.converged) return {cli::explain_not_converged(report)};
@@ -259,7 +259,7 @@ void bind_simulation(py::module_& module) {
           "converged", [](const SolvedScene& self) { return self.simulation.solution.converged; },
           "the solver has reached its tolerance")
       .def_property_readonly("notes", &notes_of, "what is not simulated, and other remarks")
-      .def_property_readonly("_warnings", &warnings_of)
+      .def_property_readonly("_warnings", &shortcomings_of)
       .def_property_readonly(
           "solution",
           [](const SolvedPointer& self) { return std::shared_ptr<Solution>(self, &self->simulation.solution); })

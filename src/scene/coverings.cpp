@@ -97,8 +97,7 @@ bool in_one_plane(const std::vector<Point>& smaller, const Lower& larger, double
 }
 
 // The area that triangles in a plane with this normal have in common, or more than `enough` of it, square metres.
-double overlap(const std::vector<Triangle>& some, const std::vector<Triangle>& others, const Vector& normal,
-               double enough) {
+double overlap(std::span<const Triangle> some, std::span<const Triangle> others, const Vector& normal, double enough) {
   double area = 0;
   for (const Triangle& first : some) {
     for (const Triangle& second : others) {
@@ -165,6 +164,7 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
   std::vector<Triangle> own;  // once they are needed
   const auto overlap_with = [&](PolygonIndex upper, double enough) {
     if (own.empty()) own = triangles(polygon);
+    if (!known_triangles[upper].empty()) return overlap(own, known_triangles[upper], lower.normal, enough);
     return overlap(own, triangles(upper), lower.normal, enough);
   };
   const bool is_pane = is_opening(scene, polygon);

@@ -22,10 +22,9 @@ Reach reach_of(const Scene& scene);
 /// \throws InputError at `where` when a position in metres is out of reach; the message calls it `what`.
 void require_in_reach(const Reach& reach, const Point& position, const std::string& where, const std::string& what);
 
-/// Every position and every strength of light that a scene has besides its vertices. Light up to 1e25 (W/m^2, W/sr or
+/// Checks every position and every strength of light of a scene besides its vertices. Light up to 1e25 (W/m^2, W/sr or
 /// W) leaves results that single precision can write; the sun's surface has 6e7. The squares of light from 1e-150 on
-/// are normal numbers. \throws InputError naming what is
-/// beyond.
+/// are normal numbers. \throws InputError naming the value that is out of range.
 void check_limits(const Scene& scene);
 
 }  // namespace patchlight

@@ -18,7 +18,7 @@ namespace {
 constexpr double level_cosine = 1 - 1e-6;
 
 // Coordinates of some formats have single precision.
-constexpr double rounding = 1e-6;
+constexpr double grid_rounding = 1e-6;
 
 // An edge without direction, in steps of a millimetre, so that polygons that share it find each other.
 using EdgeKey = std::array<std::array<std::int64_t, 3>, 2>;
@@ -64,7 +64,7 @@ Vector main_direction(const std::vector<Edge>& rim, const Vector& up) {
     const Vector way = edge[1] - edge[0];
     edges.push_back(way - way.dot(up) * up);
   }
-  // Lengths that are equal up to rounding keep the order of the rim, so that a square room is not turned by it.
+  // Lengths that are equal up to grid_rounding keep the order of the rim, so that a square room is not turned by it.
   const auto rounded_length = [](const Vector& edge) { return std::llround(1e6 * edge.norm()); };
   std::stable_sort(edges.begin(), edges.end(),
                    [&](const Vector& a, const Vector& b) { return rounded_length(a) > rounded_length(b); });
@@ -134,14 +134,18 @@ double farthest_from_rim(const Floor& floor, const std::array<Vector, 3>& around
   return farthest;
 }
 
+bool is_level(const std::vector<Point>& face, const Vector& up) {
+  const Vector area = area_vector(face);
+  return area.norm() > 0 && std::abs(area.normalized().dot(up)) >= level_cosine;
+}
+
 using Levels = std::map<double, Floor>;  // by their height, from below
 
 Levels levels_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
   constexpr double one_height = 1e-3;  // metres
   Levels levels;
   for (const std::vector<Point>& face : faces) {
-    const Vector area = area_vector(face);
-    if (!(area.norm() > 0) || std::abs(area.normalized().dot(up)) < level_cosine) continue;
+    if (!is_level(face, up)) continue;
     const double height = face[0].dot(up);
     auto level = levels.lower_bound(height - one_height);
     if (level == levels.end() || level->first > height + one_height)
@@ -166,7 +170,7 @@ Point point_on(const std::vector<Point>& face) {
 
 }  // namespace
 
-double cells_along(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - rounding)); }
+double cells_along(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - grid_rounding)); }
 
 SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edges, double spacing) {
   const double across = cells_along(edges[0].norm(), spacing);
@@ -201,11 +205,12 @@ Floor floor_of_room(const std::vector<std::vector<Point>>& faces, const Vector& 
   const RoomBody body(faces);
   std::vector<std::vector<Point>> under_air;
   for (const std::vector<Point>& face : faces) {
+    if (!is_level(face, up)) continue;
     if (body.holds(point_on(face) + body.step() * up)) under_air.push_back(face);
   }
   const Levels levels = levels_of(under_air, up);
   const auto largest = std::max_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
-    return area_of(a.second) < (1 - rounding) * area_of(b.second);
+    return area_of(a.second) < (1 - grid_rounding) * area_of(b.second);
   });
   return largest == levels.end() ? floor_of(faces, up) : largest->second;
 }
@@ -245,8 +250,11 @@ GridSize standard_grid(const Floor& floor) {
   const double spacing = standard_spacing(around[1].norm(), around[2].norm());
   // In the widest place r from the rim the strip takes r / 2 at most, and cells as wide as the rest of both sides fit.
   const double widest = farthest_from_rim(floor, around, strip + std::max(strip, spacing / 2));
+  // A floor so thin that none of the places is on it has no strip.
+  if (!(widest > 0)) return {spacing, 0};
   const double from_walls = std::min(strip, widest / 2);
-  return {std::min(spacing, 2 * (widest - from_walls)), from_walls};
+  // Not so small that a narrow floor gets very many cells.
+  return {std::max(spacing / 100, std::min(spacing, 2 * (widest - from_walls))), from_walls};
 }
 
 double most_cells(const Floor& floor, const GridSize& size) {
@@ -268,8 +276,9 @@ SensorGroup floor_grid(const Floor& floor, double height, const GridSize& size) 
   SensorGroup group;
   for (std::size_t k = 0; k < all.sensors.size(); ++k) {
     const Point on_floor = all.sensors[k].point - height * floor.up;
-    const bool is_free = is_over(floor, on_floor, {x, y}) &&
-                         (size.from_walls == 0 || distance_from(rim, on_floor) >= (1 - rounding) * size.from_walls);
+    const bool is_free =
+        is_over(floor, on_floor, {x, y}) &&
+        (size.from_walls == 0 || distance_from(rim, on_floor) >= (1 - grid_rounding) * size.from_walls);
     if (!is_free) continue;
     group.sensors.push_back(all.sensors[k]);
     group.cells.push_back(all.cells[k]);

@@ -12,7 +12,6 @@ namespace patchlight {
 /// as one that absorbs nothing.
 inline constexpr double largest_contraction = 1 - 1e-8;
 
-
 /// Positive weights v with g = v - K v > 0: for any non-negative K, |B* - B|_i <= v_i max_j |r_j| / g_j. One column per
 /// band. (Rows that were stored as floats have K_ii of -3e-7 at least, which is left out of account.)
 struct PatchWeights {

@@ -1,6 +1,6 @@
 // Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT are read, or refused with an InputError of one line: a scene
-// file, a photometric file, a weather file, a spectrum, points, an array of numpy, a solution, and the two JSON files of
-// stored form factors.
+// file, a photometric file, a weather file, a spectrum, points, an array of numpy, a solution, and the two JSON files
+// of stored form factors.
 #include "patchlight/base/error.h"
 
 #include "archive/form_factor_files.h"

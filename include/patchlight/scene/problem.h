@@ -44,10 +44,10 @@ enum class Severity : std::uint8_t { error, warning, remark };
 
 /// A face as it stands in the model.
 struct ProblemFace {
-  std::vector<Point> corners;  ///< metres
-  std::uint32_t file = 0;      ///< index into Scene::files
-  std::uint32_t line = 0;      ///< from 1; 0 if unknown
-  std::uint32_t face = 0;      ///< number of the face in the model, from 0
+  std::vector<Point> corners = {};  ///< metres
+  std::uint32_t file = 0;           ///< index into Scene::files
+  std::uint32_t line = 0;           ///< from 1; 0 if unknown
+  std::uint32_t face = 0;           ///< number of the face in the model, from 0
 };
 
 /// One kind of thing that is wrong.

@@ -286,10 +286,9 @@ TEST_F(Radiance, GenboxBevelsEdges) {
 // Six sides, twelve cylinders and eight spheres, as genbox prints them.
 TEST_F(Radiance, GenboxRoundsEdges) {
   const Scene scene = scene_with("!genbox wall crate 1 2 3 -r 0.1\n");
-  const double pi = std::numbers::pi;
   const double edges = 4 * (0.8 + 1.8 + 2.8);
   const double sides = 2 * (0.8 * 1.8 + 1.8 * 2.8 + 0.8 * 2.8);
-  EXPECT_NEAR(facts_of(scene).area, sides + 0.2 * pi * edges + 8 * 0.04 * pi, 1e-9);
+  EXPECT_NEAR(facts_of(scene).area, sides + 0.2 * std::numbers::pi * edges + 8 * 0.04 * std::numbers::pi, 1e-9);
 }
 
 TEST_F(Radiance, XformMovesWhatAPipeBringsIt) {
