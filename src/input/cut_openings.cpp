@@ -236,9 +236,8 @@ std::size_t holes_in(const ShapeCutter& cutter, const std::vector<Shape>& shapes
 }
 
 // A polygon on both sides of a line; nothing where GEOS fails.
-std::vector<Shape> sides_of(const ShapeCutter& cutter, const GEOSGeometry* polygon, const FlatRing& outline,
+std::vector<Shape> sides_of(const ShapeCutter& cutter, const GEOSGeometry* polygon, Eigen::AlignedBox2d box,
                             const CutLine& line) {
-  Eigen::AlignedBox2d box = box_of(outline);
   const FlatPoint margin = FlatPoint::Constant(0.1 * box.diagonal().norm());
   box = Eigen::AlignedBox2d(box.min() - margin, box.max() + margin);
   std::vector<Shape> sides;
@@ -249,35 +248,11 @@ std::vector<Shape> sides_of(const ShapeCutter& cutter, const GEOSGeometry* polyg
 std::vector<Shape> cut_through_holes(const ShapeCutter& cutter, const GEOSGeometry* polygon,
                                      const std::vector<FlatRing>& rings) {
   for (const bool through_middle : {false, true}) {
-    std::vector<Shape> sides = sides_of(cutter, polygon, rings[0], best_cut(rings, cutter.grid(), through_middle));
+    std::vector<Shape> sides =
+        sides_of(cutter, polygon, box_of(rings[0]), best_cut(rings, cutter.grid(), through_middle));
     if (!sides.empty() && holes_in(cutter, sides) + 1 < rings.size()) return sides;
   }
   return {};
-}
-
-// Later passes take the square of the corners of one polygon, so that a wall with many windows along its edge is cut in
-// two at its middle corner until no part has more than this.
-constexpr std::size_t most_corners_of_part = 256;
-
-// The longer way across the outline, at the median of its corners.
-CutLine middle_cut(FlatRing outline) {
-  CutLine line;
-  box_of(outline).sizes().maxCoeff(&line.axis);
-  const auto middle = outline.begin() + static_cast<std::ptrdiff_t>(outline.size() / 2);
-  std::nth_element(outline.begin(), middle, outline.end(),
-                   [&](const FlatPoint& a, const FlatPoint& b) { return a[line.axis] < b[line.axis]; });
-  line.at = (*middle)[line.axis];
-  return line;
-}
-
-// Two sides with fewer corners each; nothing where the cut does not help.
-std::vector<Shape> cut_in_two(const ShapeCutter& cutter, const GEOSGeometry* polygon, const FlatRing& outline) {
-  std::vector<Shape> sides = sides_of(cutter, polygon, outline, middle_cut(outline));
-  for (const Shape& side : sides) {
-    for (const GEOSGeometry* part : cutter.polygons_of(side.get()))
-      if (cutter.rings_of(part)[0].size() >= outline.size()) return {};
-  }
-  return sides;
 }
 
 // The outlines of polygons without holes that make up the shape; nothing where GEOS fails.
@@ -291,17 +266,91 @@ std::optional<std::vector<FlatRing>> simple_parts(const ShapeCutter& cutter, Sha
     if (!next) return std::nullopt;
     for (const GEOSGeometry* polygon : cutter.polygons_of(next.get())) {
       std::vector<FlatRing> rings = cutter.rings_of(polygon);
-      const bool has_holes = rings.size() > 1;
-      std::vector<Shape> sides;
-      if (has_holes) {
-        sides = cut_through_holes(cutter, polygon, rings);
-        if (sides.empty()) return std::nullopt;
-      } else if (rings[0].size() > most_corners_of_part) {
-        sides = cut_in_two(cutter, polygon, rings[0]);
+      if (rings.size() == 1) {
+        parts.push_back(std::move(rings[0]));
+        continue;
       }
-      if (sides.empty()) parts.push_back(std::move(rings[0]));
+      std::vector<Shape> sides = cut_through_holes(cutter, polygon, rings);
+      if (sides.empty()) return std::nullopt;
       std::move(sides.begin(), sides.end(), std::back_inserter(left));
     }
+  }
+  return parts;
+}
+
+// Openings of an outline, by their boxes.
+struct Holes {
+  std::vector<FlatRing> rings;
+  std::vector<Eigen::AlignedBox2d> boxes;
+};
+
+// Some holes in a part of the outline.
+struct HolesInPart {
+  Shape part;
+  Eigen::AlignedBox2d box;
+  std::vector<std::size_t> holes;
+};
+
+// The line at the median of the holes, across the longer side of the box around their centers.
+CutLine median_line(const Holes& holes, const HolesInPart& of) {
+  Eigen::AlignedBox2d around;
+  for (const std::size_t hole : of.holes) around.extend(holes.boxes[hole].center());
+  CutLine line;
+  around.sizes().maxCoeff(&line.axis);
+  std::vector<double> centers;
+  for (const std::size_t hole : of.holes) centers.push_back(holes.boxes[hole].center()[line.axis]);
+  const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
+  std::nth_element(centers.begin(), middle, centers.end());
+  line.at = *middle;
+  return line;
+}
+
+// Both sides of the line, with the holes that reach into them; nothing where GEOS fails, or where a side has hardly
+// fewer holes.
+std::vector<HolesInPart> halved(const ShapeCutter& cutter, const Holes& holes, const HolesInPart& whole) {
+  const CutLine line = median_line(holes, whole);
+  std::vector<HolesInPart> sides;
+  for (const Eigen::AlignedBox2d& box : halves_of(whole.box, line)) {
+    HolesInPart side{cutter.within(whole.part.get(), box), box, {}};
+    if (!side.part) return {};
+    for (const std::size_t hole : whole.holes) {
+      const bool reaches = holes.boxes[hole].min()[line.axis] < box.max()[line.axis] &&
+                           holes.boxes[hole].max()[line.axis] > box.min()[line.axis];
+      if (reaches) side.holes.push_back(hole);
+    }
+    if (side.holes.size() > whole.holes.size() * 3 / 4) return {};
+    sides.push_back(std::move(side));
+  }
+  return sides;
+}
+
+// The outlines of polygons without holes that make up the outline without the openings; nothing where GEOS fails. GEOS
+// takes more than linear time, and later passes take the square of the corners of a polygon. The outline is therefore
+// halved until few holes are left in each part.
+std::optional<std::vector<FlatRing>> parts_without(const ShapeCutter& cutter, const FlatRing& outline,
+                                                   const Holes& holes) {
+  constexpr std::size_t few = 64;
+  Eigen::AlignedBox2d box = box_of(outline);
+  const FlatPoint margin = FlatPoint::Constant(0.1 * box.diagonal().norm());
+  std::vector<HolesInPart> left;
+  left.push_back({cutter.inside(outline), {box.min() - margin, box.max() + margin}, {}});
+  for (std::size_t hole = 0; hole < holes.rings.size(); ++hole) left[0].holes.push_back(hole);
+  std::vector<FlatRing> parts;
+  while (!left.empty()) {
+    HolesInPart next = std::move(left.back());
+    left.pop_back();
+    std::vector<HolesInPart> sides;
+    if (next.part && next.holes.size() > few) sides = halved(cutter, holes, next);
+    if (!sides.empty()) {
+      std::move(sides.begin(), sides.end(), std::back_inserter(left));
+      continue;
+    }
+    std::vector<Shape> inside;
+    for (const std::size_t hole : next.holes) inside.push_back(cutter.inside(holes.rings[hole]));
+    std::optional<std::vector<FlatRing>> found =
+        simple_parts(cutter, cutter.difference(next.part, cutter.all_of(std::move(inside))));
+    if (!found) return std::nullopt;
+    std::move(found->begin(), found->end(), std::back_inserter(parts));
   }
   return parts;
 }
@@ -377,21 +426,21 @@ CutOutline without_openings(const std::vector<Point>& outline, const std::vector
   for (std::size_t k = 0; k < outline.size(); ++k) corners.add(flat_outline[k], outline[k]);
   const ShapeCutter cutter(plane.grid);
   CutOutline cut;
-  std::vector<Shape> holes;
+  Holes holes;
   for (const std::vector<Point>& opening : openings) {
     if (opening.size() < 3) continue;
-    const SnappedOpening hole = snapped(plane.flat(opening), flat_outline, tolerance);
+    SnappedOpening hole = snapped(plane.flat(opening), flat_outline, tolerance);
     for (std::size_t k = 0; k < opening.size(); ++k) {
       const Point at = plane.lifted(hole.ring[k]);
       corners.add(hole.ring[k], (at - opening[k]).norm() <= plane.grid ? opening[k] : at);
     }
     cut.beyond += hole.is_beyond ? 1 : 0;
-    holes.push_back(cutter.inside(hole.ring));
+    holes.boxes.push_back(box_of(hole.ring));
+    holes.rings.push_back(std::move(hole.ring));
   }
 
   // 2. The outline without them, in parts without holes.
-  const Shape whole = cutter.inside(flat_outline);
-  const auto parts = simple_parts(cutter, cutter.difference(whole, cutter.all_of(std::move(holes))));
+  const auto parts = parts_without(cutter, flat_outline, holes);
   if (!parts) return {{outline}, 0, false};
   cut.parts = lifted_parts(*parts, corners, plane.grid);
   return cut;
