@@ -158,7 +158,7 @@ SensorGroup grid_to_try(const Floor& floor, const FloorGrid& grid, const std::ve
   return is_sensible ? grid_over(floor, grid, solids).group : SensorGroup();
 }
 
-// Of all rooms those with places for sensors.
+// The rooms with places for sensors.
 NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
   const Scene& scene = trial.scene();
   FloorGrid grid = standard_work_plane();
@@ -187,7 +187,7 @@ NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
   return places;
 }
 
-// Of floors of groups that with most area below closed rooms.
+// The floor of a group that has most area below closed rooms.
 NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> floors, LeftOut& notes) {
   FloorGrid grid = standard_work_plane();
   grid.from_walls = 0.5;
@@ -227,7 +227,7 @@ std::vector<Point> eyes_in(const Trial& trial, const NamedFloor& place) {
   return eyes;
 }
 
-// From one of two places of a room in sight of each other that are farthest apart to the other, towards the glass.
+// A view towards the glass. Eye and target are the two places of the room that see each other from farthest apart.
 std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
   struct Way {
     double length = 0;

@@ -17,7 +17,7 @@ struct MitsubaMeshes {
   std::map<std::string, std::optional<FacetedShape>> by_file;
   std::vector<std::filesystem::path> files;  ///< that were read
   std::vector<std::string> digests;          ///< of the same
-  std::vector<Problem> losses;               ///< what is left out of them
+  std::vector<Problem> losses;               ///< parts that are left out
 };
 
 /// The kinds of shapes that can be read: obj, ply, rectangle, cube, sphere, disk and cylinder.

@@ -15,7 +15,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 

@@ -176,7 +176,7 @@ double area_beyond_strip(const Floor& floor, double from_walls) {
   return area_of(floor_grid(floor, 0, {std::max(x.norm(), y.norm()) / 100, from_walls}));
 }
 
-// Of a floor with cells beyond a strip, of which some are left out.
+// The share of the floor beyond the strip that the remaining cells cover.
 double share_of(const SensorGroup& rest, const Floor& floor, double from_walls) {
   const double whole = area_beyond_strip(floor, from_walls);
   return whole > 0 ? std::min(1.0, area_of(rest) / whole) : 1;
@@ -186,7 +186,8 @@ double share_of(const SensorGroup& rest, const Floor& floor, double from_walls) 
 void note_share(LeftOut& notes, const FloorGrid& grid, const std::string& floor, double share) {
   constexpr double nearly_all = 0.9;
   if (share >= nearly_all) return;
-  notes.add("floors that the cells of '" + grid.name + "' cover in part, without places that a roof or a solid takes",
+  notes.add("sensors '" + grid.name +
+                "' cover a part of the floor only, as a roof or a solid takes the rest; floor and share",
             floor + " " + rounded(100 * share, 2) + " %");
 }
 
@@ -262,8 +263,8 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
     if (!is_meant(room, grid)) continue;
     GridInAir over = grid_over_room(room, grid, solids, scene.up);
     if (over.group.sensors.empty()) {
-      notes.add("rooms without sensors of '" + grid.name + "', as no place of their floors is level, free and " +
-                    (grid.from_walls ? rounded(*grid.from_walls) + " m from the walls" : "wide enough"),
+      notes.add("rooms without sensors of '" + grid.name + "', as their floors have no free, level place " +
+                    (grid.from_walls ? rounded(*grid.from_walls) + " m from the walls" : "that is wide enough"),
                 room.name);
       continue;
     }
