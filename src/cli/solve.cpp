@@ -155,8 +155,9 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
   StageClock looking;
   try {
     if (!scene.sensors.empty()) {
-      views.points_outputs = points_outputs(arguments, scene);
+      std::vector<std::filesystem::path> files = points_outputs(arguments, scene);
       views.sensors = read_sensors(scene, simulation, observer);
+      views.points_outputs = std::move(files);
       looking.finish(Stage::gather);
     }
     if (!arguments.picture.file.empty()) {
