@@ -134,6 +134,16 @@ def npy_folder(tool, folder):
         shutil.copytree(pathlib.Path(place) / "F", folder)
 
 
+def solution(tool):
+    """A .vtp file, made by the tool itself."""
+    with tempfile.TemporaryDirectory() as place:
+        for name, text in (("room.obj", ROOM), ("room.mtl", MATERIALS)):
+            (pathlib.Path(place) / name).write_text(text)
+        words = [tool, "solve", "room.obj", "--patches", "40", "-q", "-o", "s.vtp"]
+        subprocess.run(words, cwd=place, check=True, capture_output=True)
+        return (pathlib.Path(place) / "s.vtp").read_bytes()
+
+
 def seeds(tool, scratch, wanted):
     """For every kind the good files, the one that is damaged first, and those of the wanted commands that read them."""
     everything = {"room.obj": ROOM.encode(), "room.mtl": MATERIALS.encode(), "lamp.ies": IES.encode(), "w.epw": EPW.encode(),
@@ -149,7 +159,7 @@ def seeds(tool, scratch, wanted):
                        for sky in SKIES[:1 if kind == "epw" else 2]]
     for folder in sorted(CORPUS.iterdir()):
         kind = folder.name
-        if kind in ("mesh", "mtl", "toml", "ies", "epw", "npy"):
+        if kind in ("mesh", "mtl", "toml", "ies", "epw", "npy", "pts", "vtp", "json"):
             continue
         cases[kind] = []
         for file in sorted(folder.iterdir()):
@@ -162,6 +172,9 @@ def seeds(tool, scratch, wanted):
         npy_folder(tool, scratch / "F")
         files = {f"F/{file.name}": file.read_bytes() for file in sorted((scratch / "F").iterdir())}
         cases["npy"] = [(files, name, [["relight", "F", "-q", "-o", "out.ply"]]) for name in files if not name.endswith(".vtp")]
+    if "render" in wanted:
+        render = ["render", "room.obj", "--solution", "s.vtp", "-o", "out.png", "--size", "16x16", "-q"]
+        cases["vtp"] = [({**everything, "s.vtp": solution(tool)}, "s.vtp", [render])]
     return {kind: [(files, name, [words for words in commands if words[0] in wanted]) for files, name, commands in some]
             for kind, some in cases.items()}
 
@@ -228,7 +241,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--kinds", type=lambda text: text.split(","))
-    parser.add_argument("--commands", type=lambda text: text.split(","), default=["check", "plan", "solve", "relight"])
+    parser.add_argument("--commands", type=lambda text: text.split(","), default=["check", "plan", "solve", "relight", "render"])
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("mutate_found"))
     options = parser.parse_args()
     begin = time.monotonic()

@@ -274,72 +274,74 @@ Page page_of_run(const Results& results, const SolvedSurface& surface) {
   return page;
 }
 
-// Files that appear together. The run can be stopped between two of them.
+// Files that appear together when they are published.
 class Outputs {
  public:
   template <typename Write>
   void add(const std::filesystem::path& file, const Write& write) {
     if (file.empty()) return;
-    if (interrupted()) throw Cancelled();
     files_.write(file, write);
     written_.push_back(file);
   }
-  void publish() {
-    if (interrupted()) throw Cancelled();
-    files_.publish();
-  }
-  std::vector<std::filesystem::path> written() const { return written_; }
+  void publish() { files_.publish(); }
+  const std::vector<std::filesystem::path>& written() const { return written_; }
 
  private:
   WholeFiles files_;
   std::vector<std::filesystem::path> written_;
 };
 
-// Writes the solution before views of it begin, which may take long. The first signal does not stop it.
-std::vector<std::filesystem::path> write_solution(const SolveArguments& arguments, const Results& results,
-                                                  const std::optional<SolvedSurface>& surface) {
-  WholeFiles files;
-  const WritingGuard guard;
-  for (const std::filesystem::path& file : arguments.results)
-    files.write(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
-  files.publish();
-  return {arguments.results.begin(), arguments.results.end()};
+bool has_views(const SolveArguments& arguments, const Scene& scene) {
+  return !scene.sensors.empty() || !arguments.picture.file.empty() || !arguments.page.empty() ||
+         !arguments.lightmap.folder.empty();
 }
 
-// Writes the views, the report and, last, the series.
-std::vector<std::filesystem::path> write_views(const SolveArguments& arguments, const Results& results,
-                                               const std::optional<SolvedSurface>& surface) {
-  using Path = std::filesystem::path;
-  Outputs outputs;
+// Writes the solution. It is published before views of it begin, which may take long; without views it appears together
+// with the report and the series.
+void write_solution(const SolveArguments& arguments, const Results& results,
+                    const std::optional<SolvedSurface>& surface, Outputs& outputs) {
   const WritingGuard guard;
-  outputs.add(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, *surface)); });
+  for (const std::filesystem::path& file : arguments.results)
+    outputs.add(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
+  if (has_views(arguments, results.scene)) outputs.publish();
+}
+
+void throw_if_interrupted() {
+  if (interrupted()) throw Cancelled();
+}
+
+// Writes the views, the report and, last, the series. The run can be stopped between two files.
+void write_views(const SolveArguments& arguments, const Results& results, const std::optional<SolvedSurface>& surface,
+                 Outputs& outputs) {
+  using Path = std::filesystem::path;
+  const WritingGuard guard;
+  const auto add = [&](const Path& file, const auto& write) {
+    throw_if_interrupted();
+    outputs.add(file, write);
+  };
   const Views& views = results.views;
+  add(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, *surface)); });
   if (views.picture) {
-    outputs.add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
-    outputs.add(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
+    add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
+    add(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
   }
-  for (const Path& file : views.points_outputs) {
-    outputs.add(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
-  }
+  for (const Path& file : views.points_outputs)
+    add(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
   if (views.lightmap) {
-    if (interrupted()) throw Cancelled();
+    throw_if_interrupted();
     write_lightmap(arguments.lightmap.folder, results.scene, results.simulation, *views.lightmap, results.provenance);
   }
-  outputs.add(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
-  if (arguments.series.empty()) {
-    outputs.publish();
-  } else {
-    write_series(
-        arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
-        [](const Progress&) { return !interrupted(); },
-        [&](const std::string& collection) {
-          outputs.add(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
-          outputs.publish();
-        });
-  }
-  std::vector<Path> written = outputs.written();
-  if (views.lightmap) written.push_back(arguments.lightmap.folder);
-  return written;
+  add(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
+  throw_if_interrupted();
+  if (arguments.series.empty()) return outputs.publish();
+  write_series(
+      arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
+      [](const Progress&) { return !interrupted(); },
+      [&](const std::string& collection) {
+        add(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
+        throw_if_interrupted();
+        outputs.publish();
+      });
 }
 
 // Said of a result without error bars.
@@ -402,14 +404,17 @@ ExitCode solve(const SolveArguments& arguments) {
   std::optional<SolvedSurface> surface;
   if (!arguments.results.empty() || !arguments.page.empty())
     surface.emplace(surface_of(results.scene, results.simulation, arguments.ambient_distance));
-  std::vector<std::filesystem::path> written = write_solution(arguments, results, surface);
+  Outputs outputs;
+  write_solution(arguments, results, surface, outputs);
 
   // 2. Look at it, and write the views
   results.views = views_until_stopped(results.scene, results.simulation, arguments, observer);
   results.report = report_on(results, arguments.request);
   line.reset();
-  for (std::filesystem::path& file : write_views(arguments, results, surface)) written.push_back(std::move(file));
+  write_views(arguments, results, surface, outputs);
   if (!results.report.solution.unfinished) checkpoint.remove();
+  std::vector<std::filesystem::path> written = outputs.written();
+  if (results.views.lightmap) written.push_back(arguments.lightmap.folder);
   print_results(arguments, results, written, checkpoint.note());
   if (results.views.lightmap_error) throw InputError(*results.views.lightmap_error);
   return exit_code_of(results.report);
