@@ -223,7 +223,7 @@ StoredScene stored_scene_of(const Json& json) {
   scene.up = vector_of(json.at("up"));
   scene.up_stated = json.at("up_stated").get<bool>();
   scene.notes = texts_of(json.at("notes"));
-  if (json.contains("problems")) scene.problems = problems_of(json.at("problems"));
+  scene.problems = problems_of(json.at("problems"));
   scene.materials = materials_of(json.at("materials"));
   if (json.contains("bands")) scene.bands = bands_from(json.at("bands"));
   scene.lamp_hints = lamp_hints_of(json.at("lamp_hints"));
