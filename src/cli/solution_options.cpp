@@ -184,9 +184,8 @@ void add_solver_options(CLI::App& command, SolutionOptions& options, Request& re
 
 void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
   command.option_defaults()->group("The run");
-  command.add_flag(
-      "--discard", options.discards,
-      "a signal (Ctrl-C) ends the run without further files;\ndefault: the results so far are written");
+  command.add_flag("--discard", options.discards,
+                   "a signal (Ctrl-C) ends the run without further files;\ndefault: the results so far are written");
   command.add_flag("-q,--quiet", options.quiet, "prints errors and warnings only; default: progress and a summary");
   command.add_flag("-v,--verbose", options.verbose, "adds decisions, counts and speed to the summary; default: off");
 }

@@ -1,7 +1,6 @@
-#include "input/scene_bytes.h"
-
 #include "patchlight/base/error.h"
 
+#include "input/scene_bytes.h"
 #include "support/scenes.h"
 
 #include <atomic>
