@@ -3,6 +3,8 @@
 #include "scene/extent.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -21,42 +23,66 @@ std::vector<Point> used_vertices(const Scene& scene) {
   return points;
 }
 
-// Moves the extreme vertices of 13 axes to the front: most polygons are found to lie inside after these.
-std::vector<Point> extremes_first(std::vector<Point> points) {
-  std::size_t front = 0;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        const Vector axis(x, y, z);
-        const auto farthest = std::max_element(
-            points.begin(), points.end(), [&](const Point& a, const Point& b) { return a.dot(axis) < b.dot(axis); });
-        if (front < points.size()) std::swap(points[front++], *farthest);
-      }
-    }
+// A binary tree of boxes around points: children of node k are 2 k + 1 and 2 k + 2.
+class PointTree {
+ public:
+  explicit PointTree(std::vector<Point> points) : points_(std::move(points)) { build(0, 0, points_.size()); }
+
+  // Does a point lie farther than `height` along a direction of length 1? The box of a node bounds its points from both
+  // sides: where it lies on one side as a whole no point is looked at. O(log n) for most planes.
+  bool reaches(const Vector& direction, double height) const {
+    return reaches(0, 0, points_.size(), direction, height);
   }
-  return points;
-}
+
+ private:
+  static constexpr std::size_t few = 8;
+
+  void build(std::size_t node, std::size_t begin, std::size_t end) {
+    if (boxes_.size() <= node) boxes_.resize(node + 1);
+    for (std::size_t k = begin; k < end; ++k) boxes_[node].extend(points_[k]);
+    if (end - begin <= few) return;
+    Eigen::Index axis = 0;
+    boxes_[node].sizes().maxCoeff(&axis);
+    const auto at = [&](std::size_t k) { return points_.begin() + static_cast<std::ptrdiff_t>(k); };
+    const std::size_t middle = (begin + end) / 2;
+    std::nth_element(at(begin), at(middle), at(end),
+                     [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+    build(2 * node + 1, begin, middle);
+    build(2 * node + 2, middle, end);
+  }
+
+  bool reaches(std::size_t node, std::size_t begin, std::size_t end, const Vector& direction, double height) const {
+    if (begin == end) return false;
+    const double center = direction.dot(boxes_[node].center());
+    const double half = 0.5 * direction.cwiseAbs().dot(boxes_[node].sizes());
+    if (center + half <= height) return false;
+    if (center - half > height) return true;
+    if (end - begin <= few) {
+      return std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(begin),
+                         points_.begin() + static_cast<std::ptrdiff_t>(end),
+                         [&](const Point& point) { return direction.dot(point) > height; });
+    }
+    const std::size_t middle = (begin + end) / 2;
+    return reaches(2 * node + 2, middle, end, direction, height) ||
+           reaches(2 * node + 1, begin, middle, direction, height);
+  }
+
+  std::vector<Point> points_;
+  std::vector<Box> boxes_;
+};
 
 }  // namespace
 
 HalfSpaces occupied_half_spaces(const Scene& scene) {
-  const std::vector<Point> points = extremes_first(used_vertices(scene));
+  const PointTree points(used_vertices(scene));
   const double tolerance = plane_tolerance * extent_of(scene);
   HalfSpaces occupied{std::vector<std::uint8_t>(scene.polygons.size(), 0),
                       std::vector<std::uint8_t>(scene.polygons.size(), 0)};
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Vector normal = front_normal(scene, p);
-    const Point& on_plane = scene.vertices[scene.polygons[p].corners[0]];
-    bool before = false;
-    bool behind = false;
-    for (const Point& point : points) {
-      const double height = normal.dot(point - on_plane);
-      before = before || height > tolerance;
-      behind = behind || height < -tolerance;
-      if (before && behind) break;
-    }
-    occupied.before[p] = before;
-    occupied.behind[p] = behind;
+    const double height = normal.dot(scene.vertices[scene.polygons[p].corners[0]]);
+    occupied.before[p] = points.reaches(normal, height + tolerance);
+    occupied.behind[p] = points.reaches(-normal, tolerance - height);
   }
   return occupied;
 }

@@ -14,7 +14,7 @@ struct HalfSpaces {
   std::vector<std::uint8_t> behind;
 };
 
-/// O(polygons) for most scenes, O(polygons x vertices) for convex ones.
+/// O(n log n) for most scenes of n vertices and polygons.
 HalfSpaces occupied_half_spaces(const Scene& scene);
 
 }  // namespace patchlight
