@@ -23,8 +23,7 @@ namespace {
   throw InputError(file.string(), found + "; expected a solution as patchlight has written it: solve the scene again");
 }
 
-// Indices name what exists, and patches follow each other in the order of the scene's polygons, the front before the
-// back.
+// Each index is that of a vertex or polygon, and patches follow the order of the scene's polygons, front before back.
 void require_indices(const StoredSolution& stored, const Scene& scene, const std::filesystem::path& file) {
   const auto is_known = [&](std::uint32_t vertex) { return vertex < stored.vertices.size(); };
   bool sound = true;

@@ -5,7 +5,7 @@
 namespace patchlight {
 
 /// Limits of one model and all files that it names. A small file can ask for a great deal of work: copies of copies,
-/// texts that hold texts. Each reader refuses a file that exceeds one of these with an InputError.
+/// texts that hold texts. Readers of such formats refuse a file that exceeds one of these with an InputError.
 namespace reading_limits {
 
 inline constexpr std::size_t polygons = 10'000'000;    ///< copies included; a million take about a gigabyte to solve
