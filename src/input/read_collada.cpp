@@ -7,6 +7,7 @@
 #include "input/text.h"
 
 #include <pugixml.hpp>
+#include <set>
 #include <utility>
 
 namespace patchlight {
@@ -22,12 +23,29 @@ Vector up_axis(const std::string& text) {
   return text[value] == 'X' ? Vector::UnitX() : text[value] == 'Z' ? Vector::UnitZ() : Vector::UnitY();
 }
 
-// assimp skips geometries that are not meshes, and holes of polygons.
+// The ids of geometries that a node places in the scene, as "#id". Walked without recursion, however deep nodes are
+// nested.
+std::set<std::string> placed_geometries(const pugi::xml_document& document) {
+  struct Instances : pugi::xml_tree_walker {
+    std::set<std::string> urls;
+    bool for_each(pugi::xml_node& node) override {
+      if (std::string_view(node.name()) == "instance_geometry") urls.insert(node.attribute("url").value());
+      return true;
+    }
+  } instances;
+  pugi::xml_node root = document.child("COLLADA");
+  root.traverse(instances);
+  return instances.urls;
+}
+
+// assimp skips geometries that are not meshes, and holes of polygons. Geometries that no node places are not lost.
 Scene with_lost_geometry(Scene scene, const std::string& text) {
   LeftOut left_out;
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size());
+  const std::set<std::string> placed = placed_geometries(document);
   for (const pugi::xml_node& geometry : document.child("COLLADA").child("library_geometries").children("geometry")) {
+    if (placed.count(std::string("#") + geometry.attribute("id").value()) == 0) continue;
     const std::string name = geometry.attribute(geometry.attribute("name") ? "name" : "id").value();
     const pugi::xml_node mesh = geometry.child("mesh");
     if (geometry.child("spline"))
