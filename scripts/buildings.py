@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Buildings as they come: `patchlight new` and `patchlight solve` of each model, and a row of docs/models.md for it.
+"""Buildings as they come: `patchlight init` and `patchlight solve` of each model, and a row of docs/models.md for it.
 
 usage: scripts/buildings.py TOOL OUT MODEL [MODEL ...]    a model may be followed by options of solve: "house.xml --patches 8000"
 Writes scene files, results, reports and pictures into the folder OUT.
@@ -16,16 +16,16 @@ def row(tool, out, words):
     model, options = pathlib.Path(words[0]), words[1:]
     scene = out / f"{model.stem}.toml"
     scene.unlink(missing_ok=True)
-    subprocess.run([tool, "new", model, "-o", scene], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([tool, "init", model, "-o", scene], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     names = {option: out / f"{model.stem}{suffix}"
-             for option, suffix in (("-o", ".vtp"), ("--picture", ".png"), ("--report", ".json"))}
+             for option, suffix in (("-o", ".vtp"), ("--picture", ".png"), ("--json", ".json"))}
     outputs = [word for pair in names.items() for word in pair]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([tool, "solve", scene, *outputs, *options], capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode not in (0, 3):
         return f"| {model.name} | refused: {done.stderr.strip().splitlines()[-1]} |"
-    report = json.loads(names["--report"].read_text())
+    report = json.loads(names["--json"].read_text())
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     error = next((line for line in done.stdout.splitlines() if "error of the patches" in line), "no error stated")
     return (f"| {model.name} {shlex.join(options)} | {report['input']['polygons']} | {report['mesh']['patches']} | "

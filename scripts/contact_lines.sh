@@ -9,7 +9,7 @@ trap 'rm -r "$folder"' EXIT
 
 # Stated error, patches, CPU seconds.
 figures() {
-  "$tool" solve "$@" --sides front --quiet -o "$folder/out.vtp" --report "$folder/out.json"
+  "$tool" solve "$@" --sides front --quiet -o "$folder/out.vtp" --json "$folder/out.json"
   python3 -c 'import json, sys
 last = json.load(open(sys.argv[1]))["accuracy"][-1]
 print(f"{100 * last['"'total'"']:.2f} %, {last['"'patches'"']:,}, {last['"'cpu_seconds'"']:.1f}", end="")' "$folder/out.json"
@@ -39,7 +39,7 @@ python3 "$(dirname "${BASH_SOURCE[0]}")/make_contact_rooms.py" "$folder" >/dev/n
 for room in shelf leg dividing_wall crossing_boxes stairs column rug lamp_down lamp_up; do
   # Light that gets out of a slit of a centimetre is met by few paths.
   paths=$([ "$room" = lamp_up ] && echo 65536 || echo 8192)
-  "$tool" verify "$folder/$room.obj" --patches 2000 --checked 200 --paths "$paths" >"$folder/out.txt" 2>"$folder/notes.txt" || code=$?
+  "$tool" crosscheck "$folder/$room.obj" --patches 2000 --sample-patches 200 --paths "$paths" >"$folder/out.txt" 2>"$folder/notes.txt" || code=$?
   [ "${code:=0}" = 0 ] || [ "$code" = 5 ] || { cat "$folder/notes.txt" >&2; exit 1; }  # 5: it disagrees
   code=0
   python3 -c 'import re, sys

@@ -28,7 +28,7 @@ def main():
     for options in OPTIONS:
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "room.ff"
-            words = [tool, "form-factors", str(model), "--patches", "2000", "--raw", "-q", "-o", str(out), *options.split()]
+            words = [tool, "form-factors", str(model), "--patches", "2000", "--no-closure", "-q", "-o", str(out), *options.split()]
             _, status, used = os.wait4(os.posix_spawnp(tool, words, os.environ), 0)
             if status != 0:
                 sys.exit(f"error: {' '.join(words)} failed")

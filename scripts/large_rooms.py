@@ -31,7 +31,7 @@ def measured(words):
 def solved(build, model, patches, rays, folder):
     report = folder / "report.json"
     words = [build / "src/patchlight", "solve", model, "--rays", rays, "--patches", patches, "-q", "-o",
-             folder / "result.vtp", "--report", report]
+             folder / "result.vtp", "--json", report]
     seconds, gigabytes = measured([str(word) for word in words])
     told = json.loads(report.read_text())
     costs = {cost["stage"]: cost["cpu_seconds"] for cost in told["costs"]}

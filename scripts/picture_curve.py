@@ -22,8 +22,8 @@ ROOMS = {"two_rooms": ("0.32,2.41,1.23", "1.29,2.218,1.082", "72"),
          "cornell_box": ("0.2764,0.2744,-0.7488", "0.2764,0.2744,0", "42")}
 SIZE = ["--size", "256x256"]
 ERRORS = ("10%", "5%", "2%", "1%", "0.5%")
-SETTINGS = [("draft", ["--quality", "draft"])] + [
-    (f"final, {error}", ["--quality", "final", "--picture-error", error]) for error in ERRORS]
+SETTINGS = [("draft", ["--picture-quality", "draft"])] + [
+    (f"final, {error}", ["--picture-quality", "final", "--picture-error", error]) for error in ERRORS]
 
 
 def cpu_seconds(command):

@@ -17,7 +17,7 @@ import tempfile
 def level(tool, model, reflectance, patches, folder, *options):
     report = folder / "report.json"
     words = [tool, "solve", model, "--sides", "front", "--set", f"*.reflectance={reflectance}", "--patches", patches, "-q",
-             "-o", folder / "result.ply", "--report", report, *options]
+             "-o", folder / "result.ply", "--json", report, *options]
     subprocess.run([str(word) for word in words], check=True)
     told = json.loads(report.read_text())
     return sum(part["reflectance"][0] * part["irradiance_mean_W_m2"][0] * part["area_m2"] for part in told["materials"])
@@ -37,8 +37,8 @@ def main():
             for patches in options.patches:
                 def solved(count, *more):
                     return level(options.tool, options.model, reflectance, count, pathlib.Path(name), *more)
-                reference = solved(4 * patches, "--storage", "tiles")
-                off = [100 * (solved(patches, "--storage", "rays", "--seed", seed) / reference - 1)
+                reference = solved(4 * patches, "--method", "pairs")
+                off = [100 * (solved(patches, "--method", "rays", "--seed", seed) / reference - 1)
                        for seed in range(1, options.seeds + 1)]
                 rms = math.sqrt(sum(value * value for value in off) / len(off))
                 print(f"| {reflectance} | {patches} | {rms:.3f} | {max(map(abs, off)):.3f} |", flush=True)

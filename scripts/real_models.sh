@@ -86,11 +86,11 @@ for name in "${names[@]}"; do
         'f 4 1 5 8' 'usemtl lamp' 'f 9 10 11 12' >"$out/radiator_room.obj"
       files=("$out/radiator_room.obj" "$models/furniture-cc0/blendswap-cc-0/radiator/radiator.obj")
       unit=(--unit cm)
-      options=(--storage rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
+      options=(--method rays --accuracy 2% --camera 60,140,240 -10,40,0 55)
       ;;
     duplex)
       rm -f "$out/duplex.toml"
-      "$tool" new "$models/duplex-ifc/Duplex_A.ifc" -o "$out/duplex.toml" >/dev/null
+      "$tool" init "$models/duplex-ifc/Duplex_A.ifc" -o "$out/duplex.toml" >/dev/null
       files=("$out/duplex.toml")
       options=(--view "A102 Living Room" --points-output "$out/duplex.csv")
       ;;
@@ -217,7 +217,7 @@ END
   "$tool" check "${files[@]}" "${unit[@]}" >"$out/$name.check.txt" 2>&1 || [ $? -eq 2 ]
   [ ${#options[@]} -gt 0 ] || continue
   # An accuracy that was not reached ends with exit code 3.
-  "$tool" solve "${files[@]}" "${unit[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --report "$out/$name.json" \
+  "$tool" solve "${files[@]}" "${unit[@]}" "${options[@]}" -o "$out/$name.vtp" --picture "$out/$name.png" --json "$out/$name.json" \
     --verbose >"$out/$name.solve.txt" 2>&1 || [ $? -eq 3 ]
   cost_row "$name" "$out/$name.json" | tee -a "$out/costs.md"
   case $name in

@@ -59,7 +59,7 @@ def solved(tool, scene, bands, out, patches):
     name = out / f"{scene}_{bands}"
     subprocess.run(
         [tool, "solve", MESHES / f"{scene}.toml", "--bands", bands, "--patches", str(patches), "--no-error-bars", "-o",
-         f"{name}.vtp", "--report", f"{name}.json", "--threads", "1"],
+         f"{name}.vtp", "--json", f"{name}.json", "--threads", "1"],
         check=True, capture_output=True)
     return read_vtp(f"{name}.vtp"), json.loads(pathlib.Path(f"{name}.json").read_text())
 

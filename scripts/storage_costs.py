@@ -20,8 +20,8 @@ MESHES = pathlib.Path(__file__).resolve().parent.parent / "meshes"
 def solved(tool, model, patches, storage, folder, *options):
     """Processor seconds and the report of a run."""
     report = folder / "report.json"
-    words = [tool, "solve", model, "--sides", "front", "--patches", patches, "--storage", storage, "-q",
-             "-o", folder / "result.vtp", "--report", report, *options]
+    words = [tool, "solve", model, "--sides", "front", "--patches", patches, "--method", storage, "-q",
+             "-o", folder / "result.vtp", "--json", report, *options]
     words = [str(word) for word in words]
     _, status, used = os.wait4(os.posix_spawnp(words[0], words, os.environ), 0)
     if status != 0:
@@ -31,8 +31,8 @@ def solved(tool, model, patches, storage, folder, *options):
 
 def row(tool, model, patches, folder):
     by_rays, of_rays = solved(tool, model, patches, "rays", folder)
-    by_pairs, _ = solved(tool, model, patches, "tiles", folder)
-    with_bars, of_pairs = solved(tool, model, patches, "tiles", folder, "--error-bars")
+    by_pairs, _ = solved(tool, model, patches, "pairs", folder)
+    with_bars, of_pairs = solved(tool, model, patches, "pairs", folder, "--error-bars")
     pairs, rays = (100 * report["relative_error"]["total"] for report in (of_pairs, of_rays))
     return (f"| {pathlib.Path(model).stem} | {patches} | {by_pairs:.1f} | {with_bars:.1f} | {pairs:.2f} | "
             f"{by_rays:.1f} | {rays:.2f} |")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the table of docs/accuracy.md on patchlight verify. Takes some three minutes. usage: scripts/verify_table.sh OUT
+# Prints the table of docs/accuracy.md on patchlight crosscheck. Takes some three minutes. usage: scripts/verify_table.sh OUT
 # OUT takes the JSON of each run. PATCHLIGHT_TOOL may name a tool that is built already.
 set -euo pipefail
 if [ $# -ne 1 ]; then
@@ -18,7 +18,7 @@ row() {
   local json="$out/$1_$2_${*: -1}.json"
   TIMEFORMAT=%U
   local cpu
-  cpu=$({ time "$tool" verify "meshes/$1.obj" --paths "$2" --json "$json" "${@:3}" >"$json.txt" 2>/dev/null || [ $? -eq 5 ]; } 2>&1)
+  cpu=$({ time "$tool" crosscheck "meshes/$1.obj" --paths "$2" --json "$json" "${@:3}" >"$json.txt" 2>/dev/null || [ $? -eq 5 ]; } 2>&1)
   python3 - "$1" "$2" "$cpu" "$json.txt" "${*:3}" <<'PY'
 import re, sys
 model, paths, cpu, text, options = sys.argv[1:]

@@ -284,7 +284,7 @@ std::string new_scene_file(const Scene& scene, const NewLight& light, const NewP
   std::ostringstream text;
   text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
-       << " -o result.vtp --report result.json --picture result.png\n\n"
+       << " -o result.vtp --json result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
   text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, light)
        << sensor_tables(scene, places) << camera_tables(places.cameras);

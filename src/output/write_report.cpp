@@ -41,7 +41,7 @@ nlohmann::ordered_json sensors_part(const SensorFacts& sensors) {
 constexpr auto note_on_coarse =
     "min and uniformity of a surface that is coarse may be too high, as dark patches of it are larger than the cells "
     "of a "
-    "grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight new writes "
+    "grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight init writes "
     "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
 
 // What floor, walls and ceiling of each room get, as a part of the report.

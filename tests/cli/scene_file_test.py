@@ -49,7 +49,7 @@ class SceneFileTest(ToolTest):
         # The dividing wall of the two rooms is 0.1 m thick, from x = 4, and has a door from y = 1 to 1.9.
         points = ", ".join(f"[{x}, {y}, 0.8, 0, 0, 1]" for x in (3, 4.05, 5) for y in (0.5, 1.4, 2.4))
         rows = self.readings(f'[[model]]\nfile = "{MESHES}/two_rooms.obj"\n[[sensors]]\nname = "plane"\n'
-                             f'points = [{points}]\n', "--patches", 500, "--report", "report.json")
+                             f'points = [{points}]\n', "--patches", 500, "--json", "report.json")
         inside = [(float(r["x"]), float(r["y"])) for r in rows if r["inside_wall"] == "1"]
         self.assertEqual(inside, [(4.05, 0.5), (4.05, 2.4)])
         read = [float(r["E_g"]) for r in rows if r["inside_wall"] == "0"]
@@ -70,7 +70,7 @@ class SceneFileTest(ToolTest):
         for k, example in enumerate(examples):
             self.write(f"{k}.toml", example)
             self.solve(f"{k}.toml", "--patches", 200, "--points-output", f"{k}.csv", "--points-output", f"{k}.vtp",
-                       "--report", f"{k}.json")
+                       "--json", f"{k}.json")
             rows = self.rows(f"{k}.csv")
             self.assertTrue(all(float(row["E_v_lx"]) >= 0 for row in rows if row["inside_wall"] == "0"))
             report = json.loads((self.folder / f"{k}.json").read_text())
