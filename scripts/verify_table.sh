@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the table of docs/accuracy.md on patchlight verify. Takes some three minutes. usage: scripts/verify_table.sh OUT
+# Prints the table of docs/benchmarks/accuracy.md on patchlight verify. Takes some three minutes. usage: scripts/verify_table.sh OUT
 # OUT takes the JSON of each run. PATCHLIGHT_TOOL may name a tool that is built already.
 set -euo pipefail
 if [ $# -ne 1 ]; then

@@ -11,8 +11,8 @@ enum class Shot { unshot, overshot };
 /// limit of rows, SolverOptions::max_rows, a patch of each group of CoarseTransport shoots before, so that a first
 /// picture is known roughly everywhere. Cohen, Chen, Wallace and Greenberg 1988; it is Southwell relaxation of the same
 /// system (Gortler, Cohen and Slusallek 1994). Overshooting (Feda and Purgathofer 1992) shoots beforehand what is
-/// expected to come, and a little more than what is unshot: over-relaxation. docs/theory.md section 7. Takes single
-/// rows of the transport. An iteration's number is that of its shots.
+/// expected to come, and a little more than what is unshot: over-relaxation. docs/theory/progressive-refinement.md.
+/// Takes single rows of the transport. An iteration's number is that of its shots.
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot);
 
 }  // namespace patchlight
